@@ -1,0 +1,70 @@
+"""The empirical model of response (EMoR): a mean response and its principal components."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crfnet_core.response import SAMPLES
+
+#: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
+COMPONENTS = 11
+
+_BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class EmorBasis:
+    """A mean response and orthonormal components: f = mean + weights @ components.
+
+    `data/emor.npz` was computed from the 201 curves of DoRF (Grossberg & Nayar) by
+    ``python -m training.basis``: the curves at 1024 uniform irradiances; their mean; the singular vectors of what is
+    left, the 11 of largest singular value, each with unit L2 norm over the 1024 samples and a positive sum. So a
+    distance between two weight vectors is the estimation error between the two reconstructions.
+
+    Source: Grossberg & Nayar, "Modeling the space of camera response functions", TPAMI 2004.
+
+    Parameters
+    ----------
+    mean : ndarray, float64, shape (1024,)
+        The mean response.
+    components : ndarray, float64, shape (11, 1024)
+        Orthonormal rows, most variance first.
+    """
+
+    mean: Floats
+    components: Floats
+
+    @classmethod
+    @cache
+    def load(cls) -> EmorBasis:
+        """Return the packaged basis."""
+        with np.load(_BASIS_FILE) as arrays:
+            return cls(arrays["mean"], arrays["components"])
+
+    @classmethod
+    def from_curves(cls, curves: ArrayLike) -> EmorBasis:
+        """Return the basis of responses of shape (N, 1024), N > 11: how `data/emor.npz` is made."""
+        samples = np.asarray(curves, dtype=np.float64)
+        if samples.ndim != 2 or samples.shape[1] != SAMPLES or samples.shape[0] <= COMPONENTS:
+            raise ValueError(f"a basis needs more than {COMPONENTS} curves of {SAMPLES} samples, got {samples.shape}")
+        mean = samples.mean(axis=0)
+        components = np.linalg.svd(samples - mean, full_matrices=False)[2][:COMPONENTS]
+        return cls(mean, components * np.sign(components.sum(axis=1, keepdims=True)))
+
+    def project(self, curves: ArrayLike) -> Floats:
+        """Return the weights, shape (..., 11), of responses of shape (..., 1024)."""
+        return (np.asarray(curves, dtype=np.float64) - self.mean) @ self.components.T
+
+    def reconstruct(self, weights: ArrayLike) -> Floats:
+        """Return the responses, shape (..., 1024), of weights of shape (..., 11).
+
+        What comes out of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`.
+        """
+        return self.mean + np.asarray(weights, dtype=np.float64) @ self.components

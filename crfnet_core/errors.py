@@ -1,0 +1,29 @@
+"""The errors that this project raises for a user's mistake; every message is one line that says what to do."""
+
+
+class CRFNetError(Exception):
+    """Base of every error that a caller can fix: bad input, a bad file, a bad option."""
+
+
+class PhotoError(CRFNetError):
+    """A photograph that cannot be read or cannot be analysed."""
+
+
+class ModelError(CRFNetError):
+    """A model folder that is incomplete, altered or of another kind than expected."""
+
+
+class CurveError(CRFNetError):
+    """Samples that describe no camera response."""
+
+
+class LutError(CRFNetError):
+    """A lookup table that is malformed or cannot be written."""
+
+
+class ConfigError(CRFNetError):
+    """An OpenColorIO config that does not load, validate or convert as it should."""
+
+
+class PlateError(CRFNetError):
+    """A plate or frame sequence that cannot be found, read or written."""

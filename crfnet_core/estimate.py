@@ -1,0 +1,193 @@
+"""From one photograph, or several of one camera, to its response and how far to trust it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crfnet_core.emor import EmorBasis
+from crfnet_core.errors import PhotoError
+from crfnet_core.network import Calibration, ResponseNetwork
+from crfnet_core.photo import Photo
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.windows import Window, cut_windows, select_windows
+
+#: A window is an outlier when its estimate lies farther than this many median distances from the median estimate.
+OUTLIER_FACTOR = 2.0
+
+#: Uncertainties in E_est below which an estimate is good, and usable; gamma 2.2 is off by 3.1 on average.
+GOOD, USABLE = 1.0, 2.0
+
+#: Share of samples at the ends of the range above which a photograph counts as mostly clipped.
+MOSTLY_CLIPPED = 0.5
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class WindowEstimate:
+    """One window's part in an estimate.
+
+    Parameters
+    ----------
+    photo : int
+        Which of the photographs the window was cut from.
+    window : Window
+        Where it lies and how much of the range it covers.
+    weights : ndarray, float64, shape (11,)
+        The EMoR weights that the network gave for it.
+    expected_error : float
+        The E_est that the network expects of it.
+    kept : bool
+        Whether it entered the average, or was an outlier.
+    """
+
+    photo: int
+    window: Window
+    weights: Floats
+    expected_error: float
+    kept: bool
+
+
+@dataclass(frozen=True)
+class ResponseEstimate:
+    """A response, its evidence, and how far to trust it.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The estimated response.
+    weights : ndarray, float64, shape (11,)
+        Its EMoR weights, before it was made monotone.
+    windows : tuple of WindowEstimate
+        What each window said.
+    spread : float
+        RMS distance of the kept windows' estimates from their mean, in units of E_est.
+    uncertainty : float
+        The E_est to be expected of this estimate.
+    band : ndarray, float64, shape (2, 1024)
+        Lower and upper end of the 90 % band around the response.
+    warnings : tuple of str
+        What makes a poor estimate likely, in words.
+    model : str
+        Name and hash of the network.
+    photos : tuple of str
+        File names of the photographs.
+    """
+
+    curve: ResponseCurve
+    weights: Floats
+    windows: tuple[WindowEstimate, ...]
+    spread: float
+    uncertainty: float
+    band: Floats
+    warnings: tuple[str, ...]
+    model: str
+    photos: tuple[str, ...]
+
+    @property
+    def verdict(self) -> str:
+        """The uncertainty in words: "good", "usable" or "do not trust"."""
+        if self.uncertainty < GOOD:
+            return "good"
+        return "usable" if self.uncertainty < USABLE else "do not trust"
+
+
+def estimate_response(
+    photos: Photo | Sequence[Photo],
+    *,
+    network: ResponseNetwork,
+    windows: int = 10,
+    seed: int = 0,
+    progress: Callable[[int, int], None] | None = None,
+) -> ResponseEstimate:
+    """Estimate the response of the camera that took one or several photographs.
+
+    Every window gets an estimate of its own; those far from the others are removed and the rest averaged, as in the
+    CRF-net paper. The windows of several photographs are pooled.
+
+    Parameters
+    ----------
+    photos : Photo or sequence of Photo
+        Photographs of one camera with the same settings.
+    network : ResponseNetwork
+        See `ResponseNetwork.load`.
+    windows : int
+        Windows of each photograph.
+    seed : int
+        Of the choice of windows.
+    progress : callable, optional
+        Called with (done, total) after every window.
+
+    Raises
+    ------
+    PhotoError
+        If there is no photograph, or one is smaller than a window.
+    """
+    photos = (photos,) if isinstance(photos, Photo) else tuple(photos)
+    if not photos:
+        raise PhotoError("there is no photograph to analyse; give at least one")
+    chosen = [(i, window) for i, photo in enumerate(photos) for window in _windows_of(photo, windows, seed)]
+    samples = np.concatenate([cut_windows(photos[i].pixels, [window]) for i, window in chosen])
+    predictions = network.predict(samples, progress=progress)
+    kept = inliers(predictions.weights)
+    weights = predictions.weights[kept].mean(axis=0)
+    spread = float(np.sqrt(np.mean(np.sum((predictions.weights[kept] - weights) ** 2, axis=1))))
+    calibration = network.config.calibration
+    expected = float(predictions.expected_errors[kept].mean())
+    uncertainty = calibration.base + calibration.of_predicted * expected + calibration.of_spread * spread
+    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(weights))
+    return ResponseEstimate(
+        curve=curve,
+        weights=weights,
+        windows=tuple(
+            WindowEstimate(i, window, predictions.weights[n], float(predictions.expected_errors[n]), bool(kept[n]))
+            for n, (i, window) in enumerate(chosen)
+        ),
+        spread=spread,
+        uncertainty=uncertainty,
+        band=band_around(curve, uncertainty, calibration),
+        warnings=_warnings(photos, [window for _, window in chosen], samples),
+        model=network.config.label,
+        photos=tuple(photo.path.name for photo in photos),
+    )
+
+
+def inliers(weights: Floats) -> NDArray[np.bool_]:
+    """Return which window estimates enter the average, shape (N,), from weights of shape (N, 11).
+
+    The distance of each estimate from the component-wise median is an E_est between two curves, since the basis is
+    orthonormal. Those up to `OUTLIER_FACTOR` times the median distance stay: always at least half of them.
+    """
+    distances = np.linalg.norm(weights - np.median(weights, axis=0), axis=1)
+    return np.asarray(distances <= OUTLIER_FACTOR * np.median(distances))
+
+
+def band_around(curve: ResponseCurve, uncertainty: float, calibration: Calibration) -> Floats:
+    """Return the lower and upper end, shape (2, 1024), of the 90 % band of a response with this uncertainty."""
+    profile = np.array(calibration.band_profile)
+    half = uncertainty * np.interp(np.linspace(0, 1, SAMPLES), np.linspace(0, 1, len(profile)), profile)
+    return np.clip(np.stack([curve.brightness - half, curve.brightness + half]), 0, 1)
+
+
+def _windows_of(photo: Photo, count: int, seed: int) -> tuple[Window, ...]:
+    """Return the windows of one photograph; an error names its file."""
+    try:
+        return select_windows(photo.pixels, count=count, seed=seed)
+    except PhotoError as problem:
+        raise PhotoError(f"{photo.path}: {problem}") from None
+
+
+def _warnings(photos: Sequence[Photo], windows: Sequence[Window], samples: NDArray[np.float32]) -> tuple[str, ...]:
+    """Return what makes a poor estimate likely, in words."""
+    warnings = []
+    if not any(window.covers_range for window in windows):
+        warnings.append("no window covers the range of brightness: expect a poor estimate")
+    if all(photo.is_gray for photo in photos):
+        warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
+    if np.mean((samples <= 0.5 / 255) | (samples >= 254.5 / 255)) > MOSTLY_CLIPPED:
+        warnings.append("mostly clipped: take a photograph with another exposure")
+    return tuple(warnings)

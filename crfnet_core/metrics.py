@@ -1,0 +1,54 @@
+"""How far an estimated response is from the true one (CRF-net paper, Sec. 4)."""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crfnet_core.response import ResponseCurve
+
+
+def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
+    """Return E_est = ||f - f_hat||_2 over the responses at 1024 uniform irradiances (RMSE times 32)."""
+    return float(np.linalg.norm(true.brightness - estimated.brightness))
+
+
+def linearisation_error(
+    brightness: ArrayLike, true: ResponseCurve, estimated: ResponseCurve, *, counts: ArrayLike | None = None
+) -> float:
+    """Return E_lin, the RMSE between a photograph linearised by the true and by the estimated inverse response.
+
+    Parameters
+    ----------
+    brightness : array_like
+        Code values in [0, 1], of any shape: a photograph, or its distinct values.
+    true, estimated : ResponseCurve
+        The responses to compare.
+    counts : array_like, optional
+        How often each of `brightness` occurs, of the same shape; once by default.
+
+    Returns
+    -------
+    float
+        The error, relative to the peak of the photograph linearised by the true response.
+    """
+    irradiance = true.inverse(brightness)
+    weights = np.ones_like(irradiance) if counts is None else np.asarray(counts, dtype=np.float64)
+    squares = (irradiance - estimated.inverse(brightness)) ** 2
+    peak = irradiance[weights > 0].max()
+    return float(np.sqrt(np.average(squares, weights=weights)) / peak)
+
+
+def peak_signal_to_noise(linearisation: float) -> float:
+    """Return the PSNR in decibels of a linearisation error (peak of the true linear image = 1)."""
+    return float(-20 * np.log10(linearisation))
+
+
+def ratio_to_gamma(errors: ArrayLike, gamma_errors: ArrayLike) -> float:
+    """Return the mean error divided by that of gamma 2.2 on the same photographs."""
+    return float(np.mean(errors) / np.mean(gamma_errors))
+
+
+def win_rate(errors: ArrayLike, gamma_errors: ArrayLike) -> float:
+    """Return the share in [0, 1] of photographs on which the error is below that of gamma 2.2."""
+    return float(np.mean(np.asarray(errors) < np.asarray(gamma_errors)))

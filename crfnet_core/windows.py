@@ -1,0 +1,121 @@
+"""Choose the windows of a photograph that the network looks at (CRF-net paper, Sec. 3.2)."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PhotoError
+
+#: Side of a window in samples.
+WINDOW_SIZE = 227
+
+#: Code values over all three channels that a good window holds, of 256.
+FULL_COVERAGE = 220
+
+#: Candidates drawn before the best so far are taken.
+MAX_ATTEMPTS = 400
+
+#: The shorter side of a photograph holds at least this many windows.
+WINDOWS_ACROSS = 2
+
+Pixels = NDArray[np.float32]
+
+
+@dataclass(frozen=True)
+class Window:
+    """A square of `WINDOW_SIZE` samples, `step` pixels apart, whose first sample is pixel (x, y)."""
+
+    x: int
+    y: int
+    step: int
+    filled: int
+
+    @property
+    def extent(self) -> int:
+        """Pixels of the photograph that the window spans in each direction."""
+        return (WINDOW_SIZE - 1) * self.step + 1
+
+    @property
+    def covers_range(self) -> bool:
+        """Whether the window holds enough of the 256 code values to show the whole response."""
+        return self.filled >= FULL_COVERAGE
+
+    def cut(self, pixels: Pixels) -> Pixels:
+        """Return a view of the window's samples, shape (227, 227, 3)."""
+        end_y, end_x = self.y + self.extent, self.x + self.extent
+        return pixels[self.y : end_y : self.step, self.x : end_x : self.step]
+
+
+def sampling_step(height: int, width: int) -> int:
+    """Return the distance in pixels between the samples of a window.
+
+    Large photographs are point-sampled, never averaged: every sample keeps its exact code value, and a window sees as
+    much of the scene as the training windows did.
+    """
+    return max(1, min(height, width) // (WINDOWS_ACROSS * WINDOW_SIZE))
+
+
+def filled_bins(samples: Pixels) -> int:
+    """Return how many of the 256 bins of one histogram over all channels hold a sample; samples in [0, 1]."""
+    seen = np.zeros(256, dtype=bool)
+    seen[np.rint(samples * np.float32(255)).astype(np.uint8)] = True
+    return int(seen.sum())
+
+
+def select_windows(pixels: Pixels, *, count: int = 10, seed: int = 0, step: int | None = None) -> tuple[Window, ...]:
+    """Return the windows to analyse, those that cover the range first found.
+
+    Candidates are drawn at random; one is taken when its 256-bin histogram over all channels has at least
+    `FULL_COVERAGE` bins filled. After `MAX_ATTEMPTS` candidates the best-covering of those left make up the number, so
+    look at `Window.covers_range`.
+
+    Parameters
+    ----------
+    pixels : ndarray, float32, shape (H, W, 3)
+        A photograph, code values in [0, 1]; not changed.
+    count : int
+        Windows wanted; fewer only where the photograph has fewer positions.
+    seed : int
+        The same seed gives the same windows.
+    step : int, optional
+        Pixels between samples; by default `sampling_step`.
+
+    Raises
+    ------
+    PhotoError
+        If the photograph is smaller than a window.
+    """
+    height, width = pixels.shape[:2]
+    if min(height, width) < WINDOW_SIZE:
+        raise PhotoError(
+            f"the photograph is {width} x {height} pixels; at least {WINDOW_SIZE} x {WINDOW_SIZE} are needed:"
+            " give the original, never one scaled up"
+        )
+    step = sampling_step(height, width) if step is None else step
+    chosen: list[Window] = []
+    others: list[Window] = []
+    for x, y in _positions(height, width, step, seed):
+        window = Window(x, y, step, 0)
+        window = Window(x, y, step, filled_bins(window.cut(pixels)))
+        (chosen if window.covers_range else others).append(window)
+        if len(chosen) == count:
+            return tuple(chosen)
+    others.sort(key=lambda window: -window.filled)
+    return tuple(chosen + others[: count - len(chosen)])
+
+
+def cut_windows(pixels: Pixels, windows: Sequence[Window]) -> Pixels:
+    """Return the samples of `windows`, shape (N, 227, 227, 3), copied from `pixels` of shape (H, W, 3)."""
+    return np.stack([window.cut(pixels) for window in windows])
+
+
+def _positions(height: int, width: int, step: int, seed: int) -> list[tuple[int, int]]:
+    """Return up to `MAX_ATTEMPTS` distinct random window corners (x, y)."""
+    extent = Window(0, 0, step, 0).extent
+    rows, columns = height - extent + 1, width - extent + 1
+    places = np.random.default_rng(seed).choice(rows * columns, min(MAX_ATTEMPTS, rows * columns), replace=False)
+    return [(int(place % columns), int(place // columns)) for place in places]
