@@ -1,0 +1,1 @@
+"""Train, measure and export the networks of crfnet_core: the only part of the project that needs PyTorch."""

@@ -1,0 +1,37 @@
+"""Compute crfnet_core/data/emor.npz from the DoRF curves: ``python -m training.basis --data DIR``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.emor import _BASIS_FILE, EmorBasis
+from training.curves import read_dorf
+
+
+def main() -> None:
+    """Write the basis and say how it agrees with the published one."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf/201_CRF_data.mat and dorf/emor.txt")
+    folder = parser.parse_args().data / "dorf"
+    basis = EmorBasis.from_curves(read_dorf(folder / "201_CRF_data.mat"))
+    np.savez(_BASIS_FILE, mean=basis.mean, components=basis.components)
+    published = read_published(folder / "emor.txt")
+    cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
+    print(f"wrote {_BASIS_FILE.name}; |cosine| with the published components:", np.round(cosines, 5))
+    print(f"mean differs by at most {np.abs(basis.mean - published[0]).max():.4f}")
+
+
+def read_published(path: Path) -> np.ndarray:
+    """Return f0 and the unit components of emor.txt, shape (26, 1024)."""
+    blocks = path.read_text().split("=")[2:]
+    values = np.array([[float(word) for word in block.split()[:SAMPLES_PER_BLOCK]] for block in blocks])
+    return np.vstack([values[:1], values[1:] / np.linalg.norm(values[1:], axis=1, keepdims=True)])
+
+
+SAMPLES_PER_BLOCK = 1024
+
+if __name__ == "__main__":
+    main()

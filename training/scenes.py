@@ -1,0 +1,73 @@
+"""Scene-linear photographs to train and measure on, split by scene."""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+
+#: Every scene keeps its split for ever: the seed of the shuffle that made it.
+SPLIT_SEED = 2017
+
+#: Scenes held out for figures, and scenes held out to choose and to calibrate.
+TEST_SCENES, VALIDATION_SCENES = 20, 12
+
+#: Luminance weights of linear Rec. 709.
+LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
+
+
+@dataclass(frozen=True)
+class Scene:
+    """A linear photograph, scaled so that the geometric mean of its luminance is 1."""
+
+    name: str
+    pixels: np.ndarray
+    is_panorama: bool
+
+
+def split_scenes(folder: Path) -> dict[str, list[tuple[str, bool]]]:
+    """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
+
+    A quarter of the perspective photographs is tested, none validates; the rest of each split are panoramas.
+    """
+    with (folder / "manifest.csv").open(newline="") as file:
+        scenes = sorted((row["file"], row["kind"] == "panorama band") for row in csv.DictReader(file))
+    rng = np.random.default_rng(SPLIT_SEED)
+    panoramas = [scenes[i] for i in rng.permutation(len(scenes)) if scenes[i][1]]
+    photographs = [scene for scene in scenes if not scene[1]]
+    photographs = [photographs[i] for i in rng.permutation(len(photographs))]
+    held_out = len(photographs) // 4
+    tested, validated = TEST_SCENES - held_out, VALIDATION_SCENES
+    return {
+        "test": photographs[:held_out] + panoramas[:tested],
+        "validation": panoramas[tested : tested + validated],
+        "train": photographs[held_out:] + panoramas[tested + validated :],
+    }
+
+
+def read_scenes(folder: Path, split: str) -> list[Scene]:
+    """Return the scenes of a split, from the EXR files of `folder`."""
+    return [read_scene(folder / name, is_panorama) for name, is_panorama in split_scenes(folder)[split]]
+
+
+def read_scene(path: Path, is_panorama: bool) -> Scene:
+    """Return one scene; negative values, which no sensor records, become 0."""
+    pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)[:, :, :3]
+    pixels = np.clip(np.nan_to_num(pixels), 0, 65000).astype(np.float32)
+    luminance = pixels @ LUMINANCE
+    positive = luminance[luminance > 0]
+    return Scene(path.stem, pixels / np.exp(np.log(positive).mean()), is_panorama)
+
+
+def dithered(pixels: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return pixels spread over one step of the shared-exponent files that the panoramas were kept in.
+
+    RGBE has an 8-bit mantissa in the brightest channel; undithered, its steps would leave gaps in the histogram that
+    give the response away.
+    """
+    step = np.exp2(np.floor(np.log2(pixels.max(axis=-1, keepdims=True) + 1e-12)) - 7)
+    noise = rng.random(pixels.shape, dtype=np.float32) - np.float32(0.5)
+    return np.maximum(pixels + noise * step, 0)
