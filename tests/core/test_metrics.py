@@ -1,0 +1,45 @@
+import numpy as np
+import pytest
+
+from crfnet_core.metrics import (
+    estimation_error,
+    linearisation_error,
+    peak_signal_to_noise,
+    ratio_to_gamma,
+    win_rate,
+)
+from crfnet_core.response import SAMPLES, ResponseCurve
+
+STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
+SQUARE = ResponseCurve.gamma(0.5)
+
+
+def test_estimation_error_of_two_known_curves():
+    """The L2 distance of E and E ** 2: sqrt(1024 * integral of (x - x^2)^2) = sqrt(1024 / 30)."""
+    assert estimation_error(STRAIGHT, SQUARE) == pytest.approx(np.sqrt(SAMPLES / 30), rel=2e-3)
+    assert estimation_error(STRAIGHT, STRAIGHT) == 0
+    assert estimation_error(STRAIGHT, SQUARE) == estimation_error(SQUARE, STRAIGHT)
+
+
+def test_linearisation_error_of_known_pixels():
+    """By hand: B = 0.25 is E = 0.25 on the straight line, and 0.5 on the square."""
+    assert linearisation_error([0.25, 1.0], STRAIGHT, SQUARE) == pytest.approx(0.25 / np.sqrt(2), abs=1e-3)
+
+
+def test_linearisation_error_is_relative_to_the_peak():
+    assert linearisation_error([0.25], STRAIGHT, SQUARE) == pytest.approx(1.0, abs=5e-3)
+
+
+def test_counts_stand_for_repeated_pixels():
+    pixels = np.array([0.1, 0.1, 0.1, 0.6, 0.9, 0.9])
+    counted = linearisation_error([0.1, 0.6, 0.9, 1.0], STRAIGHT, SQUARE, counts=[3, 1, 2, 0])
+    assert counted == pytest.approx(linearisation_error(pixels, STRAIGHT, SQUARE), rel=1e-12)
+
+
+def test_psnr():
+    assert peak_signal_to_noise(0.01) == pytest.approx(40)
+
+
+def test_ratio_and_win_rate():
+    assert ratio_to_gamma([1, 2], [4, 2]) == 0.5
+    assert win_rate([1, 2, 3, 4], [2, 2, 4, 5]) == 0.75

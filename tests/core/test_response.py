@@ -1,0 +1,144 @@
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from crfnet_core.emor import EmorBasis
+from crfnet_core.errors import CurveError
+from crfnet_core.response import LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
+
+UNIFORM = np.linspace(0, 1, SAMPLES)
+
+weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
+
+
+def is_strict(curve):
+    return curve.brightness[0] == 0 and curve.brightness[-1] == 1 and (np.diff(curve.brightness) > 0).all()
+
+
+def test_gamma_has_the_values_of_a_power_law():
+    curve = ResponseCurve.gamma(2.0)
+    np.testing.assert_allclose(curve.forward([0, 0.25, 0.64, 1]), [0, 0.5, 0.8, 1], atol=2e-4)
+    np.testing.assert_allclose(curve.inverse([0, 0.5, 0.8, 1]), [0, 0.25, 0.64, 1], atol=3e-4)
+
+
+def test_samples_already_strict_are_kept():
+    curve = ResponseCurve.from_samples(UNIFORM)
+    np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
+
+
+def test_other_numbers_of_samples_are_resampled():
+    curve = ResponseCurve.from_samples([0.0, 0.5, 1.0])
+    np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
+
+
+@given(weights)
+@settings(max_examples=200, deadline=None)
+def test_random_emor_weights_become_strict_responses_that_invert(drawn):
+    samples = EmorBasis.load().reconstruct(drawn)
+    if samples[-1] <= samples[0]:
+        with pytest.raises(CurveError):
+            ResponseCurve.from_samples(samples)
+        return
+    curve = ResponseCurve.from_samples(samples)
+    assert is_strict(curve)
+    assert (np.diff(curve.brightness) >= 0.5 * LEAST_SLOPE / SAMPLES).all()
+    np.testing.assert_allclose(curve.inverse(curve.forward(UNIFORM)), UNIFORM, atol=1e-9)
+    codes = np.arange(256) / 255
+    np.testing.assert_allclose(curve.forward(curve.inverse(codes)), codes, atol=1e-9)
+
+
+@given(weights, st.floats(0.3, 3))
+@settings(max_examples=100, deadline=None)
+def test_monotonicity_never_raises_the_error(drawn, exponent):
+    """The projection brings samples no farther from any increasing curve, but for the least slope mixed in."""
+    samples = EmorBasis.load().reconstruct(drawn)
+    if samples[-1] <= samples[0]:
+        return
+    truth = UNIFORM**exponent
+    scaled = np.clip((samples - samples[0]) / (samples[-1] - samples[0]), 0, 1)
+    before = np.linalg.norm(scaled - truth)
+    after = np.linalg.norm(ResponseCurve.from_samples(samples).brightness - truth)
+    assert after <= before + LEAST_SLOPE * np.sqrt(SAMPLES)
+
+
+@given(arrays(np.float64, st.integers(1, 60), elements=st.floats(-10, 10)))
+@settings(deadline=None)
+def test_nearest_increasing_is_the_projection(samples):
+    nearest = nearest_increasing(samples)
+    assert (np.diff(nearest) >= 0).all()
+    gap = samples - nearest
+    assert abs(gap @ nearest) < 1e-6 * max(1, np.abs(samples).max() ** 2 * len(samples))
+    for start in range(len(samples)):
+        assert gap[start:].sum() < 1e-6
+
+
+def test_nearest_increasing_of_a_known_row():
+    assert nearest_increasing([1, 3, 2, 4]).tolist() == [1, 2.5, 2.5, 4]
+
+
+@pytest.mark.parametrize("function", ["forward", "inverse"])
+def test_evaluation_keeps_the_shape_clips_and_leaves_its_argument(function):
+    values = np.array([[-0.5, 0.0], [1.0, 2.0], [0.25, 0.75]])
+    before = values.copy()
+    found = getattr(ResponseCurve.gamma(), function)(values)
+    assert found.shape == (3, 2)
+    assert found[0].tolist() == [0, 0]
+    assert found[1].tolist() == [1, 1]
+    np.testing.assert_array_equal(values, before)
+
+
+@pytest.mark.parametrize("size", [2, 256, 4081])
+def test_samples_of_any_size_run_from_0_to_1(size):
+    curve = ResponseCurve.gamma()
+    for samples in (curve.forward_samples(size), curve.inverse_samples(size)):
+        assert samples.shape == (size,)
+        assert (samples[0], samples[-1]) == (0, 1)
+        assert (np.diff(samples) > 0).all()
+
+
+def test_rescaled_ignores_the_upper_range():
+    curve = ResponseCurve.gamma(2.2)
+    part = curve.rescaled(0.8)
+    assert is_strict(part)
+    np.testing.assert_allclose(part.forward(0.5), curve.forward(0.4) / curve.forward(0.8), atol=1e-3)
+    np.testing.assert_allclose(curve.rescaled(1.0).brightness, curve.brightness, atol=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("samples", "said"),
+    [
+        ([0.0], "two or more"),
+        ([0.0, np.nan, 1.0], "finite"),
+        ([1.0, 0.0], "brighter"),
+        ([0.5, 0.5], "brighter"),
+        ([[0.0, 1.0]], "row"),
+    ],
+)
+def test_what_is_no_response_is_refused(samples, said):
+    with pytest.raises(CurveError, match=said):
+        ResponseCurve.from_samples(samples)
+
+
+def test_the_constructor_only_takes_strict_samples():
+    with pytest.raises(CurveError, match="from_samples"):
+        ResponseCurve(np.zeros(SAMPLES))
+    with pytest.raises(CurveError, match="shape"):
+        ResponseCurve(np.linspace(0, 1, 10))
+
+
+@pytest.mark.parametrize("upper", [0, -1, 1.1, float("nan")])
+def test_a_partial_range_lies_within_the_range(upper):
+    with pytest.raises(CurveError, match="upper end"):
+        ResponseCurve.gamma().rescaled(upper)
+
+
+def test_a_gamma_is_positive():
+    with pytest.raises(CurveError, match="above 0"):
+        ResponseCurve.gamma(0)
+
+
+def test_the_samples_cannot_be_changed():
+    with pytest.raises(ValueError, match="read-only"):
+        ResponseCurve.gamma().brightness[3] = 0.5

@@ -1,0 +1,106 @@
+import numpy as np
+import pytest
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.windows import (
+    WINDOW_SIZE,
+    Window,
+    cut_windows,
+    filled_bins,
+    sampling_step,
+    select_windows,
+)
+
+
+def noise(height, width, *, codes=256, seed=0):
+    return np.random.default_rng(seed).integers(0, codes, (height, width, 3)).astype(np.float32) / np.float32(255)
+
+
+@pytest.fixture(scope="module")
+def half_flat():
+    """A photograph whose left half is flat: only windows that reach into the right half cover the range."""
+    pixels = noise(500, 1000)
+    pixels[:, :500] = 0.5
+    return pixels
+
+
+def test_windows_that_cover_the_range_are_preferred(half_flat):
+    windows = select_windows(half_flat, step=1)
+    assert len(windows) == 10
+    assert all(window.covers_range for window in windows)
+    assert all(window.x + window.extent > 500 for window in windows)
+
+
+def test_filled_counts_the_bins_of_all_channels_together():
+    pixels = np.zeros((4, 4, 3), np.float32)
+    pixels[0, 0] = [1 / 255, 2 / 255, 1]
+    assert filled_bins(pixels) == 4
+    assert filled_bins(noise(100, 100)) == 256
+
+
+def test_the_result_says_how_well_each_window_covers(half_flat):
+    for window in select_windows(half_flat, step=1):
+        assert window.filled == filled_bins(window.cut(half_flat))
+
+
+def test_the_same_seed_gives_the_same_windows(half_flat):
+    assert select_windows(half_flat, seed=3) == select_windows(half_flat, seed=3)
+    assert select_windows(half_flat, seed=3) != select_windows(half_flat, seed=4)
+
+
+def test_a_poor_photograph_gets_the_best_windows_there_are():
+    pixels = noise(454, 454, codes=100)
+    pixels[:, 300:] = 0
+    windows = select_windows(pixels, count=5)
+    assert len(windows) == 5
+    assert not any(window.covers_range for window in windows)
+    assert min(window.filled for window in windows) >= 99
+
+
+def test_the_number_of_attempts_is_bounded(monkeypatch):
+    tried = []
+    monkeypatch.setattr("crfnet_core.windows.filled_bins", lambda samples: tried.append(1) or 0)
+    select_windows(noise(2000, 2000))
+    assert len(tried) == 400
+
+
+def test_a_photograph_of_one_window_gives_that_window():
+    windows = select_windows(noise(WINDOW_SIZE, WINDOW_SIZE))
+    assert [(window.x, window.y, window.step) for window in windows] == [(0, 0, 1)]
+
+
+@pytest.mark.parametrize(("height", "width"), [(226, 500), (500, 226), (1, 1)])
+def test_a_photograph_smaller_than_a_window_is_refused(height, width):
+    with pytest.raises(PhotoError, match=f"{width} x {height} pixels; at least 227 x 227"):
+        select_windows(np.zeros((height, width, 3), np.float32))
+
+
+@pytest.mark.parametrize(
+    ("height", "width", "step"), [(227, 227, 1), (907, 2000, 1), (908, 908, 2), (4000, 6000, 8), (8000, 6000, 13)]
+)
+def test_large_photographs_are_point_sampled(height, width, step):
+    assert sampling_step(height, width) == step
+
+
+def test_a_window_takes_every_step_th_pixel():
+    pixels = noise(700, 900)
+    window = Window(x=10, y=20, step=3, filled=0)
+    samples = cut_windows(pixels, [window])
+    assert samples.shape == (1, WINDOW_SIZE, WINDOW_SIZE, 3)
+    np.testing.assert_array_equal(samples[0, 5, 7], pixels[20 + 15, 10 + 21])
+    assert window.extent == 226 * 3 + 1
+
+
+def test_every_window_lies_within_the_photograph():
+    pixels = noise(910, 1300)
+    for window in select_windows(pixels, count=40):
+        assert window.step == 2
+        assert 0 <= window.x <= 1300 - window.extent
+        assert 0 <= window.y <= 910 - window.extent
+
+
+def test_the_photograph_is_not_changed():
+    pixels = noise(300, 300)
+    before = pixels.copy()
+    select_windows(pixels)
+    np.testing.assert_array_equal(pixels, before)
