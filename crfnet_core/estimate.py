@@ -170,7 +170,8 @@ def band_around(curve: ResponseCurve, uncertainty: float, calibration: Calibrati
     """Return the lower and upper end, shape (2, 1024), of the 90 % band of a response with this uncertainty."""
     profile = np.array(calibration.band_profile)
     half = uncertainty * np.interp(np.linspace(0, 1, SAMPLES), np.linspace(0, 1, len(profile)), profile)
-    return np.clip(np.stack([curve.brightness - half, curve.brightness + half]), 0, 1)
+    band: Floats = np.clip(np.stack([curve.brightness - half, curve.brightness + half]), 0, 1)
+    return band
 
 
 def _windows_of(photo: Photo, count: int, seed: int) -> tuple[Window, ...]:

@@ -46,7 +46,7 @@ def peak_signal_to_noise(linearisation: float) -> float:
 
 def ratio_to_gamma(errors: ArrayLike, gamma_errors: ArrayLike) -> float:
     """Return the mean error divided by that of gamma 2.2 on the same photographs."""
-    return float(np.mean(errors) / np.mean(gamma_errors))
+    return float(np.mean(np.asarray(errors)) / np.mean(np.asarray(gamma_errors)))
 
 
 def win_rate(errors: ArrayLike, gamma_errors: ArrayLike) -> float:

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import hashlib
 import json
+import os
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, fields
 from pathlib import Path
 from typing import Any
@@ -12,6 +14,7 @@ from typing import Any
 import numpy as np
 import onnxruntime
 from numpy.typing import NDArray
+from onnxruntime.capi import onnxruntime_pybind11_state as refusals
 
 from crfnet_core.emor import COMPONENTS
 from crfnet_core.errors import ModelError
@@ -19,6 +22,15 @@ from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged model that is used unless another is asked for.
 DEFAULT_MODEL = Path(__file__).with_name("models") / "window-statistics"
+
+#: What onnxruntime raises for a graph that it cannot load.
+_UNLOADABLE = (
+    refusals.Fail,
+    refusals.InvalidArgument,
+    refusals.InvalidGraph,
+    refusals.InvalidProtobuf,
+    refusals.NotImplemented,
+)
 
 Floats = NDArray[np.float64]
 
@@ -100,6 +112,8 @@ class ModelConfig:
         missing = [field.name for field in fields(cls) if field.name not in entries]
         if missing:
             raise ModelError(f"{path}: lacks {', '.join(missing)}; export the model again")
+        entries["output_names"] = tuple(entries["output_names"])
+        entries["calibration"] = _read_calibration(path, entries["calibration"])
         config = cls(**{field.name: entries[field.name] for field in fields(cls)})
         if (config.basis, config.components, config.window_size) != ("emor", COMPONENTS, WINDOW_SIZE):
             raise ModelError(
@@ -107,14 +121,6 @@ class ModelConfig:
                 f" this version needs {COMPONENTS} of emor and {WINDOW_SIZE}"
             )
         return config
-
-    def __post_init__(self) -> None:
-        """Turn JSON's lists and objects into the types declared."""
-        object.__setattr__(self, "output_names", tuple(self.output_names))
-        if isinstance(self.calibration, dict):
-            entries = dict(self.calibration)
-            entries["band_profile"] = tuple(entries["band_profile"])
-            object.__setattr__(self, "calibration", Calibration(**entries))
 
     @property
     def label(self) -> str:
@@ -133,9 +139,10 @@ class WindowPredictions:
 class ResponseNetwork:
     """An onnxruntime session, made once, and the configuration beside it."""
 
-    def __init__(self, config: ModelConfig, session: onnxruntime.InferenceSession) -> None:
+    def __init__(self, config: ModelConfig, session: onnxruntime.InferenceSession, threads: int) -> None:
         self.config = config
         self._session = session
+        self._threads = threads
 
     @classmethod
     def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
@@ -146,28 +153,28 @@ class ResponseNetwork:
         folder : str or Path, optional
             Holds model.onnx and model.json.
         threads : int
-            Threads of the CPU to use; 0 leaves the choice to onnxruntime.
+            Windows that run at the same time; 0 takes the processor's number of cores.
 
         Raises
         ------
         ModelError
-            If a file is absent or does not match the other.
+            If a file is absent or does not match the other, or the number of threads is negative.
         """
+        if threads < 0:
+            raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
         folder = DEFAULT_MODEL if folder is None else Path(folder)
         config = ModelConfig.read(folder / "model.json")
         graph = _read_bytes(folder / "model.onnx")
         if hashlib.sha256(graph).hexdigest() != config.sha256:
             raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
-        options = onnxruntime.SessionOptions()
-        options.intra_op_num_threads = threads
-        return cls(config, onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"]))
+        return cls(config, _session(folder, graph, config), threads or os.cpu_count() or 1)
 
     def predict(
         self, windows: NDArray[np.float32], *, progress: Callable[[int, int], None] | None = None
     ) -> WindowPredictions:
         """Return the predictions for `windows`, float32 (N, 227, 227, 3), code values in [0, 1].
 
-        Windows run one by one: their working set then stays in the processor's cache.
+        Each window is a run of its own, so that its working set stays in a core's cache; the threads share them out.
 
         Parameters
         ----------
@@ -177,13 +184,43 @@ class ResponseNetwork:
             Called with (done, total) after every window.
         """
         rows = []
-        for number, window in enumerate(windows, start=1):
-            feed = {self.config.input_name: np.ascontiguousarray(window[None], dtype=np.float32)}
-            rows.append(self._session.run(list(self.config.output_names), feed))
-            if progress is not None:
-                progress(number, len(windows))
+        with ThreadPoolExecutor(self._threads) as pool:
+            for number, row in enumerate(pool.map(self._predict_one, windows), start=1):
+                rows.append(row)
+                if progress is not None:
+                    progress(number, len(windows))
         weights, log_errors = (np.concatenate(column).astype(np.float64) for column in zip(*rows, strict=True))
         return WindowPredictions(weights, np.exp(log_errors))
+
+    def _predict_one(self, window: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+        """Return the network's outputs for one window, (1, 11) and (1,)."""
+        feed = {self.config.input_name: np.ascontiguousarray(window[None], dtype=np.float32)}
+        outputs: list[NDArray[np.float32]] = self._session.run(list(self.config.output_names), feed)
+        return outputs
+
+
+def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:
+    """Return the session of a graph on one thread of the CPU, or say why there is none."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    try:
+        session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+    except _UNLOADABLE as problem:
+        reason = " ".join(str(problem).split())
+        raise ModelError(f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})") from None
+    found = {node.name for node in (*session.get_inputs(), *session.get_outputs())}
+    absent = {config.input_name, *config.output_names} - found
+    if absent:
+        raise ModelError(f"{folder}: model.onnx has no {', '.join(sorted(absent))}; export the model again")
+    return session
+
+
+def _read_calibration(path: Path, entries: object) -> Calibration:
+    """Return the calibration in a model.json, or say what it lacks."""
+    names = [field.name for field in fields(Calibration)]
+    if not isinstance(entries, dict) or set(entries) != set(names):
+        raise ModelError(f"{path}: the calibration needs {', '.join(names)}; export the model again")
+    return Calibration(**{**entries, "band_profile": tuple(entries["band_profile"])})
 
 
 def _read_bytes(path: Path) -> bytes:

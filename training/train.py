@@ -135,7 +135,7 @@ def _train_epoch(
     batches = order[: len(order) // config.batch * config.batch].split(config.batch)
     total = 0.0
     progress.net.train()
-    for rows in tqdm(batches, desc=f"epoch {progress.epoch + 1}/{config.epochs}", leave=False):
+    for rows in tqdm(batches, desc=f"epoch {progress.epoch + 1}/{config.epochs}", leave=False, disable=None):
         spread = config.feature_noise / progress.net.scale
         noisy = statistics[rows].float() + spread * torch.randn(len(rows), len(spread))
         with torch.autocast("cpu", torch.bfloat16):

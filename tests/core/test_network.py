@@ -1,0 +1,138 @@
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import ModelError
+from crfnet_core.network import DEFAULT_MODEL, Calibration, ModelConfig, ResponseNetwork
+
+
+@pytest.fixture(scope="module")
+def network():
+    return ResponseNetwork.load()
+
+
+@pytest.fixture(scope="module")
+def golden(root):
+    with np.load(root / "tests" / "data" / "golden.npz") as arrays:
+        return dict(arrays)
+
+
+@pytest.fixture
+def copied(tmp_path):
+    """A model folder that a test may spoil."""
+    return shutil.copytree(DEFAULT_MODEL, tmp_path / "model")
+
+
+def edit(folder, **entries):
+    path = folder / "model.json"
+    path.write_text(json.dumps(json.loads(path.read_text()) | entries))
+
+
+def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
+    found = network.predict(golden["windows"] / np.float32(255))
+    np.testing.assert_allclose(found.weights, golden["weights"], atol=tolerance.parity)
+    np.testing.assert_allclose(np.log(found.expected_errors), golden["log_errors"], atol=tolerance.parity)
+    assert np.abs(golden["weights"]).max() > 0.1
+
+
+def test_threads_do_not_change_the_result(golden):
+    windows = golden["windows"] / np.float32(255)
+    first, second = (ResponseNetwork.load(threads=threads).predict(windows) for threads in (1, 3))
+    np.testing.assert_array_equal(first.weights, second.weights)
+
+
+def test_windows_are_independent_of_each_other(network, golden):
+    windows = golden["windows"] / np.float32(255)
+    together = network.predict(windows).weights
+    np.testing.assert_array_equal(network.predict(windows[1:2]).weights, together[1:2])
+
+
+def test_progress_counts_the_windows(network, golden):
+    calls = []
+    network.predict(golden["windows"] / np.float32(255), progress=lambda done, total: calls.append((done, total)))
+    assert calls == [(1, 3), (2, 3), (3, 3)]
+
+
+def test_the_windows_are_not_changed(network, golden):
+    windows = golden["windows"] / np.float32(255)
+    before = windows.copy()
+    network.predict(windows)
+    np.testing.assert_array_equal(windows, before)
+
+
+def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, golden):
+    """Another curve on the same windows gives another estimate: the network looks at its input."""
+    windows = golden["windows"] / np.float32(255)
+    bent = np.rint(windows**0.6 * 255) / np.float32(255)
+    assert np.linalg.norm(network.predict(bent).weights - network.predict(windows).weights) > 0.5
+
+
+def test_config_is_complete():
+    config = ModelConfig.read(DEFAULT_MODEL / "model.json")
+    assert config.name == DEFAULT_MODEL.name
+    assert (config.basis, config.components, config.window_size, config.opset) == ("emor", 11, 227, 18)
+    assert len(config.training_commit) == 40
+    assert isinstance(config.calibration, Calibration)
+    assert len(config.calibration.band_profile) == 33
+    assert config.accuracy["P0"]["E_est mean"] < config.accuracy["P0"]["E_est gamma 2.2"]
+    assert config.label == f"{config.name} {config.sha256[:12]}"
+
+
+def test_the_package_stays_small():
+    assert sum(path.stat().st_size for path in DEFAULT_MODEL.parent.rglob("*")) < 20e6
+
+
+def test_an_altered_graph_is_refused(copied):
+    with (copied / "model.onnx").open("ab") as file:
+        file.write(b"x")
+    with pytest.raises(ModelError, match=r"is not the file that model\.json describes"):
+        ResponseNetwork.load(copied)
+
+
+@pytest.mark.parametrize("name", ["model.onnx", "model.json"])
+def test_an_absent_file_is_named(copied, name):
+    (copied / name).unlink()
+    with pytest.raises(ModelError, match=f"{name}: cannot be read"):
+        ResponseNetwork.load(copied)
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [("{", "is not JSON"), ("[1]", "no JSON object"), ('{"name": "a"}', "lacks sha256"), ("\xff\xfe", "is not JSON")],
+)
+def test_a_spoiled_config_is_refused(copied, text, said):
+    (copied / "model.json").write_bytes(text.encode("latin-1"))
+    with pytest.raises(ModelError, match=said) as caught:
+        ResponseNetwork.load(copied)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({"components": 25}, "25 weights of emor"),
+        ({"basis": "pca"}, "11 weights of pca"),
+        ({"calibration": {"base": 1}}, "calibration"),
+        ({"calibration": None}, "calibration"),
+    ],
+)
+def test_a_model_of_another_kind_is_refused(copied, entries, said):
+    edit(copied, **entries)
+    with pytest.raises(ModelError, match=said):
+        ResponseNetwork.load(copied)
+
+
+def test_a_graph_that_is_none_is_refused(copied):
+    import hashlib
+
+    (copied / "model.onnx").write_bytes(b"no graph")
+    edit(copied, sha256=hashlib.sha256(b"no graph").hexdigest())
+    with pytest.raises(ModelError, match="onnxruntime cannot load"):
+        ResponseNetwork.load(copied)
+
+
+def test_threads_are_not_negative():
+    with pytest.raises(ModelError, match="threads"):
+        ResponseNetwork.load(threads=-1)

@@ -1,0 +1,56 @@
+import json
+from dataclasses import asdict
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs the train extra")
+pytest.importorskip("onnxscript", reason="training needs the train extra")
+
+from crfnet_core.network import ResponseNetwork
+from training.export import (
+    PARITY,
+    UNCALIBRATED,
+    assert_parity,
+    export_onnx,
+    load_network,
+    write_config,
+    write_golden,
+)
+from training.model import NetworkConfig, ResponseNet
+
+CONFIG = NetworkConfig(width=64)
+
+
+@pytest.fixture(scope="module")
+def exported(tmp_path_factory, root):
+    """A run with random weights, its model folder and golden file."""
+    folder = tmp_path_factory.mktemp("export")
+    (folder / "run").mkdir()
+    (folder / "model").mkdir()
+    torch.manual_seed(0)
+    torch.save({"net": ResponseNet(CONFIG).state_dict()}, folder / "run" / "best.pt")
+    (folder / "run" / "config.json").write_text(json.dumps({"network": asdict(CONFIG)}))
+    network = load_network(folder / "run")
+    export_onnx(network, folder / "model" / "model.onnx")
+    write_config(folder / "model", "model", UNCALIBRATED, {})
+    write_golden(network, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
+    return folder
+
+
+def test_onnxruntime_agrees_with_torch(exported):
+    assert assert_parity(exported / "model", exported / "golden.npz") < PARITY
+
+
+def test_a_disagreement_stops_the_export(exported, tmp_path):
+    with np.load(exported / "golden.npz") as arrays:
+        spoiled = dict(arrays) | {"weights": arrays["weights"] + 0.01}
+    np.savez(tmp_path / "golden.npz", **spoiled)
+    with pytest.raises(SystemExit, match="differs from torch"):
+        assert_parity(exported / "model", tmp_path / "golden.npz")
+
+
+def test_the_exported_folder_loads(exported):
+    network = ResponseNetwork.load(exported / "model")
+    assert network.config.name == "model"
+    assert network.predict(np.zeros((2, 227, 227, 3), np.float32)).weights.shape == (2, 11)

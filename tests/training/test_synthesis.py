@@ -1,0 +1,131 @@
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from training.curves import CurveSource
+from training.scenes import Scene, dithered, read_scene, split_scenes
+from training.synthesis import (
+    LEAST_FILLED,
+    TARGET_BRIGHTNESS,
+    Capture,
+    WindowSource,
+    augmented,
+    automatic_exposure,
+    blurred,
+    compressed,
+    photographed,
+    reference_luminance,
+    responded,
+)
+
+UNIFORM = np.linspace(0, 1, 1024)
+GAMMA = UNIFORM ** (1 / 2.2)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(5)
+
+
+@pytest.fixture
+def scene(rng):
+    """Smooth light over many stops, with texture."""
+    y, x = np.mgrid[:300, :500] / 100
+    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
+    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)
+
+
+def test_responded_is_the_curve_and_clips(rng):
+    irradiance = rng.uniform(-0.2, 1.3, (5, 7, 3)).astype(np.float32)
+    np.testing.assert_allclose(responded(irradiance, GAMMA), np.interp(irradiance, UNIFORM, GAMMA), atol=2e-5)
+
+
+def test_a_clean_photograph_is_the_quantised_response(scene, rng):
+    irradiance = scene.pixels / scene.pixels.max()
+    codes = photographed(irradiance, GAMMA, Capture(), rng)
+    assert codes.dtype == np.uint8
+    np.testing.assert_allclose(codes / 255, irradiance ** (1 / 2.2), atol=0.5 / 255 + 0.02)
+    assert np.abs(codes / 255 - irradiance ** (1 / 2.2)).mean() < 0.3 / 255
+
+
+def test_noise_has_the_variance_asked_for(rng):
+    flat = np.full((200, 200, 3), 0.5, np.float32)
+    codes = photographed(flat, UNIFORM, Capture(shot_noise=1e-3, read_noise=0.01), rng)
+    assert (codes / 255).var() == pytest.approx(1e-3 * 0.5 + 1e-4, rel=0.05)
+
+
+def test_jpeg_changes_a_little_and_keeps_the_shape(scene, rng):
+    codes = photographed(scene.pixels / scene.pixels.max(), GAMMA, Capture(), rng)
+    packed = compressed(codes, 90, True)
+    assert packed.shape == codes.shape
+    assert 0 < np.abs(packed.astype(float) - codes).mean() < 12
+
+
+def test_blur_keeps_the_mean(scene):
+    assert blurred(scene.pixels, 1.0).mean() == pytest.approx(scene.pixels.mean(), rel=0.01)
+    assert blurred(scene.pixels, 1.0).var() < scene.pixels.var()
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1 / 2.2, 0.3])
+def test_automatic_exposure_reaches_the_target(scene, exponent):
+    luminance = reference_luminance([scene])
+    curve = UNIFORM**exponent
+    exposure = automatic_exposure(curve, luminance)
+    assert responded(luminance * np.float32(exposure), curve).mean() == pytest.approx(TARGET_BRIGHTNESS, abs=1e-3)
+
+
+def test_dither_stays_within_half_a_step(rng):
+    pixels = rng.uniform(0.01, 8, (50, 50, 3)).astype(np.float32)
+    step = 2.0 ** (np.floor(np.log2(pixels.max(axis=2, keepdims=True))) - 7)
+    assert (np.abs(dithered(pixels, rng) - pixels) <= step / 2 + 1e-6).all()
+
+
+def test_drawn_windows_cover_the_range_and_repeat_with_the_seed(scene):
+    curves = CurveSource(np.stack([GAMMA, UNIFORM**0.3]), (), camera_share=0.0)
+    source = WindowSource([scene], curves, reference_luminance([scene]))
+    first, second = (source.draw(np.random.default_rng(3)) for _ in range(2))
+    assert first
+    for (window, curve), (same_window, same_curve) in zip(first, second, strict=True):
+        assert window.shape == (227, 227, 3)
+        assert len(np.unique(window)) >= LEAST_FILLED
+        np.testing.assert_array_equal(window, same_window)
+        np.testing.assert_array_equal(curve, same_curve)
+
+
+def test_augmentation_leaves_the_piece_alone(scene, rng):
+    before = scene.pixels.copy()
+    for _ in range(20):
+        assert augmented(scene.pixels, rng).shape[2] == 3
+    np.testing.assert_array_equal(scene.pixels, before)
+
+
+@pytest.fixture
+def listed(tmp_path):
+    lines = [f"pano{n:03d}.exr,panorama band" for n in range(100)] + [f"photo{n:02d}.exr,photograph" for n in range(12)]
+    (tmp_path / "manifest.csv").write_text("file,kind\n" + "\n".join(lines) + "\n")
+    return tmp_path
+
+
+def test_splits_share_no_scene_and_lose_none(listed):
+    splits = split_scenes(listed)
+    names = [name for split in splits.values() for name, _ in split]
+    assert len(names) == len(set(names)) == 112
+    assert {split: len(scenes) for split, scenes in splits.items()} == {"test": 20, "validation": 12, "train": 80}
+    assert sum(not is_panorama for _, is_panorama in splits["test"]) == 3
+
+
+def test_a_scene_is_scaled_to_a_mean_of_1(tmp_path, scene):
+    import OpenImageIO as oiio
+
+    path = Path(tmp_path) / "made.exr"
+    image = oiio.ImageBuf(oiio.ImageSpec(500, 300, 3, oiio.FLOAT))
+    image.set_pixels(oiio.ROI(), scene.pixels)
+    image.write(str(path))
+    read = read_scene(path, False)
+    luminance = read.pixels @ np.array([0.2126, 0.7152, 0.0722])
+    assert np.exp(np.log(luminance).mean()) == pytest.approx(1, rel=1e-4)
+    assert read.name == "made"
