@@ -1,0 +1,1 @@
+"""LUT files, OpenColorIO configs and linear plates from an estimated camera response."""

@@ -1,0 +1,301 @@
+"""A one-dimensional lookup table: its values, its arithmetic, and the inverse response as one."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crfnet_core.errors import LutError
+from crfnet_core.response import ResponseCurve
+
+#: Entries of a LUT unless asked otherwise: 255 * 16 + 1, exact on 8-bit codes.
+DEFAULT_LENGTH = 4081
+
+#: Entries that every format and host takes.
+MAX_LENGTH = 65536
+
+#: Bound on the slope dE/dB of the lines that continue a response beyond [0, 1].
+MAX_END_SLOPE = 8.0
+
+#: Characters kept of a comment: OpenColorIO reads .spi1d lines into a buffer of 4096 bytes.
+MAX_COMMENT = 500
+
+#: The bit pattern of the largest subnormal float32.
+BELOW_NORMAL = 0x007FFFFF
+
+#: Bytes of the largest LUT file that is read.
+MAX_FILE_SIZE = 64 * 1024 * 1024
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Lut1D:
+    """A strictly increasing table, linear between its entries, the same for R, G and B.
+
+    Everything is held in float32 precision, the one in which LUT hosts work, so that what is written with nine
+    digits is read back bit for bit and is strictly increasing in every host. Subnormal numbers become 0, because
+    OpenColorIO's .spi1d reader refuses them.
+
+    Parameters
+    ----------
+    values : array_like, shape (N,), 2 <= N <= 65536
+        Outputs at N uniform inputs over `domain`; kept as float64 holding float32 values, read-only.
+    domain : tuple of float
+        The first and the last input.
+    comments : tuple of str
+        Provenance, a line each; white space is collapsed and lines are cut at 500 characters.
+
+    Raises
+    ------
+    LutError
+        If the values are not finite and strictly increasing as float32, or the domain is not an interval.
+    """
+
+    values: Floats
+    domain: tuple[float, float] = (0.0, 1.0)
+    comments: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        values = _single(self.values)
+        low, high = (float(end) for end in _single(self.domain))
+        if values.ndim != 1 or not 2 <= values.size <= MAX_LENGTH:
+            raise LutError(f"a LUT needs a row of 2 to {MAX_LENGTH} values, found shape {values.shape}")
+        if not (np.isfinite(low) and np.isfinite(high) and low < high):
+            raise LutError(f"a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}")
+        entry = first_fault(values)
+        if entry is not None:
+            raise LutError(f"entry {entry} of the LUT, {values[entry]:.9g}, is not finite or not above the one before")
+        values.flags.writeable = False
+        object.__setattr__(self, "values", values)
+        object.__setattr__(self, "domain", (low, high))
+        object.__setattr__(self, "comments", _clean_comments(self.comments))
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, Lut1D):
+            return NotImplemented
+        same_table = self.domain == other.domain and np.array_equal(self.values, other.values)
+        return same_table and self.comments == other.comments
+
+    def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
+        """Return the output for every pixel, by linear interpolation.
+
+        Inputs beyond the domain are clamped to it and NaN gives the first entry, as in OpenColorIO. Half and single
+        precision are computed in float32 as OpenColorIO's CPU renderer does: the results are the same to one unit
+        in the last place on the steepest table. Everything else is computed in float64.
+
+        Parameters
+        ----------
+        pixels : array_like, any shape
+            Inputs in the units of `domain`.
+
+        Returns
+        -------
+        ndarray, float32 or float64, of the shape of `pixels`
+            Outputs between the first and the last value.
+        """
+        inputs = _floating(pixels)
+        kind, last = inputs.dtype.type, self.values.size - 1
+        low, high = self.domain
+        position = inputs
+        if self.domain != (0.0, 1.0):
+            position = position * kind(1 / (high - low)) + kind(-low / (high - low))
+        position = np.fmin(np.fmax(position * kind(last), 0), last)  # unlike clip, they take 0 for NaN
+        below = np.minimum(position.astype(np.int32), last - 1)
+        values = self.values.astype(kind)
+        return np.asarray(values[below] + (position - below.astype(kind)) * np.diff(values)[below], dtype=kind)
+
+    def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
+        """Return the input that gives every pixel, clamped to the domain; NaN gives its low end.
+
+        OpenColorIO agrees to 1e-6 with lossless optimization. By default, and so in most hosts, it inverts through an
+        approximate table, off by 4e-4 on the steepest curves.
+
+        Parameters
+        ----------
+        pixels : array_like, any shape
+            Outputs, in the units of `values`.
+
+        Returns
+        -------
+        ndarray, float32 or float64, of the shape of `pixels`
+            Inputs within `domain`; float32 for half and single precision, else float64.
+        """
+        outputs = _floating(pixels)
+        known = np.where(np.isnan(outputs), -np.inf, outputs).astype(np.float64)
+        grid = np.linspace(*self.domain, self.values.size)
+        return np.asarray(np.interp(known, self.values, grid), dtype=outputs.dtype)
+
+
+def inverse_response_lut(
+    curve: ResponseCurve,
+    *,
+    length: int = DEFAULT_LENGTH,
+    domain: tuple[float, float] = (0.0, 1.0),
+    comments: Sequence[str] = (),
+) -> Lut1D:
+    """Return the inverse response g: brightness B to irradiance E, as a LUT.
+
+    A LUT is exact where its grid meets the codes of the plate. Over [0, 1] that is on 8-bit codes for a length of
+    255 k + 1 (256, 4081, 16321), on 10-bit codes for 1023 k + 1 (1024, 4093), on 12-bit codes for 4095 k + 1 (4096)
+    and on 16-bit codes for 65536 alone, which is exact on 8 bits too. Over (-0.125, 1.125) it is 2550 k + 1 (2551,
+    5101) for 8 bits and 10230 k + 1 (10231) for 10 bits. Elsewhere it is linear between the nearest entries.
+
+    Beyond [0, 1], for super-whites and for noise below black, g continues as a line with the slope that it has over
+    the outermost 8-bit code. A response that is flat near an end has an almost endless inverse slope there, which
+    says only that the camera clipped, so this slope is bounded by `MAX_END_SLOPE`: a brightness of 1.125 then means
+    an irradiance of 2 at most, one stop above white.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response f.
+    length : int
+        Entries, 2 to 65536.
+    domain : tuple of float
+        The first and the last brightness; holds [0, 1].
+    comments : sequence of str
+        Provenance, a line each.
+
+    Raises
+    ------
+    LutError
+        If the length is out of range, or the domain is not finite or does not hold [0, 1].
+    """
+    if not 2 <= length <= MAX_LENGTH:
+        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {DEFAULT_LENGTH} suits most")
+    low, high = domain
+    if not (-np.inf < low <= 0 and 1 <= high < np.inf):
+        raise LutError(f"the domain of an inverse response must hold 0 to 1, found {low:.9g} to {high:.9g}")
+    code = 1 / 255
+    toe = min(float(curve.inverse(code)) / code, MAX_END_SLOPE)
+    shoulder = min((1 - float(curve.inverse(1 - code))) / code, MAX_END_SLOPE)
+    brightness = np.linspace(low, high, length)
+    irradiance = curve.inverse(brightness) + toe * np.minimum(brightness, 0) + shoulder * np.maximum(brightness - 1, 0)
+    return Lut1D(strictly_increasing(irradiance), (low, high), tuple(comments))
+
+
+def strictly_increasing(values: ArrayLike) -> Floats:
+    """Return `values` in float32 precision, moved by the few units in the last place that keep neighbours apart.
+
+    Parameters
+    ----------
+    values : array_like, shape (N,)
+        Finite and increasing, though perhaps not strictly as float32; the last entry stays as it is.
+    """
+    bits = _single(values).astype(np.float32).view(np.int32).astype(np.int64)
+    magnitude = bits & 0x7FFFFFFF
+    rank = np.sign(bits) * np.maximum(magnitude - BELOW_NORMAL, 0)
+    steps = np.arange(rank.size)
+    raised = np.maximum.accumulate(rank - steps) + steps
+    raised = np.minimum(raised, rank[-1] - steps[::-1])
+    pattern = np.where(raised == 0, 0, np.abs(raised) + BELOW_NORMAL).astype(np.int32)
+    return np.asarray(np.copysign(pattern.view(np.float32), raised), dtype=np.float64)
+
+
+def first_fault(values: Floats) -> int | None:
+    """Return the index of the first value that is not finite or not above the one before it, or None."""
+    with np.errstate(invalid="ignore"):
+        faults = np.flatnonzero(~np.isfinite(values) | (np.diff(values, prepend=-np.inf) <= 0))
+    return int(faults[0]) if faults.size else None
+
+
+@dataclass(frozen=True)
+class LutText:
+    """The lines of a LUT file, and the errors that name them (1-based)."""
+
+    path: Path
+    lines: tuple[str, ...]
+
+    @classmethod
+    def read(cls, path: str | Path) -> LutText:
+        """Return the text of `path`; a LutError if it is absent, empty, too large or no text."""
+        path = Path(path)
+        try:
+            size = path.stat().st_size
+            content = path.read_bytes() if size <= MAX_FILE_SIZE else b""
+        except OSError as problem:
+            raise LutError(f"{path}: cannot be read ({problem.strerror}); check the name of the LUT") from problem
+        if size > MAX_FILE_SIZE:
+            raise LutError(f"{path}: has {size // 2**20} MiB, more than any 1D LUT; check the name of the LUT")
+        text = content.decode("utf-8-sig", errors="replace")
+        if "\0" in text:
+            raise LutError(f"{path}: is no text file; give a .spi1d, .cube or .clf LUT")
+        if not text.strip():
+            raise LutError(f"{path}: is empty; write the LUT again")
+        return cls(path, tuple(text.splitlines()))
+
+    def error(self, problem: str, *, line: int | None = None) -> LutError:
+        """Return the error that names the file, the line and the problem."""
+        return LutError(f"{self.path}: {problem}" if line is None else f"{self.path}, line {line}: {problem}")
+
+    def numbers(self, text: str, line: int | None, *, count: int) -> list[float]:
+        """Return the numbers of one line; a LutError if they are not `count` finite ones."""
+        numbers = []
+        for token in text.split():
+            try:
+                number = float(token)
+            except ValueError:
+                remedy = "decimals need a point, not a comma" if "," in token else "the file is damaged"
+                raise self.error(f"{token[:24]!r} is no number; {remedy}: write the LUT again", line=line) from None
+            if not abs(number) <= float(np.finfo(np.float32).max):
+                raise self.error(f"{token[:24]} is not finite; write the LUT again from a sound response", line=line)
+            numbers.append(number)
+        if len(numbers) != count:
+            raise self.error(f"found {len(numbers)} number(s), needed {count}; the file is cut or altered", line=line)
+        return numbers
+
+    def lut(
+        self,
+        rows: Iterable[tuple[int, str]],
+        *,
+        length: float,
+        channels: float,
+        domain: tuple[float, float],
+        comments: Sequence[str],
+    ) -> Lut1D:
+        """Return the LUT of `rows` (line number, text), each of one value or of three equal ones."""
+        if channels not in (1, 3):
+            raise self.error(f"has {channels:g} channels; a LUT of a camera's response has 1, or 3 equal ones")
+        lines: list[int] = []
+        values: list[float] = []
+        for line, text in rows:
+            entry = self.numbers(text, line, count=int(channels))
+            if len(set(entry)) > 1:
+                raise self.error("R, G and B differ; give a LUT that treats the channels alike", line=line)
+            lines.append(line)
+            values.append(entry[0])
+        if len(values) != length:
+            raise self.error(f"holds {len(values)} entries and announces {length:g}; the file is cut or altered")
+        fault = first_fault(_single(values))
+        if fault is not None:
+            message = f"{values[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
+            raise self.error(message, line=lines[fault])
+        try:
+            return Lut1D(np.array(values), domain, tuple(comments))
+        except LutError as problem:
+            raise self.error(str(problem)) from problem
+
+
+def _single(values: ArrayLike) -> Floats:
+    """Return float64 numbers that float32 can hold; what is below its normal range becomes 0."""
+    with np.errstate(over="ignore"):
+        single = np.asarray(values, dtype=np.float64).astype(np.float32)
+    return np.where(np.abs(single) < np.finfo(np.float32).tiny, 0, single).astype(np.float64)
+
+
+def _floating(pixels: ArrayLike) -> NDArray[np.floating]:
+    """Return float32 for half and single precision, float64 for everything else."""
+    given = np.asarray(pixels)
+    return given.astype(np.float32 if given.dtype in (np.float16, np.float32) else np.float64, copy=False)
+
+
+def _clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
+    """Return comments that fit into a line of any format; empty ones go."""
+    printable = ("".join(c if c.isprintable() else " " for c in comment) for comment in comments)
+    cleaned = (" ".join(comment.split())[:MAX_COMMENT].strip() for comment in printable)
+    return tuple(comment for comment in cleaned if comment)
