@@ -19,7 +19,8 @@ import numpy as np
 
 from crfnet_core.errors import LutError
 from crfnet_core.files import written_whole
-from ocio.lut import Lut1D, LutText
+from ocio.lut import Lut1D
+from ocio.lut_text import LutText
 
 #: What an integer file depth multiplies values by.
 DEPTH_SCALES = {"8i": 255, "10i": 1023, "12i": 4095, "16i": 65535, "16f": 1, "32f": 1}

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -26,9 +25,6 @@ MAX_COMMENT = 500
 
 #: The bit pattern of the largest subnormal float32.
 BELOW_NORMAL = 0x007FFFFF
-
-#: Bytes of the largest LUT file that is read.
-MAX_FILE_SIZE = 64 * 1024 * 1024
 
 Floats = NDArray[np.float64]
 
@@ -61,8 +57,8 @@ class Lut1D:
     comments: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        values = _single(self.values)
-        low, high = (float(end) for end in _single(self.domain))
+        values = single_precision(self.values)
+        low, high = (float(end) for end in single_precision(self.domain))
         if values.ndim != 1 or not 2 <= values.size <= MAX_LENGTH:
             raise LutError(f"a LUT needs a row of 2 to {MAX_LENGTH} values, found shape {values.shape}")
         if not (np.isfinite(low) and np.isfinite(high) and low < high):
@@ -187,7 +183,7 @@ def strictly_increasing(values: ArrayLike) -> Floats:
     values : array_like, shape (N,)
         Finite and increasing, though perhaps not strictly as float32; the last entry stays as it is.
     """
-    bits = _single(values).astype(np.float32).view(np.int32).astype(np.int64)
+    bits = single_precision(values).astype(np.float32).view(np.int32).astype(np.int64)
     magnitude = bits & 0x7FFFFFFF
     rank = np.sign(bits) * np.maximum(magnitude - BELOW_NORMAL, 0)
     steps = np.arange(rank.size)
@@ -204,84 +200,7 @@ def first_fault(values: Floats) -> int | None:
     return int(faults[0]) if faults.size else None
 
 
-@dataclass(frozen=True)
-class LutText:
-    """The lines of a LUT file, and the errors that name them (1-based)."""
-
-    path: Path
-    lines: tuple[str, ...]
-
-    @classmethod
-    def read(cls, path: str | Path) -> LutText:
-        """Return the text of `path`; a LutError if it is absent, empty, too large or no text."""
-        path = Path(path)
-        try:
-            size = path.stat().st_size
-            content = path.read_bytes() if size <= MAX_FILE_SIZE else b""
-        except OSError as problem:
-            raise LutError(f"{path}: cannot be read ({problem.strerror}); check the name of the LUT") from problem
-        if size > MAX_FILE_SIZE:
-            raise LutError(f"{path}: has {size // 2**20} MiB, more than any 1D LUT; check the name of the LUT")
-        text = content.decode("utf-8-sig", errors="replace")
-        if "\0" in text:
-            raise LutError(f"{path}: is no text file; give a .spi1d, .cube or .clf LUT")
-        if not text.strip():
-            raise LutError(f"{path}: is empty; write the LUT again")
-        return cls(path, tuple(text.splitlines()))
-
-    def error(self, problem: str, *, line: int | None = None) -> LutError:
-        """Return the error that names the file, the line and the problem."""
-        return LutError(f"{self.path}: {problem}" if line is None else f"{self.path}, line {line}: {problem}")
-
-    def numbers(self, text: str, line: int | None, *, count: int) -> list[float]:
-        """Return the numbers of one line; a LutError if they are not `count` finite ones."""
-        numbers = []
-        for token in text.split():
-            try:
-                number = float(token)
-            except ValueError:
-                remedy = "decimals need a point, not a comma" if "," in token else "the file is damaged"
-                raise self.error(f"{token[:24]!r} is no number; {remedy}: write the LUT again", line=line) from None
-            if not abs(number) <= float(np.finfo(np.float32).max):
-                raise self.error(f"{token[:24]} is not finite; write the LUT again from a sound response", line=line)
-            numbers.append(number)
-        if len(numbers) != count:
-            raise self.error(f"found {len(numbers)} number(s), needed {count}; the file is cut or altered", line=line)
-        return numbers
-
-    def lut(
-        self,
-        rows: Iterable[tuple[int, str]],
-        *,
-        length: float,
-        channels: float,
-        domain: tuple[float, float],
-        comments: Sequence[str],
-    ) -> Lut1D:
-        """Return the LUT of `rows` (line number, text), each of one value or of three equal ones."""
-        if channels not in (1, 3):
-            raise self.error(f"has {channels:g} channels; a LUT of a camera's response has 1, or 3 equal ones")
-        lines: list[int] = []
-        values: list[float] = []
-        for line, text in rows:
-            entry = self.numbers(text, line, count=int(channels))
-            if len(set(entry)) > 1:
-                raise self.error("R, G and B differ; give a LUT that treats the channels alike", line=line)
-            lines.append(line)
-            values.append(entry[0])
-        if len(values) != length:
-            raise self.error(f"holds {len(values)} entries and announces {length:g}; the file is cut or altered")
-        fault = first_fault(_single(values))
-        if fault is not None:
-            message = f"{values[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
-            raise self.error(message, line=lines[fault])
-        try:
-            return Lut1D(np.array(values), domain, tuple(comments))
-        except LutError as problem:
-            raise self.error(str(problem)) from problem
-
-
-def _single(values: ArrayLike) -> Floats:
+def single_precision(values: ArrayLike) -> Floats:
     """Return float64 numbers that float32 can hold; what is below its normal range becomes 0."""
     with np.errstate(over="ignore"):
         single = np.asarray(values, dtype=np.float64).astype(np.float32)

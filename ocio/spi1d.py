@@ -9,7 +9,8 @@ from pathlib import Path
 
 from crfnet_core.errors import LutError
 from crfnet_core.files import written_whole
-from ocio.lut import Lut1D, LutText
+from ocio.lut import Lut1D
+from ocio.lut_text import LutText
 
 
 def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:

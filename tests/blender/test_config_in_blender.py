@@ -11,8 +11,9 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.response import ResponseCurve
-from ocio.config import PlateColorSpace, portable_config, write_config
+from ocio.config import PlateColorSpace, write_config
 from ocio.lut import inverse_response_lut
+from ocio.portable import portable_config
 from ocio.spi1d import write_spi1d
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
