@@ -4,11 +4,14 @@ from __future__ import annotations
 
 import os
 import tempfile
+import threading
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
+
+_UMASK_LOCK = threading.Lock()
 
 
 def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError) -> Path:
@@ -80,7 +83,8 @@ def written_whole(
 
 
 def _umask() -> int:
-    """Return the process's file mode creation mask (it can only be read by setting it)."""
-    mask = os.umask(0)
-    os.umask(mask)
+    """Return the process's file mode creation mask; it can only be read by setting it, so one thread at a time."""
+    with _UMASK_LOCK:
+        mask = os.umask(0)
+        os.umask(mask)
     return mask

@@ -22,18 +22,14 @@ MAX_PIXELS = 250_000_000
 
 #: How the files that are read begin.
 SIGNATURES = {
-    b"\xff\xd8\xff": "JPEG",
-    b"\x89PNG\r\n\x1a\n": "PNG",
-    b"II*\0": "TIFF",
-    b"MM\0*": "TIFF",
-    b"II+\0": "TIFF",
-    b"MM\0+": "TIFF",
-    b"SDPX": "DPX",
-    b"XPDS": "DPX",
+    "JPEG": (b"\xff\xd8\xff",),
+    "PNG": (b"\x89PNG\r\n\x1a\n",),
+    "TIFF": (b"II*\0", b"MM\0*", b"II+\0", b"MM\0+"),
+    "DPX": (b"SDPX", b"XPDS"),
 }
 
 #: How scene-linear files begin: they are refused.
-LINEAR_SIGNATURES = {b"\x76\x2f\x31\x01": "OpenEXR", b"#?RADIANCE": "Radiance HDR", b"#?RGBE": "Radiance HDR"}
+LINEAR_SIGNATURES = {"OpenEXR": (b"\x76\x2f\x31\x01",), "Radiance HDR": (b"#?RADIANCE", b"#?RGBE")}
 
 #: Camera raw: many of these are TIFF files with a small preview in front, which must not be taken for the photograph.
 RAW_SUFFIXES = (
@@ -195,11 +191,11 @@ def _kind(path: Path) -> str:
         raise PhotoError(f"{path}: the file is empty; copy it again")
     if path.suffix.lower() in RAW_SUFFIXES.split():
         raise PhotoError(f"{path}: {_RAW}")
-    for signature, kind in LINEAR_SIGNATURES.items():
-        if head.startswith(signature):
+    for kind, signatures in LINEAR_SIGNATURES.items():
+        if head.startswith(signatures):
             raise PhotoError(f"{path}: {_linear(kind)}")
-    for signature, kind in SIGNATURES.items():
-        if head.startswith(signature):
+    for kind, signatures in SIGNATURES.items():
+        if head.startswith(signatures):
             return kind
     if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
         return "WebP"
