@@ -26,7 +26,7 @@ class NetworkConfig:
     levels: int = 64
     grid: int = 16
     strides: tuple[int, ...] = (1, 2, 4, 8, 16)
-    width: int = 512
+    width: int = 384
     dropout: float = 0.2
 
     @property
