@@ -1,0 +1,87 @@
+# Every target sets up what it needs, once, in .venvs/: python3, git and make are enough.
+# Another interpreter: make test PYTHON=python3.13. Another Blender: make test-blender BPY=4.5.
+PYTHON ?= python3
+BPY ?=
+PIP_OPTIONS ?=
+
+TAG := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
+PLOT := .venvs/plot-$(TAG)
+TEST := .venvs/test-$(TAG)
+DEV := .venvs/dev-$(TAG)
+TRAIN := .venvs/train-$(TAG)
+BLENDER := .venvs/blender-$(TAG)$(if $(BPY),-$(BPY))
+
+PHOTO := tests/data/plate.jpg
+DEMO := demo_out
+DATA ?=
+RUN ?= runs/model
+MODEL := crfnet_core/models/window-statistics
+
+comma := ,
+
+.DEFAULT_GOAL := help
+.DELETE_ON_ERROR:
+.PHONY: help demo test test-training test-blender check format model bench clean
+
+help:  ## list the targets
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
+
+demo: $(PLOT)/ready  ## one photograph to LUTs, OCIO config, linear plate and sheet, in demo_out/
+	@$(PLOT)/bin/crfnet estimate $(PHOTO) --out $(DEMO) --overwrite
+	@$(PLOT)/bin/python tests/demo.py $(DEMO)
+
+test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as skipped
+	$(TEST)/bin/python -m pytest
+
+test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)
+	$(TRAIN)/bin/python -m pytest tests/training
+
+test-blender: $(BLENDER)/ready  ## the tests inside Blender (installs bpy; Python 3.11 or 3.13)
+	$(BLENDER)/bin/python -m pytest tests/blender
+
+check: $(DEV)/ready  ## format, lint, types and layers
+	$(DEV)/bin/ruff format --check .
+	$(DEV)/bin/ruff check .
+	$(DEV)/bin/mypy
+	$(DEV)/bin/lint-imports
+
+format: $(DEV)/ready  ## let ruff format and mend what it can
+	$(DEV)/bin/ruff format .
+	$(DEV)/bin/ruff check --fix .
+
+model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER
+	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
+	$(TRAIN)/bin/python -m training.basis --data $(DATA)
+	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards
+	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards --split validation --windows 10000
+	$(TRAIN)/bin/python -m training.train --shards $(RUN)/shards --run $(RUN)
+	$(TRAIN)/bin/python -m training.export --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
+	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --out $(RUN)/p0.json
+	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --real --out $(RUN)/real.json
+	$(TRAIN)/bin/python -m training.card --model $(MODEL) --p0 $(RUN)/p0.json --real $(RUN)/real.json
+
+bench: $(PLOT)/ready  ## time and memory of `crfnet estimate` beside oiiotool, 24 megapixels
+	$(PLOT)/bin/python tests/bench.py
+
+clean:  ## remove everything that make made
+	rm -rf .venvs $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
+	find crfnet_core ocio training tests blender_addon -name __pycache__ -type d -prune -exec rm -rf {} +
+
+# $(call install,extras[,requirement]): a virtual environment, complete or absent.
+define install
+	rm -rf $(@D)
+	$(PYTHON) -m venv $(@D)
+	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) --editable '.[$(1)]' $(2)
+	touch $@
+endef
+
+$(PLOT)/ready: pyproject.toml
+	$(call install,plot)
+$(TEST)/ready: pyproject.toml
+	$(call install,test)
+$(DEV)/ready: pyproject.toml
+	$(call install,dev)
+$(TRAIN)/ready: pyproject.toml
+	$(call install,train$(comma)test)
+$(BLENDER)/ready: pyproject.toml
+	$(call install,blender$(comma)test,$(if $(BPY),'bpy==$(BPY).*'))

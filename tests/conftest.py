@@ -1,0 +1,92 @@
+"""Paths, tolerances and small things that many tests use."""
+
+import contextlib
+import io
+import subprocess
+import sys
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core.response import ResponseCurve
+from ocio.cli import main
+
+
+@dataclass(frozen=True)
+class Tolerance:
+    """The one block of tolerances (absolute, on values in [0, 1] unless it says otherwise)."""
+
+    exact: float = 1e-12  # the same arithmetic in float64
+    lut: float = 1e-6  # OCIO, colour-science and numpy on one LUT, in float32
+    plate: float = 1e-5  # float EXR: oiiotool, Blender and `crfnet linearize`
+    half: float = 2**-11  # half EXR, relative to the value
+    parity: float = 1e-4  # torch and onnxruntime, EMoR weights
+
+
+@dataclass(frozen=True)
+class CommandResult:
+    """How a command ended."""
+
+    code: int
+    out: str
+    err: str
+
+
+@pytest.fixture(scope="session")
+def tolerance() -> Tolerance:
+    return Tolerance()
+
+
+@pytest.fixture(scope="session")
+def root() -> Path:
+    """The project's root folder."""
+    return Path(__file__).resolve().parent.parent
+
+
+@pytest.fixture(scope="session")
+def plate(root) -> Path:
+    """The bundled photograph, whose true response is known."""
+    return root / "tests" / "data" / "plate.jpg"
+
+
+@pytest.fixture(scope="session")
+def true_response(root) -> ResponseCurve:
+    """The response through which the bundled photograph was made."""
+    table = np.loadtxt(root / "tests" / "data" / "plate_response.csv", delimiter=",", skiprows=1)
+    return ResponseCurve.from_samples(table[:, 1])
+
+
+@pytest.fixture(scope="session")
+def fixed_model(root) -> Path:
+    """A model folder whose network always answers the bundled photograph's true response."""
+    return root / "tests" / "data" / "fixed_model"
+
+
+@pytest.fixture(scope="session")
+def crfnet() -> Callable[..., CommandResult]:
+    """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed."""
+
+    def run(*arguments: object) -> CommandResult:
+        out, err = io.StringIO(), io.StringIO()
+        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+            try:
+                code = main([str(argument) for argument in arguments])
+            except SystemExit as leaving:
+                code = int(leaving.code or 0)
+        return CommandResult(code, out.getvalue(), err.getvalue())
+
+    return run
+
+
+@pytest.fixture(scope="session")
+def oiiotool() -> Callable[..., None]:
+    """Run oiiotool, which comes with OpenImageIO's wheel; it must succeed."""
+
+    def run(*arguments: object) -> None:
+        command = [str(Path(sys.executable).with_name("oiiotool")), *map(str, arguments)]
+        subprocess.run(command, check=True, capture_output=True, text=True)
+
+    return run

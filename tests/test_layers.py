@@ -1,0 +1,46 @@
+"""Who may import whom: `ocio -> crfnet_core <- training`, and no heavy guest in the core."""
+
+import subprocess
+import sys
+
+import pytest
+
+GUESTS = ("bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy")
+
+IMPORT_ALL = """
+import importlib, pkgutil, sys
+import crfnet_core
+for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
+    importlib.import_module(module.name)
+print(*sys.modules)
+"""
+
+START = "import sys, ocio.cli; ocio.cli.build_parser(); print(*sys.modules)"
+
+
+def loaded_by(code, root):
+    """Top-level modules that a fresh interpreter holds after running code that prints sys.modules."""
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return {name.partition(".")[0] for name in done.stdout.split()}
+
+
+def test_the_core_loads_no_guest(root):
+    assert not loaded_by(IMPORT_ALL, root) & set(GUESTS)
+
+
+def test_the_command_starts_light(root):
+    """`crfnet --help` must not wait for onnxruntime, OpenImageIO or matplotlib."""
+    assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
+
+
+def test_only_photo_reads_images(root):
+    modules = (root / "crfnet_core").rglob("*.py")
+    assert [path.name for path in modules if "OpenImageIO as" in path.read_text(encoding="utf-8")] == ["photo.py"]
+
+
+def test_the_import_contracts_are_kept(root, monkeypatch, capsys):
+    """The contracts in pyproject.toml, as `make check` reads them."""
+    cli = pytest.importorskip("importlinter.cli", reason="import-linter comes with the dev extra")
+    monkeypatch.chdir(root)
+    assert cli.lint_imports(cache_dir=None, no_cache=True) == 0, capsys.readouterr().out
