@@ -1,8 +1,8 @@
 """Make the bundled photograph, tests/data/plate.jpg, whose true response is known.
 
-    python -m training.demo_plate <site-packages>/bpy/4.5/datafiles/studiolights/world/sunset.exr
+    python -m training.demo_plate <site-packages>/bpy/4.5/datafiles/studiolights/world/forest.exr
 
-The scene is one of Blender's studio lights (CC0, Greg Zaal's "Venice Sunset" at Poly Haven), cropped but never
+The scene is one of Blender's studio lights (CC0, Greg Zaal's "Ninomaru Teien" at Poly Haven), cropped but never
 resampled: averaging would mix irradiance before the camera. The camera is simulated: exposure, photon and read
 noise, an in-camera-like response written down below, 8 bits, JPEG. The same source gives the same bytes.
 """
@@ -22,10 +22,10 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 
 Floats = NDArray[np.float64]
 
-#: Rows and columns of the panorama (1024 x 512) that make the photograph, 672 x 378; it goes on past the left edge.
-ROWS, COLUMNS = range(84, 462), range(-76, 596)
+#: Rows and columns of the panorama (1024 x 512) that make the photograph, 672 x 378.
+ROWS, COLUMNS = range(84, 462), range(300, 972)
 #: Share of the values (in percent) below the sensor's clipping.
-EXPOSED = 97.0
+EXPOSED = 95.0
 #: Noise variance at irradiance E is SHOT * E + READ**2, with 1 at clipping: about ISO 400 of a full-frame camera.
 SHOT, READ = 5e-5, 4e-4
 SEED = 2017
@@ -61,7 +61,7 @@ def read_scene(studio_light: str | Path) -> Floats:
     """
     image = oiio.ImageBuf(str(studio_light))
     if image.has_error or not image.initialized:
-        raise PhotoError(f"{studio_light}: cannot be read; give the sunset.exr of Blender's studio lights")
+        raise PhotoError(f"{studio_light}: cannot be read; give the forest.exr of Blender's studio lights")
     panorama: Floats = np.asarray(image.get_pixels(oiio.FLOAT), dtype=np.float64)
     return panorama[np.ix_(ROWS, COLUMNS, range(3))]
 
@@ -103,7 +103,7 @@ def write_response(path: Path, curve: ResponseCurve) -> None:
 def main() -> None:
     """Write plate.jpg and plate_response.csv."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("studio_light", type=Path, help="sunset.exr of Blender's studio lights")
+    parser.add_argument("studio_light", type=Path, help="forest.exr of Blender's studio lights")
     parser.add_argument("--out", type=Path, default=Path("tests/data"), help="folder to write to (tests/data)")
     options = parser.parse_args()
     write_photograph(options.out / "plate.jpg", photograph(read_scene(options.studio_light)))

@@ -1,0 +1,34 @@
+"""The bundled photograph is what training/demo_plate.py makes of the studio light in this Blender."""
+
+import importlib.util
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core.photo import read_photo
+from training.demo_plate import camera_response, photograph, read_scene
+
+pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
+
+
+@pytest.fixture(scope="module")
+def codes():
+    """What the simulated camera makes of the scene, before JPEG."""
+    blender = Path(importlib.util.find_spec("bpy").origin).parent
+    (studio_light,) = blender.glob("*/datafiles/studiolights/world/forest.exr")
+    return photograph(read_scene(studio_light))
+
+
+def test_the_jpeg_holds_it(codes, plate):
+    decoded = np.rint(255 * read_photo(plate).pixels)
+    assert decoded.shape == codes.shape
+    assert np.abs(decoded - codes).mean() < 2
+
+
+def test_windows_of_it_cover_the_range(codes):
+    assert np.unique(codes).size == 256
+
+
+def test_the_kept_response_is_its_own(true_response):
+    np.testing.assert_allclose(true_response.brightness, camera_response(np.linspace(0, 1, 1024)), atol=2e-4)
