@@ -1,0 +1,179 @@
+"""One picture of an estimate: the curve and its uncertainty, the windows, before and after. Needs matplotlib."""
+
+from __future__ import annotations
+
+import warnings
+from pathlib import Path
+from typing import Any
+
+import matplotlib as mpl
+import numpy as np
+from matplotlib.axes import Axes
+from matplotlib.backends.backend_agg import FigureCanvasAgg
+from matplotlib.figure import Figure
+from matplotlib.patches import Rectangle
+from matplotlib.text import Annotation
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PlateError
+from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.files import written_whole
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.windows import Window
+from ocio.describe import agreeing, brightness_percent
+
+#: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
+SIZE, DPI = (12.0, 7.2), 150
+
+#: Lower edge and height of everything below the heading, as shares of the sheet.
+BOTTOM, HEIGHT = 0.1, 0.735
+
+INK, QUIET, GRID, CURVE = "#1b1f24", "#6a737d", "#e6e8eb", "#0b66c3"
+VERDICT_INK = {"good": "#1a7f37", "usable": "#9a6700", "do not trust": "#b42318"}
+
+#: The most of `warnings` and of a name that fits.
+LONGEST_NAME, LONGEST_LINE = 46, 150
+
+STYLE: dict[Any, Any] = {
+    "font.family": "DejaVu Sans",
+    "font.size": 9,
+    "axes.edgecolor": QUIET,
+    "axes.linewidth": 0.8,
+    "axes.labelcolor": INK,
+    "xtick.color": QUIET,
+    "ytick.color": QUIET,
+    "text.color": INK,
+    "text.parse_math": False,
+}
+
+Pixels = NDArray[np.float32]
+
+
+def draw_sheet(
+    path: Path, preview: Pixels, estimate: ResponseEstimate, *, stride: int = 1, overwrite: bool = False
+) -> None:
+    """Write the picture of an estimate as PNG; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    path : Path
+        The file to write.
+    preview : ndarray, float32, shape (h, w, 3)
+        Every `stride`-th pixel of the first photograph, code values in [0, 1].
+    estimate : ResponseEstimate
+        What was found.
+    stride : int
+        Distance between the pixels of `preview` in the photograph.
+    overwrite : bool
+        Whether an existing file may be replaced.
+
+    Raises
+    ------
+    PlateError
+        If the file cannot be written.
+    """
+    with mpl.rc_context(), warnings.catch_warnings():
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # a file name may hold any character
+        mpl.rcdefaults()
+        mpl.rcParams.update(STYLE)
+        figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
+        FigureCanvasAgg(figure)
+        _draw_heading(figure, estimate)
+        _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
+        before, after = _picture_axes(figure, portrait=preview.shape[0] > preview.shape[1])
+        _draw_photograph(before, preview, estimate, stride)
+        _draw_linear(after, preview, estimate.curve)
+        with written_whole(path, overwrite=overwrite, error=PlateError) as temporary:
+            figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
+
+
+def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
+    """Write the photograph's name, the verdict, the figures and the warnings."""
+    name = _shortened(estimate.photos[0], LONGEST_NAME)
+    more = f" + {len(estimate.photos) - 1}" if len(estimate.photos) > 1 else ""
+    figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
+    off = brightness_percent(estimate.uncertainty)
+    color = VERDICT_INK[estimate.verdict]
+    verdict = figure.text(0.058, 0.896, estimate.verdict, size=11, weight="bold", va="center", color=color)
+    figures = (
+        f"expected error {estimate.uncertainty:.2f} ({off:.1f} % of the brightness range)   ·   "
+        f"{agreeing(estimate)}   ·   {estimate.model}"
+    )
+    beside = Annotation(
+        figures, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=QUIET
+    )
+    figure.add_artist(beside)
+    cautions = _shortened("   ·   ".join(estimate.warnings), LONGEST_LINE)
+    figure.text(0.058, 0.026, cautions, size=9, va="center", color=VERDICT_INK["usable"])
+
+
+def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
+    """Draw the response with its band beside gamma 2.2."""
+    irradiance = np.linspace(0, 1, SAMPLES)
+    lower, upper = estimate.band
+    gamma = ResponseCurve.gamma().brightness
+    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % band")
+    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
+    axes.plot(irradiance, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
+    axes.set(
+        xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="Irradiance (scene-linear, relative)", ylabel="Brightness"
+    )
+    axes.grid(color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=0)
+    axes.spines[["top", "right"]].set_visible(False)
+    handles, labels = axes.get_legend_handles_labels()
+    order = [2, 0, 1]
+    axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower right", frameon=False, fontsize=10)
+
+
+def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
+    """Return the places of the photograph and of the linear plate: side by side, or one above the other."""
+    if portrait:
+        boxes = [(left, BOTTOM, 0.215, HEIGHT) for left in (0.532, 0.757)]
+    else:
+        half = HEIGHT / 2 - 0.018
+        boxes = [(0.532, bottom, 0.44, half) for bottom in (BOTTOM + HEIGHT - half, BOTTOM)]
+    before, after = (figure.add_axes(box, anchor="NE") for box in boxes)
+    return before, after
+
+
+def _draw_photograph(axes: Axes, preview: Pixels, estimate: ResponseEstimate, stride: int) -> None:
+    """Show the first photograph with its windows: solid if used, dashed if set aside."""
+    _show(axes, preview, stride, "Photograph and its windows (dashed: set aside)")
+    for found in estimate.windows:
+        if found.photo == 0:
+            axes.add_patch(_outline(found.window, kept=found.kept, width=1.8, color="#000000"))
+            axes.add_patch(_outline(found.window, kept=found.kept, width=0.9, color="#ffffff"))
+
+
+def _outline(window: Window, *, kept: bool, width: float, color: str) -> Rectangle:
+    """Return the outline of a window, in pixels of the photograph."""
+    style = "solid" if kept else (0, (2, 2))
+    corner = (window.x, window.y)
+    return Rectangle(
+        corner, window.extent, window.extent, fill=False, linewidth=width, linestyle=style, edgecolor=color
+    )
+
+
+def _draw_linear(axes: Axes, preview: Pixels, curve: ResponseCurve) -> None:
+    """Show the linear plate as a viewer with an sRGB display shows it."""
+    linear = curve.inverse(preview)
+    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
+    _show(axes, encoded.astype(np.float32), 1, "Linear plate, in an sRGB view")
+
+
+def _show(axes: Axes, pixels: Pixels, stride: int, title: str) -> None:
+    """Show pixels in [0, 1] without axes, in units of the photograph's pixels."""
+    height, width = pixels.shape[:2]
+    codes = np.rint(255 * np.clip(pixels, 0, 1)).astype(np.uint8)
+    axes.imshow(codes, extent=(0, width * stride, height * stride, 0), interpolation="antialiased")
+    axes.set_title(title, loc="left", size=9, color=QUIET, pad=5)
+    axes.set_axis_off()
+
+
+def _shortened(text: str, longest: int) -> str:
+    """Return `text`, with an ellipsis for its middle if it is longer than `longest`."""
+    if len(text) <= longest:
+        return text
+    return f"{text[: longest // 2 - 1]}…{text[-(longest // 2 - 1) :]}"

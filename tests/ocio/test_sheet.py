@@ -1,0 +1,104 @@
+"""The sheet: a PNG of fixed size and bytes, for any photograph and any estimate."""
+
+import dataclasses
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from crfnet_core.errors import PlateError
+from crfnet_core.estimate import estimate_response
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.photo import Photo, read_photo
+
+sheet = pytest.importorskip("ocio.sheet", reason="needs matplotlib, of the plot extra")
+
+
+@pytest.fixture(scope="module")
+def photo(plate):
+    return read_photo(plate)
+
+
+@pytest.fixture(scope="module")
+def estimate(photo, fixed_model):
+    return estimate_response(photo, network=ResponseNetwork.load(fixed_model))
+
+
+def read_codes(path):
+    return np.asarray(oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)).astype(int)
+
+
+def test_is_a_picture_of_the_stated_size(photo, estimate, tmp_path):
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
+    width, height = (round(side * sheet.DPI) for side in sheet.SIZE)
+    assert read_codes(tmp_path / "a.png").shape[:2] == (height, width)
+
+
+def test_the_same_estimate_gives_the_same_bytes(photo, estimate, tmp_path):
+    for name in ("a.png", "b.png"):
+        sheet.draw_sheet(tmp_path / name, photo.pixels, estimate)
+    content = (tmp_path / "a.png").read_bytes()
+    assert content == (tmp_path / "b.png").read_bytes()
+    assert b"Software" not in content
+    assert b"tIME" not in content
+
+
+def test_shows_the_curve_in_its_colour(photo, estimate, tmp_path):
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
+    left = read_codes(tmp_path / "a.png")[:, :900, :3]
+    curve = np.array([0x0B, 0x66, 0xC3])
+    assert (np.abs(left - curve).max(axis=2) < 3).sum() > 2000
+
+
+def test_the_windows_lie_where_they_were_whatever_the_preview(photo, estimate, tmp_path):
+    """A preview of every second pixel moves no window: the pictures differ in their grain only."""
+    sheet.draw_sheet(tmp_path / "all.png", photo.pixels, estimate)
+    sheet.draw_sheet(tmp_path / "half.png", photo.pixels[::2, ::2], estimate, stride=2)
+    difference = np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png"))
+    assert difference.mean() < 3
+
+
+@pytest.mark.parametrize("shape", [(1, 1), (300, 900), (900, 300), (600, 400)])
+def test_any_shape_of_photograph_can_be_drawn(estimate, tmp_path, shape):
+    sheet.draw_sheet(tmp_path / "a.png", np.full((*shape, 3), 0.5, np.float32), estimate)
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize("uncertainty", [0.3, 1.5, 9.0])
+@pytest.mark.parametrize("name", ["plain.jpg", "long name " * 20 + ".jpg", "写真 $x_1$ \\frac 🎬.jpg"])
+def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, uncertainty, name):
+    warnings = () if uncertainty < 1 else ("a warning that is long enough to go on and on " * 6,)
+    other = dataclasses.replace(estimate, uncertainty=uncertainty, photos=(name, "b.jpg"), warnings=warnings)
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, other)
+    assert not recwarn.list
+
+
+def test_matplotlibs_settings_are_left_alone(photo, estimate, tmp_path):
+    import matplotlib as mpl
+
+    before = dict(mpl.rcParams)
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
+    assert dict(mpl.rcParams) == before
+
+
+def test_the_preview_is_not_changed(photo, estimate, tmp_path):
+    preview = photo.pixels.copy()
+    sheet.draw_sheet(tmp_path / "a.png", preview, estimate)
+    np.testing.assert_array_equal(preview, photo.pixels)
+
+
+def test_replaces_a_file_only_when_asked(photo, estimate, tmp_path):
+    (tmp_path / "a.png").write_text("mine")
+    with pytest.raises(PlateError, match="exists already"):
+        sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate, overwrite=True)
+    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
+
+
+def test_gray_photographs_and_wide_steps(fixed_model, tmp_path, plate):
+    """A large gray photograph, point-sampled by the windows and by the preview."""
+    large = np.repeat(np.repeat(read_photo(plate).pixels[..., :1], 4, axis=0), 4, axis=1).repeat(3, axis=2)
+    gray = Photo(pixels=large, bit_depth=8, is_gray=True, path=plate)
+    estimate = estimate_response(gray, network=ResponseNetwork.load(fixed_model))
+    sheet.draw_sheet(tmp_path / "a.png", large[::4, ::4], estimate, stride=4)
+    assert (tmp_path / "a.png").exists()
