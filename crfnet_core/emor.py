@@ -14,7 +14,8 @@ from crfnet_core.response import SAMPLES
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
 
-_BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
+#: The packaged basis.
+BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
 
 Floats = NDArray[np.float64]
 
@@ -45,7 +46,7 @@ class EmorBasis:
     @cache
     def load(cls) -> EmorBasis:
         """Return the packaged basis."""
-        with np.load(_BASIS_FILE) as arrays:
+        with np.load(BASIS_FILE) as arrays:
             return cls(arrays["mean"], arrays["components"])
 
     @classmethod

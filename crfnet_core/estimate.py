@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -97,7 +97,7 @@ class ResponseEstimate:
 
 
 def estimate_response(
-    photos: Photo | Sequence[Photo],
+    photos: Photo | Iterable[Photo],
     *,
     network: ResponseNetwork,
     windows: int = 10,
@@ -111,8 +111,8 @@ def estimate_response(
 
     Parameters
     ----------
-    photos : Photo or sequence of Photo
-        Photographs of one camera with the same settings.
+    photos : Photo or iterable of Photo
+        Photographs of one camera with the same settings; an iterator needs the memory of one photograph only.
     network : ResponseNetwork
         See `ResponseNetwork.load`.
     windows : int
@@ -127,11 +127,11 @@ def estimate_response(
     PhotoError
         If there is no photograph, or one is smaller than a window.
     """
-    photos = (photos,) if isinstance(photos, Photo) else tuple(photos)
-    if not photos:
+    evidence = [_evidence(photo, windows, seed) for photo in ((photos,) if isinstance(photos, Photo) else photos)]
+    if not evidence:
         raise PhotoError("there is no photograph to analyse; give at least one")
-    chosen = [(i, window) for i, photo in enumerate(photos) for window in _windows_of(photo, windows, seed)]
-    samples = np.concatenate([cut_windows(photos[i].pixels, [window]) for i, window in chosen])
+    chosen = [(i, window) for i, part in enumerate(evidence) for window in part.windows]
+    samples = np.concatenate([part.samples for part in evidence])
     predictions = network.predict(samples, progress=progress)
     kept = inliers(predictions.weights)
     weights = predictions.weights[kept].mean(axis=0)
@@ -150,9 +150,9 @@ def estimate_response(
         spread=spread,
         uncertainty=uncertainty,
         band=band_around(curve, uncertainty, calibration),
-        warnings=_warnings(photos, [window for _, window in chosen], samples),
+        warnings=_warnings(evidence, samples),
         model=network.config.label,
-        photos=tuple(photo.path.name for photo in photos),
+        photos=tuple(part.name for part in evidence),
     )
 
 
@@ -174,20 +174,31 @@ def band_around(curve: ResponseCurve, uncertainty: float, calibration: Calibrati
     return band
 
 
-def _windows_of(photo: Photo, count: int, seed: int) -> tuple[Window, ...]:
+@dataclass(frozen=True)
+class _Evidence:
+    """What stays of a photograph once its windows are cut: name, whether it is gray, windows and their samples."""
+
+    name: str
+    is_gray: bool
+    windows: tuple[Window, ...]
+    samples: NDArray[np.float32]
+
+
+def _evidence(photo: Photo, count: int, seed: int) -> _Evidence:
     """Return the windows of one photograph; an error names its file."""
     try:
-        return select_windows(photo.pixels, count=count, seed=seed)
+        windows = select_windows(photo.pixels, count=count, seed=seed)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
+    return _Evidence(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))
 
 
-def _warnings(photos: Sequence[Photo], windows: Sequence[Window], samples: NDArray[np.float32]) -> tuple[str, ...]:
+def _warnings(evidence: Sequence[_Evidence], samples: NDArray[np.float32]) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     warnings = []
-    if not any(window.covers_range for window in windows):
+    if not any(window.covers_range for part in evidence for window in part.windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
-    if all(photo.is_gray for photo in photos):
+    if all(part.is_gray for part in evidence):
         warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
     if np.mean((samples <= 0.5 / 255) | (samples >= 254.5 / 255)) > MOSTLY_CLIPPED:
         warnings.append("mostly clipped: take a photograph with another exposure")

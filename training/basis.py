@@ -7,31 +7,38 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.emor import _BASIS_FILE, EmorBasis
+from crfnet_core.emor import BASIS_FILE, EmorBasis
+from crfnet_core.files import written_whole
+from crfnet_core.response import SAMPLES
 from training.curves import read_dorf
+
+#: Agreement of the first five components with the published ones.
+LEAST_COSINE = 0.999
 
 
 def main() -> None:
-    """Write the basis and say how it agrees with the published one."""
+    """Compute the basis, compare it with the published one, and write it."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf/201_CRF_data.mat and dorf/emor.txt")
     folder = parser.parse_args().data / "dorf"
     basis = EmorBasis.from_curves(read_dorf(folder / "201_CRF_data.mat"))
-    np.savez(_BASIS_FILE, mean=basis.mean, components=basis.components)
     published = read_published(folder / "emor.txt")
     cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
-    print(f"wrote {_BASIS_FILE.name}; |cosine| with the published components:", np.round(cosines, 5))
+    print("|cosine| with the published components:", np.round(cosines, 5))
     print(f"mean differs by at most {np.abs(basis.mean - published[0]).max():.4f}")
+    if cosines[:5].min() < LEAST_COSINE:
+        raise SystemExit(f"the first five components must agree with the published ones to {LEAST_COSINE}")
+    with written_whole(BASIS_FILE, overwrite=True) as temporary:
+        np.savez(temporary, mean=basis.mean, components=basis.components)
+    print(f"wrote {BASIS_FILE.name}")
 
 
 def read_published(path: Path) -> np.ndarray:
     """Return f0 and the unit components of emor.txt, shape (26, 1024)."""
     blocks = path.read_text().split("=")[2:]
-    values = np.array([[float(word) for word in block.split()[:SAMPLES_PER_BLOCK]] for block in blocks])
+    values = np.array([[float(word) for word in block.split()[:SAMPLES]] for block in blocks])
     return np.vstack([values[:1], values[1:] / np.linalg.norm(values[1:], axis=1, keepdims=True)])
 
-
-SAMPLES_PER_BLOCK = 1024
 
 if __name__ == "__main__":
     main()

@@ -21,8 +21,8 @@ the second holds the hash of the first.
 
 | | |
 | --- | --- |
-| input | `{input_name}`: float32 (N, {window_size}, {window_size}, 3); {normalisation} |
-| output | `{output_names[0]}`: (N, {components}) EMoR weights; `{output_names[1]}`: (N,) logarithm of the expected E_est |
+| input | `{input_name}`, float32 (N, {window_size}, {window_size}, 3): {normalisation} |
+| output | `{output_names[0]}`: (N, {components}) EMoR weights; `{output_names[1]}`: (N,) log of the expected E_est |
 | file | {size:.1f} MB, ONNX opset {opset}, sha256 `{sha256}` |
 | trained from | commit `{training_commit}` |
 

@@ -1,7 +1,7 @@
 """Measure a model: ``python -m training.evaluate --data DIR [--real] --out FILE.json``.
 
 P0: every DoRF curve on every held-out scene, at one of five exposures; through the product's own `estimate_response`.
-With --real: real camera photographs with measured responses, averaged per camera.
+With --real: real camera photographs with measured responses, averaged per camera, and FILE.png with their curves.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.metrics import estimation_error, linearisation_error, ratio_to_gamma, win_rate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo, read_photo
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response import SAMPLES, ResponseCurve
 from training.curves import read_dorf
 from training.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
 from training.synthesis import EXPOSURE_FACTORS, Capture, automatic_exposure, photographed, reference_luminance
@@ -106,18 +106,47 @@ def measure_p0(data: Path, model: Path | None, *, workers: int, curve_step: int 
         return [case for job in tqdm(jobs, unit="scene") for case in job.result()]
 
 
-def measure_real(data: Path, model: Path | None) -> list[Case]:
-    """Return the cases of the real photographs, grouped by camera."""
+@dataclass(frozen=True)
+class RealPhoto:
+    """A real photograph measured: its case, and the curves to draw."""
+
+    case: Case
+    true: ResponseCurve
+    estimate: ResponseEstimate
+
+
+def measure_real(data: Path, model: Path | None) -> list[RealPhoto]:
+    """Return the real photographs, each grouped under its camera and named by its grade."""
     network = ResponseNetwork.load(model)
-    cases = []
     with (data / "real" / "cases.csv").open(newline="") as file:
-        for row in csv.DictReader(file):
-            photo = read_photo(data / "real" / row["input_file"])
-            samples = np.loadtxt(data / "real" / "gt" / f"{row['id']}.csv", delimiter=",", skiprows=1)
-            estimate = estimate_response(photo, network=network)
-            true = ResponseCurve.from_samples(samples[:, 1])
-            cases.append(measured(row["camera"], row["grade"], photo, true, estimate))
-    return cases
+        rows = list(csv.DictReader(file))
+    found = []
+    for row in tqdm(rows, unit="photograph"):
+        photo = read_photo(data / "real" / row["input_file"])
+        samples = np.loadtxt(data / "real" / "gt" / f"{row['id']}.csv", delimiter=",", skiprows=1)
+        estimate, true = estimate_response(photo, network=network), ResponseCurve.from_samples(samples[:, 1])
+        found.append(RealPhoto(measured(row["camera"], row["grade"], photo, true, estimate), true, estimate))
+    return found
+
+
+def draw_curves(path: Path, photos: list[RealPhoto]) -> None:
+    """Draw the true and the estimated response of every photograph, with its band and gamma 2.2, as PNG."""
+    from matplotlib.figure import Figure
+
+    columns = 4
+    figure = Figure(figsize=(4 * columns, 3.4 * -(-len(photos) // columns)), layout="constrained")
+    irradiance = np.linspace(0, 1, SAMPLES)
+    for number, photo in enumerate(photos):
+        axes = figure.add_subplot(-(-len(photos) // columns), columns, number + 1)
+        axes.fill_between(irradiance, *photo.estimate.band, color="tab:blue", alpha=0.2, linewidth=0)
+        axes.plot(irradiance, photo.estimate.curve.brightness, "tab:blue", label="estimate, 90 % band")
+        axes.plot(irradiance, photo.true.brightness, "black", label="measured")
+        axes.plot(irradiance, GAMMA.brightness, "gray", linestyle="--", label="gamma 2.2")
+        case = photo.case
+        title = f"{case.photograph}\nE_est {case.estimation:.2f}, expected {case.uncertainty:.2f}"
+        axes.set_title(f"{title}, gamma {case.gamma_estimation:.2f}", fontsize=9)
+    figure.axes[0].legend(fontsize=8)
+    figure.savefig(path, dpi=90)
 
 
 def summary(cases: list[Case]) -> dict[str, float]:
@@ -176,7 +205,9 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True)
     options = parser.parse_args()
     if options.real:
-        cases = measure_real(options.data, options.model)
+        photos = measure_real(options.data, options.model)
+        draw_curves(options.out.with_suffix(".png"), photos)
+        cases = [photo.case for photo in photos]
     else:
         cases = measure_p0(options.data, options.model, workers=options.workers, curve_step=options.curve_step)
     report = {"summary": summary(cases), "groups": by_group(cases), "cases": [asdict(case) for case in cases]}
