@@ -53,7 +53,7 @@ model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): m
 	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
 	$(TRAIN)/bin/python -m training.basis --data $(DATA)
 	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards
-	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards --split validation --windows 10000
+	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards --split validation --windows 6000
 	$(TRAIN)/bin/python -m training.train --shards $(RUN)/shards --run $(RUN)
 	$(TRAIN)/bin/python -m training.export --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
 	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --out $(RUN)/p0.json

@@ -155,7 +155,6 @@ def summary(cases: list[Case]) -> dict[str, float]:
     error, linear = column["estimation"], column["linearisation"]
     gamma, gamma_linear = column["gamma_estimation"], column["gamma_linearisation"]
     figures = {
-        "photographs": len(cases),
         "E_est mean": error.mean(),
         "E_est median": np.median(error),
         "E_est p90": np.quantile(error, 0.9),
@@ -170,7 +169,7 @@ def summary(cases: list[Case]) -> dict[str, float]:
         "uncertainty rank correlation": _rank_correlation(column["uncertainty"], error),
         "band coverage": column["band_coverage"].mean(),
     }
-    return {name: round(float(figure), 4) for name, figure in figures.items()}
+    return {"photographs": len(cases)} | {name: round(float(figure), 4) for name, figure in figures.items()}
 
 
 def by_group(cases: list[Case]) -> dict[str, dict[str, float]]:

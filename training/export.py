@@ -77,7 +77,7 @@ def write_config(folder: Path, name: str, calibration: Calibration, accuracy: di
         window_size=WINDOW_SIZE,
         input_name="windows",
         output_names=("weights", "log_errors"),
-        normalisation="code values divided by the largest code: [0, 1], float32 (N, 227, 227, 3), never rescaled",
+        normalisation="code values divided by the largest code, never rescaled",
         opset=OPSET,
         training_commit=_commit(),
         calibration=calibration,
