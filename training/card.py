@@ -60,7 +60,7 @@ def card(folder: Path, config: ModelConfig, real: dict[str, Any]) -> str:
         INTRODUCTION.format(**entries),
         "## Accuracy\n",
         "P0: 20 held-out scenes x 201 DoRF curves, each at one of five exposures (s_crf x 0.6 to 1.4), 8 bits.",
-        "P4: real photographs with measured responses; nothing was chosen on them. E_lin is x 1e-2. For comparison: the",
+        "P4: real photographs with measured responses; nothing was chosen on them. E_lin is x 1e-2. To compare: the",
         "mean of the 201 curves has an E_est of 2.91 on P0, the paper's network (trained on other scenes) 1.61.\n",
         "| | P0 | P4 |\n| --- | --- | --- |",
         *rows,
