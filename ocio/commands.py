@@ -223,12 +223,15 @@ def _json(document: dict[str, Any]) -> str:
 
 
 def _print_findings(findings: Sequence[Finding], folder: Path) -> None:
-    """Print what was read, found and written, and how to use it."""
-    for finding in findings:
-        _print_lines([*map(str, finding.facts), *describe.verdict_lines(finding.estimate), ""])
-    _print_lines([f"Written to {folder}:", *(line for f in findings for line in describe.file_lines(f.files)), ""])
-    _print_lines(["The linear plate in oiiotool, with the LUT or with the config:"])
-    _print_lines(f"  {line}" for line in describe.oiiotool_lines(findings[0].paths[0], findings[0].files))
+    """Print what was read, found and written, and how to use it; of several estimates, a line each."""
+    first, *others = findings
+    if others:
+        _print_lines([*(describe.result_line(finding.estimate) for finding in findings), ""])
+        _print_lines([f"Written to {folder}, for each photograph as for the first:"])
+    else:
+        _print_lines([*map(str, first.facts), *describe.verdict_lines(first.estimate), "", f"Written to {folder}:"])
+    _print_lines([*describe.file_lines(first.files), "", "The linear plate in oiiotool, with the LUT or the config:"])
+    _print_lines(f"  {line}" for line in describe.oiiotool_lines(first.paths[0], first.files))
 
 
 def _print_json(document: dict[str, Any]) -> None:

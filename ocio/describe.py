@@ -95,6 +95,15 @@ def oiiotool_lines(photo: Path, files: OutputFiles) -> list[str]:
     ]
 
 
+def result_line(estimate: ResponseEstimate) -> str:
+    """Return photograph, verdict and uncertainty on one line, for lists of many."""
+    off = brightness_percent(estimate.uncertainty)
+    cautions = "".join(f"; {warning}" for warning in estimate.warnings)
+    return (
+        f"{estimate.photos[0]}: {estimate.verdict}, expected error {estimate.uncertainty:.2f} ({off:.1f} %){cautions}"
+    )
+
+
 def file_lines(files: OutputFiles) -> list[str]:
     """Return what was written, one line a kind, as names relative to the folder."""
     rows = [
@@ -184,9 +193,18 @@ def model_lines(document: Mapping[str, Any]) -> list[str]:
     left_out = ("kind", "name", "calibration", "accuracy")
     return [
         f"{document['name']}: model",
-        *(f"  {key}: {value}" for key, value in document.items() if key not in left_out),
-        *(f"  accuracy, {key}: {value}" for key, value in document["accuracy"].items()),
+        *(f"  {key}: {_listed(value)}" for key, value in document.items() if key not in left_out),
+        *(
+            f"  accuracy, {protocol}, {figure}: {value}"
+            for protocol, figures in document["accuracy"].items()
+            for figure, value in figures.items()
+        ),
     ]
+
+
+def _listed(value: object) -> str:
+    """Return a value in words, a sequence as its parts."""
+    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)
 
 
 def _judgement(estimate: ResponseEstimate) -> dict[str, Any]:

@@ -132,7 +132,10 @@ class TestEstimate:
 
     def test_each_photograph_makes_its_own(self, estimate, plate, tmp_path):
         other = shutil.copy(plate, tmp_path / "other.jpg")
-        assert estimate(plate, other, "--each").code == 0
+        done = estimate(plate, other, "--each")
+        assert done.code == 0
+        listed = [line for line in done.out.splitlines() if ": good, expected error 0." in line]
+        assert [line.partition(":")[0] for line in listed] == ["plate.jpg", other.name]
         names = {path.name for path in (tmp_path / "out").iterdir()}
         own = FILES - {"plate_sheet.png"}
         assert names == own | {name.replace("plate", "other") for name in own}
