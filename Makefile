@@ -9,6 +9,7 @@ PLOT := .venvs/plot-$(TAG)
 TEST := .venvs/test-$(TAG)
 DEV := .venvs/dev-$(TAG)
 TRAIN := .venvs/train-$(TAG)
+ADDON := .venvs/addon-$(TAG)
 BLENDER := .venvs/blender-$(TAG)$(if $(BPY),-$(BPY))
 
 PHOTO := tests/data/plate.jpg
@@ -21,7 +22,7 @@ comma := ,
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo test test-training test-blender check format model bench clean
+.PHONY: help demo addon test test-training test-blender check format model bench clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
@@ -29,6 +30,9 @@ help:  ## list the targets
 demo: $(PLOT)/ready  ## one photograph to LUTs, OCIO config, linear plate and sheet, in demo_out/
 	@$(PLOT)/bin/crfnet estimate $(PHOTO) --out $(DEMO) --overwrite
 	@$(PLOT)/bin/python tests/demo.py $(DEMO)
+
+addon: $(ADDON)/ready  ## the Blender extension, one zip per platform, in dist/ (downloads 120 MB, once)
+	$(ADDON)/bin/python blender_addon/build.py
 
 test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as skipped
 	$(TEST)/bin/python -m pytest
@@ -74,6 +78,12 @@ define install
 	$(@D)/bin/python -m pip install --quiet --disable-pip-version-check $(PIP_OPTIONS) --editable '.[$(1)]' $(2)
 	touch $@
 endef
+
+# Bare: the builder needs pip alone.
+$(ADDON)/ready:
+	rm -rf $(@D)
+	$(PYTHON) -m venv $(@D)
+	touch $@
 
 $(PLOT)/ready: pyproject.toml
 	$(call install,plot)

@@ -1,0 +1,240 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Build the Blender extension, one zip per platform: `make addon`. Needs the standard library and pip.
+
+The downloads are those of wheels.sha256 and stay in build/wheels, so that the next build needs no network. Same
+sources, same bytes: every zip is stored in the order of its names with one date, and our own packages become a wheel
+with the setuptools of wheels.sha256, in a folder that holds nothing else.
+"""
+
+from __future__ import annotations
+
+import argparse
+import hashlib
+import json
+import os
+import re
+import shutil
+import subprocess
+import sys
+import tempfile
+import tomllib
+import zipfile
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+FAILED = 2
+
+ADDON = Path(__file__).resolve().parent
+ROOT = ADDON.parent
+MANIFEST = "blender_manifest.toml"
+
+#: What Blender calls a platform, and how the platform tags of its wheels begin and end.
+WHEEL_PLATFORMS = {
+    "linux-x64": ("manylinux", "x86_64"),
+    "macos-arm64": ("macosx", "arm64"),
+    "macos-x64": ("macosx", "x86_64"),
+    "windows-x64": ("win", "amd64"),
+}
+
+#: What of this folder goes into the zip, and what of the project goes into our wheel.
+SHIPPED = ("LICENSE", "**/*.py")
+NOT_SHIPPED = ("build.py",)
+WHEEL_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "crfnet_core", "ocio")
+
+#: The earliest date that a zip can hold.
+DATE = (1980, 1, 1, 0, 0, 0)
+
+
+class BuildError(Exception):
+    """What keeps the extension from being built, in one line."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Build the zips that the command line asks for; return the exit code, 0 or `FAILED`."""
+    options = _parser().parse_args(argv)
+    try:
+        for path in build_addon(options.platform or list(WHEEL_PLATFORMS), out=options.out, cache=options.cache):
+            sys.stdout.write(f"{path}  {path.stat().st_size / 1e6:.1f} MB\n")
+    except (BuildError, OSError) as problem:
+        sys.stderr.write(f"{problem}\n")
+        return FAILED
+    return 0
+
+
+def build_addon(platforms: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
+    """Write one zip per platform into a folder and return their paths.
+
+    Parameters
+    ----------
+    platforms : sequence of str
+        Blender's names, keys of `WHEEL_PLATFORMS`.
+    out : Path
+        Where the zips go; older ones of the same name are replaced.
+    cache : Path
+        Where downloads are kept.
+
+    Raises
+    ------
+    BuildError
+        If a wheel cannot be downloaded or is not the expected one, or the version numbers disagree.
+    """
+    text = (ADDON / MANIFEST).read_text(encoding="utf-8")
+    manifest = tomllib.loads(text)
+    own_wheel = build_own_wheel(manifest["version"], cache)
+    out.mkdir(parents=True, exist_ok=True)
+    zips = []
+    for platform in platforms:
+        members = {path.relative_to(ADDON).as_posix(): path for path in shipped_files()}
+        wheels = platform_wheels(manifest["wheels"], platform)
+        for wheel in wheels:
+            name = Path(wheel).name
+            members[wheel.removeprefix("./")] = own_wheel if name == own_wheel.name else fetch_wheel(name, cache)
+        contents = {name: path.read_bytes() for name, path in members.items()}
+        contents[MANIFEST] = platform_manifest(text, platform, wheels).encode()
+        zips.append(out / f"{manifest['id']}-{manifest['version']}-{platform.replace('-', '_')}.zip")
+        write_zip(zips[-1], contents)
+    return zips
+
+
+def shipped_files() -> list[Path]:
+    """Return the files of this folder that go into every zip, the manifest excepted."""
+    found = {path for pattern in SHIPPED for path in ADDON.glob(pattern)}
+    return sorted(path for path in found if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
+
+
+def platform_wheels(wheels: Sequence[str], platform: str) -> list[str]:
+    """Return those of the manifest's wheels that run on a platform, for either Python."""
+    system, machine = WHEEL_PLATFORMS[platform]
+    tags = {wheel: Path(wheel).stem.rpartition("-")[2] for wheel in wheels}
+    return [wheel for wheel, tag in tags.items() if tag == "any" or (tag.startswith(system) and tag.endswith(machine))]
+
+
+def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
+    """Return the manifest's text with one platform and its wheels.
+
+    Blender's own `--split-platforms` adds a table [build.generated] instead, which only its installer reads.
+    """
+    for key, values in (("platforms", [platform]), ("wheels", wheels)):
+        lines = "".join(f"    {json.dumps(value)},\n" for value in values)
+        text, found = re.subn(rf"^{key} = \[\n.*?^\]$", f"{key} = [\n{lines}]", text, flags=re.MULTILINE | re.DOTALL)
+        if found != 1:
+            raise BuildError(f"{MANIFEST}: needs one list `{key}` with one line per entry, found {found}")
+    return text
+
+
+def build_own_wheel(version: str, cache: Path) -> Path:
+    """Return the path of the wheel that holds `crfnet_core` and `ocio`, made anew beside the downloads.
+
+    It declares what `pip install` needs of it; Blender resolves no dependencies and brings numpy, OpenImageIO and
+    OpenColorIO itself. What only the command line imports (tqdm, shtab, matplotlib) the add-on never imports.
+    """
+    fetch_wheel(_setuptools(), cache)
+    with tempfile.TemporaryDirectory() as folder:
+        source, out = Path(folder, "source"), Path(folder, "out")
+        for name in WHEEL_SOURCES:
+            _copy(ROOT / name, source / name)
+        arguments = ["wheel", "--no-deps", "--no-index", f"--find-links={cache.resolve()}", f"--wheel-dir={out}"]
+        _pip([*arguments, str(source)], "our own wheel cannot be built", options={"PIP_CONFIG_FILE": os.devnull})
+        (wheel,) = out.glob("*.whl")
+        if wheel.name.split("-")[1] != version:
+            raise BuildError(f"{MANIFEST} has version {version}, pyproject.toml makes {wheel.name}: make them equal")
+        with zipfile.ZipFile(wheel) as archive:
+            contents = {name: archive.read(name) for name in archive.namelist()}
+    write_zip(cache / wheel.name, contents)
+    return cache / wheel.name
+
+
+def fetch_wheel(name: str, cache: Path) -> Path:
+    """Return the path of a wheel of wheels.sha256 in the cache, after downloading it if it is not there yet."""
+    expected = _expected_hashes().get(name)
+    if expected is None:
+        raise BuildError(f"{name}: has no line in wheels.sha256; download it and add what sha256sum says")
+    kept = cache / name
+    if kept.is_file() and _sha256(kept) == expected:
+        return kept
+    cache.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory(dir=cache) as folder:
+        _download(name, Path(folder))
+        found = _sha256(Path(folder, name))
+        if found != expected:
+            raise BuildError(f"{name}: the download has SHA-256 {found}, wheels.sha256 says {expected}")
+        Path(folder, name).replace(kept)
+    return kept
+
+
+def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
+    """Write a zip whose bytes depend on the names and contents of its members alone.
+
+    They are stored, because what deflate makes of them differs between versions of zlib; nearly all of it is wheels,
+    which are compressed already.
+    """
+    temporary = path.with_name(f".{path.name}")
+    with zipfile.ZipFile(temporary, "w") as archive:
+        for name in sorted(contents):
+            info = zipfile.ZipInfo(name, DATE)
+            info.create_system = 3  # Unix, wherever this runs
+            info.external_attr = 0o100644 << 16
+            archive.writestr(info, contents[name])
+    temporary.replace(path)
+
+
+def _parser() -> argparse.ArgumentParser:
+    """Return the parser of the command line."""
+    parser = argparse.ArgumentParser(prog="build.py", description="Build the Blender extension, one zip per platform.")
+    parser.add_argument("--platform", action="append", choices=WHEEL_PLATFORMS, help="again for more (default: all)")
+    parser.add_argument("--out", type=Path, default=ROOT / "dist", help="where the zips go (default: dist)")
+    parser.add_argument("--cache", type=Path, default=ROOT / "build" / "wheels", help="keeps downloads (build/wheels)")
+    return parser
+
+
+def _expected_hashes() -> dict[str, str]:
+    """Return the SHA-256 of every wheel that may be downloaded, by its name."""
+    lines = (ADDON / "wheels.sha256").read_text(encoding="utf-8").splitlines()
+    return {name: digest for digest, name in map(str.split, lines)}
+
+
+def _setuptools() -> str:
+    """Return the name of the setuptools wheel that builds ours."""
+    (name,) = (name for name in _expected_hashes() if name.startswith("setuptools-"))
+    return name
+
+
+def _sha256(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    return hashlib.sha256(path.read_bytes()).hexdigest()
+
+
+def _download(name: str, folder: Path) -> None:
+    """Let pip download the wheel of this name, of whatever platform and Python."""
+    project, version, python, _, tags = Path(name).stem.split("-")
+    arguments = ["download", "--no-deps", "--only-binary=:all:", f"--dest={folder}", f"{project}=={version}"]
+    if python.startswith("cp"):
+        arguments += ["--implementation=cp", f"--python-version={python[2:]}"]
+        arguments += [f"--platform={tag}" for tag in tags.split(".")]
+    _pip(arguments, f"{name}: cannot be downloaded; check the network")
+    if not (folder / name).is_file():
+        raise BuildError(f"{name}: cannot be downloaded (pip found {next(folder.iterdir()).name} instead)")
+
+
+def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] | None = None) -> None:
+    """Run pip, with `options` in place of the user's if there are any, or say in one line what it said."""
+    users = {name: value for name, value in os.environ.items() if options is None or not name.startswith("PIP_")}
+    command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
+    done = subprocess.run(command, env=users | dict(options or {}), capture_output=True, text=True, check=False)
+    if done.returncode:
+        lines = done.stderr.splitlines() or ["pip gives no reason"]
+        errors = [line for line in lines if line.startswith("ERROR")] or lines
+        raise BuildError(f"{failure} (pip: {errors[-1].removeprefix('ERROR: ').strip()})")
+
+
+def _copy(source: Path, target: Path) -> None:
+    """Copy a file or a folder, without what Python compiled."""
+    if source.is_dir():
+        shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
+    else:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        shutil.copyfile(source, target)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

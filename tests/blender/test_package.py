@@ -1,0 +1,349 @@
+"""The zips of `make addon`: reproducible, valid to Blender, and complete in a Blender that has nothing else."""
+
+import importlib.metadata
+import importlib.util
+import json
+import os
+import platform
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core import ResponseNetwork, estimate_response, read_photo
+from ocio.spi1d import read_spi1d
+
+needs_blender = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
+
+MODULE = "bl_ext.user_default.crf_response"
+
+#: Blender's name of this machine.
+PLATFORM = {
+    ("Linux", "x86_64"): "linux-x64",
+    ("Darwin", "arm64"): "macos-arm64",
+    ("Darwin", "x86_64"): "macos-x64",
+    ("Windows", "AMD64"): "windows-x64",
+}.get((platform.system(), platform.machine()))
+
+# One process installs, as a user does by dropping the zip on the window.
+INSTALL = """
+import json, sys
+import bpy
+print(bpy.ops.extensions.package_install_files(filepath=sys.argv[-1], repo="user_default", enable_on_install=True))
+print("FOUND " + json.dumps([addon.module for addon in bpy.context.preferences.addons]))
+"""
+
+# The next process estimates; Blender as a module does not read the preferences, so the add-on is enabled again.
+ESTIMATE = """
+import json, sys
+import bpy
+module, plate, folder = sys.argv[-3:]
+bpy.ops.preferences.addon_enable(module=module)
+image = bpy.data.images.load(plate)
+image.camera_response_settings.apply = "EXPORT"
+image.camera_response_settings.folder = folder
+print(bpy.ops.crf.estimate_response(image=image.name))
+import crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO
+packages = (crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO)
+estimate = crfnet_core.estimate_response(crfnet_core.read_photo(plate), network=crfnet_core.ResponseNetwork.load())
+found = {
+    "files": {package.__name__: package.__file__ for package in packages},
+    "onnxruntime": onnxruntime.__version__,
+    "operator": [list(image["camera_response"]["weights"]), image["camera_response"]["model"]],
+    "api": [list(estimate.weights), estimate.model],
+    "stray": sorted({"shtab", "tqdm", "matplotlib", "google", "flatbuffers"} & set(sys.modules)),
+}
+print("FOUND " + json.dumps(found))
+"""
+
+
+@pytest.fixture(scope="module")
+def builder(root):
+    """blender_addon/build.py as a module; it must load without Blender."""
+    spec = importlib.util.spec_from_file_location("build_addon", root / "blender_addon" / "build.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+@pytest.fixture(scope="module")
+def manifest_text(root):
+    return (root / "blender_addon" / "blender_manifest.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def manifest(manifest_text):
+    return tomllib.loads(manifest_text)
+
+
+@pytest.fixture(scope="module")
+def hashes(root):
+    lines = (root / "blender_addon" / "wheels.sha256").read_text(encoding="utf-8").splitlines()
+    return {name: digest for digest, name in map(str.split, lines)}
+
+
+def names(wheels):
+    return {wheel.removeprefix("./wheels/") for wheel in wheels}
+
+
+def pythons(wheels):
+    return sorted(name.split("-")[2] for name in names(wheels))
+
+
+# The manifest and the builder, without Blender
+
+
+def test_the_version_is_the_projects(root, manifest):
+    version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert manifest["version"] == version
+    assert f"crfnet-{version}-py3-none-any.whl" in names(manifest["wheels"])
+
+
+def test_the_manifest_asks_for_files_only(manifest):
+    assert list(manifest["permissions"]) == ["files"]
+    assert manifest["license"] == ["SPDX:GPL-3.0-or-later"]
+    assert manifest["blender_version_min"] == "4.5.0"
+    assert "blender_version_max" not in manifest
+
+
+def test_every_wheel_has_its_hash(manifest, hashes):
+    ours = {f"crfnet-{manifest['version']}-py3-none-any.whl"}
+    builds_ours = {name for name in hashes if name.startswith("setuptools-")}
+    assert names(manifest["wheels"]) - ours == set(hashes) - builds_ours
+    assert len(builds_ours) == 1
+    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in hashes.values())
+
+
+def test_every_platform_of_the_manifest_is_built(builder, manifest):
+    assert list(builder.WHEEL_PLATFORMS) == manifest["platforms"]
+    assert set().union(*(builder.platform_wheels(manifest["wheels"], name) for name in manifest["platforms"])) == set(
+        manifest["wheels"]
+    )
+
+
+@pytest.mark.parametrize("name", ["linux-x64", "macos-arm64", "windows-x64"])
+def test_a_platform_has_wheels_for_both_pythons(builder, manifest, name):
+    assert pythons(builder.platform_wheels(manifest["wheels"], name)) == ["cp311", "cp313", "py3"]
+
+
+def test_intel_macs_have_one_for_the_last_blender_there(builder, manifest):
+    assert pythons(builder.platform_wheels(manifest["wheels"], "macos-x64")) == ["cp311", "py3"]
+
+
+def test_a_zips_manifest_lists_what_is_in_it(builder, manifest, manifest_text):
+    wheels = ["./wheels/one-1-py3-none-any.whl"]
+    narrowed = tomllib.loads(builder.platform_manifest(manifest_text, "macos-arm64", wheels))
+    assert narrowed == manifest | {"platforms": ["macos-arm64"], "wheels": wheels}
+
+
+def test_a_manifest_without_the_lists_is_refused(builder):
+    with pytest.raises(builder.BuildError, match=r"needs one list `platforms` .* found 0"):
+        builder.platform_manifest('id = "crf_response"\n', "macos-arm64", [])
+
+
+def test_a_zip_depends_on_its_contents_alone(builder, tmp_path):
+    contents = {"b.py": b"two", "a.py": b"one"}
+    builder.write_zip(tmp_path / "first.zip", contents)
+    builder.write_zip(tmp_path / "second.zip", dict(reversed(contents.items())))
+    assert (tmp_path / "first.zip").read_bytes() == (tmp_path / "second.zip").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["first.zip", "second.zip"]
+    with zipfile.ZipFile(tmp_path / "first.zip") as archive:
+        assert {name: archive.read(name) for name in archive.namelist()} == contents
+        assert archive.namelist() == sorted(contents)
+
+
+def test_a_wheel_without_a_hash_is_refused(builder, tmp_path):
+    with pytest.raises(builder.BuildError, match=r"^other-1-py3-none-any.whl: has no line in wheels.sha256"):
+        builder.fetch_wheel("other-1-py3-none-any.whl", tmp_path)
+
+
+def test_a_download_with_another_hash_is_refused(builder, hashes, tmp_path, monkeypatch):
+    name = next(iter(hashes))
+    monkeypatch.setattr(builder, "_download", lambda name, folder: (folder / name).write_bytes(b"tampered with"))
+    with pytest.raises(builder.BuildError, match=f"{re.escape(name)}: the download has SHA-256"):
+        builder.fetch_wheel(name, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_damaged_file_in_the_cache_is_downloaded_again(builder, tmp_path, monkeypatch):
+    good = b"as published"
+    monkeypatch.setattr(
+        builder, "_expected_hashes", lambda: {"one-1-py3-none-any.whl": builder.hashlib.sha256(good).hexdigest()}
+    )
+    monkeypatch.setattr(builder, "_download", lambda name, folder: (folder / name).write_bytes(good))
+    (tmp_path / "one-1-py3-none-any.whl").write_bytes(b"cut sho")
+    assert builder.fetch_wheel("one-1-py3-none-any.whl", tmp_path).read_bytes() == good
+
+
+def test_no_network_is_one_line(root, tmp_path):
+    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(tmp_path), "PIP_CONFIG_FILE": os.devnull}
+    command = [sys.executable, str(root / "blender_addon" / "build.py"), "--out", str(tmp_path / "out")]
+    command += ["--cache", str(tmp_path / "cache")]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.fullmatch(r"setuptools-\S+: cannot be downloaded; check the network \(pip: .*\)\n", done.stderr)
+    assert not (tmp_path / "out").exists()
+
+
+# The zip of this machine, in Blender
+
+
+def build(root, out, umask):
+    """The zip of this machine's platform, built by the command that make runs."""
+    if PLATFORM is None:
+        pytest.skip(f"no zip is made for {platform.system()} on {platform.machine()}")
+    command = [sys.executable, str(root / "blender_addon" / "build.py"), "--platform", PLATFORM, "--out", str(out)]
+    done = subprocess.run(command, capture_output=True, text=True, umask=umask, check=False)
+    if "cannot be downloaded" in done.stderr:
+        pytest.skip(done.stderr.strip())
+    assert done.returncode == 0, done.stderr
+    (path,) = out.iterdir()
+    return path
+
+
+@pytest.fixture(scope="module")
+def package(root, tmp_path_factory):
+    return build(root, tmp_path_factory.mktemp("dist"), umask=0o022)
+
+
+def bpy_requirements(name="bpy"):
+    """Names of the installed distributions that `name` needs, itself included."""
+    try:
+        needed = importlib.metadata.requires(name) or []
+    except importlib.metadata.PackageNotFoundError:
+        return set()
+    return {name}.union(*(bpy_requirements(re.match(r"[\w.-]+", line)[0]) for line in needed if "extra ==" not in line))
+
+
+@pytest.fixture(scope="module")
+def bare_python(tmp_path_factory):
+    """Python of an environment that holds bpy and what it requires: links to those of this one, nothing else."""
+    folder = tmp_path_factory.mktemp("bare")
+    subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
+    (packages,) = folder.glob("lib/python*/site-packages")
+    for name in bpy_requirements():
+        distribution = importlib.metadata.distribution(name)
+        for top in {file.parts[0] for file in distribution.files} - {"..", "__pycache__"}:
+            (packages / top).symlink_to(distribution.locate_file(top))
+    assert not any((packages / name).exists() for name in ("onnxruntime", "OpenImageIO", "PyOpenColorIO"))
+    return folder / "bin" / "python"
+
+
+def run_blender(python, user, script, *arguments):
+    """What a script found out in a Blender whose user folder is `user`."""
+    environment = {**os.environ, "BLENDER_USER_RESOURCES": str(user)}
+    for name in ("OCIO", "BLENDER_OCIO"):
+        environment.pop(name, None)
+    command = [str(python), "-I", "-c", script, *map(str, arguments)]
+    done = subprocess.run(command, env=environment, cwd=user, capture_output=True, text=True, timeout=80, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+    assert "Policy violation" not in done.stdout + done.stderr
+    return json.loads(next(line for line in done.stdout.splitlines() if line.startswith("FOUND "))[6:])
+
+
+@pytest.fixture(scope="module")
+def user(tmp_path_factory):
+    """An empty folder for everything that Blender keeps of a user."""
+    return tmp_path_factory.mktemp("user")
+
+
+@pytest.fixture(scope="module")
+def look(tmp_path_factory):
+    """The folder that the operator exports to."""
+    return tmp_path_factory.mktemp("look")
+
+
+@pytest.fixture(scope="module")
+def addons(package, bare_python, user):
+    """The add-ons that are enabled in the session that installs the zip."""
+    return run_blender(bare_python, user, INSTALL, package)
+
+
+@pytest.fixture(scope="module")
+def found(addons, bare_python, user, plate, look):
+    """What the next session found out."""
+    return run_blender(bare_python, user, ESTIMATE, MODULE, plate, look)
+
+
+@needs_blender
+def test_the_same_sources_give_the_same_bytes(root, package, tmp_path):
+    again = build(root, tmp_path / "again", umask=0o077)
+    assert again.name == package.name
+    assert again.read_bytes() == package.read_bytes()
+
+
+@needs_blender
+def test_the_zip_holds_the_add_on_and_its_wheels(root, package, builder):
+    modules = {path.relative_to(root / "blender_addon").as_posix() for path in builder.shipped_files()}
+    with zipfile.ZipFile(package) as archive:
+        inside = tomllib.loads(archive.read("blender_manifest.toml").decode())
+        wheels = {wheel.removeprefix("./") for wheel in inside["wheels"]}
+        assert set(archive.namelist()) == modules | wheels | {"blender_manifest.toml"}
+    assert inside["platforms"] == [PLATFORM]
+    assert {"__init__.py", "LICENSE"} <= modules
+    assert "build.py" not in modules
+
+
+@needs_blender
+def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
+    with zipfile.ZipFile(package) as archive:
+        wheel = archive.extract(f"wheels/crfnet-{manifest['version']}-py3-none-any.whl", tmp_path)
+    with zipfile.ZipFile(wheel) as archive:
+        inside = archive.namelist()
+    tops = {name.partition("/")[0] for name in inside}
+    assert tops == {"crfnet_core", "ocio", f"crfnet-{manifest['version']}.dist-info"}
+    assert "crfnet_core/data/emor.npz" in inside
+    assert [name for name in inside if re.fullmatch("crfnet_core/models/[^/]+/model.(onnx|json)", name)]
+
+
+@needs_blender
+def test_blender_finds_nothing_wrong_with_it(package):
+    (scripts,) = Path(importlib.util.find_spec("bpy").origin).parent.glob("*/scripts")
+    command = [sys.executable, str(scripts / "addons_core/bl_pkg/cli/blender_ext.py"), "validate", str(package)]
+    command += [f"--valid-tags={scripts / 'modules/_bpy_internal/extensions/tags.py'}"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+@needs_blender
+def test_it_is_installed_and_enabled(addons):
+    assert MODULE in addons
+
+
+@needs_blender
+def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
+    site_packages = user / "extensions" / ".local" / "lib"
+    for name in ("crfnet_core", "ocio", "onnxruntime"):
+        assert site_packages in Path(found["files"][name]).parents, found["files"][name]
+    for name in ("OpenImageIO", "PyOpenColorIO"):
+        assert "bpy" in Path(found["files"][name]).parts, found["files"][name]
+    assert any(f"/onnxruntime-{found['onnxruntime']}-cp" in name for name in zipfile.ZipFile(package).namelist())
+    assert found["stray"] == []
+
+
+@needs_blender
+def test_the_operators_estimate_is_that_of_the_api(found, tolerance):
+    (weights, model), (api_weights, api_model) = found["operator"], found["api"]
+    assert model == api_model
+    np.testing.assert_allclose(weights, api_weights, atol=tolerance.exact)
+
+
+@needs_blender
+def test_the_bundled_onnxruntime_agrees_with_this_one(found, plate, tolerance):
+    here = estimate_response(read_photo(plate), network=ResponseNetwork.load())
+    np.testing.assert_allclose(found["api"][0], here.weights, atol=tolerance.parity)
+
+
+@needs_blender
+def test_the_exported_lut_is_the_inverse_response(found, look, plate, tolerance):
+    (path,) = look.glob("*.spi1d")
+    here = estimate_response(read_photo(plate), network=ResponseNetwork.load())
+    brightness = np.linspace(0, 1, 256)
+    np.testing.assert_allclose(
+        read_spi1d(path).apply(brightness), here.curve.inverse(brightness), atol=tolerance.parity
+    )
