@@ -7,12 +7,15 @@ import sys
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
 from ocio.cli import main
+
+if TYPE_CHECKING:
+    from crfnet_core.response import ResponseCurve
 
 
 @dataclass(frozen=True)
@@ -53,8 +56,10 @@ def plate(root) -> Path:
 
 
 @pytest.fixture(scope="session")
-def true_response(root) -> ResponseCurve:
+def true_response(root) -> "ResponseCurve":
     """The response through which the bundled photograph was made."""
+    from crfnet_core.response import ResponseCurve  # not earlier: in Blender, its own OpenImageIO has to come first
+
     table = np.loadtxt(root / "tests" / "data" / "plate_response.csv", delimiter=",", skiprows=1)
     return ResponseCurve.from_samples(table[:, 1])
 

@@ -1,0 +1,279 @@
+"""The operator's estimate is the API's, kept in the .blend file, for every kind of plate; errors are one sentence."""
+
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+EDITORS = {"IMAGE_EDITOR": "image", "CLIP_EDITOR": "clip"}
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+def stored(datablock):
+    from blender_addon.storage import restored
+
+    return restored(datablock)
+
+
+def assert_equal(found, expected):
+    """Two estimates are the same, number by number."""
+    for name in ("spread", "uncertainty", "verdict", "warnings", "model", "photos"):
+        assert getattr(found, name) == getattr(expected, name), name
+    for name in ("weights", "band"):
+        np.testing.assert_array_equal(getattr(found, name), getattr(expected, name))
+    np.testing.assert_array_equal(found.curve.brightness, expected.curve.brightness)
+    assert len(found.windows) == len(expected.windows)
+    for one, other in zip(found.windows, expected.windows, strict=True):
+        assert (one.photo, one.window, one.expected_error, one.kept) == (
+            other.photo,
+            other.window,
+            other.expected_error,
+            other.kept,
+        )
+        np.testing.assert_array_equal(one.weights, other.weights)
+
+
+def test_enabled_and_disabled_twice(addon):
+    import addon_utils
+
+    for _ in range(2):
+        addon_utils.disable("blender_addon")
+        assert not hasattr(bpy.types.Image, "camera_response_settings")
+        assert not hasattr(bpy.types, "CRF_OT_estimate_response")
+        addon_utils.enable("blender_addon")
+        assert hasattr(bpy.types, "CRF_OT_estimate_response")
+
+
+def test_the_estimate_is_the_apis(image, plate_file, estimate):
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert_equal(stored(image), estimate(plate_file))
+
+
+def test_with_the_packaged_model(addon, plate):
+    from crfnet_core import ResponseNetwork, estimate_response, read_photo
+    from crfnet_core.network import DEFAULT_MODEL
+
+    if not DEFAULT_MODEL.is_dir():
+        pytest.skip("the packaged model is not there")
+    addon.model = ""
+    image = bpy.data.images.load(str(plate))
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert_equal(stored(image), estimate_response(read_photo(plate), network=ResponseNetwork.load()))
+
+
+def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
+    bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+    image = bpy.data.images["plate.png"]
+    assert_equal(stored(image), estimate(plate_file))
+    assert image.camera_response_settings.exposure == 0.5
+    plate_file.rename(plate_file.with_name("gone.png"))
+    with pytest.raises(RuntimeError, match="there is no such file"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_undo_takes_everything_back(image):
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    bpy.ops.ed.undo_push(message="estimate")
+    assert "Camera Response plate" in bpy.data.node_groups
+    bpy.ops.ed.undo()
+    image = bpy.data.images["plate.png"]
+    assert "camera_response" not in image
+    assert image.colorspace_settings.name == "sRGB"
+    assert not [group for group in bpy.data.node_groups if group.name.startswith("Camera")]
+    bpy.ops.ed.redo()
+    assert "camera_response" in bpy.data.images["plate.png"]
+
+
+@pytest.mark.parametrize("editor", EDITORS)
+def test_from_the_editors(image, plate_file, in_editor, editor):
+    with in_editor(editor) as space:
+        assert not bpy.ops.crf.estimate_response.poll()
+        datablock = image if editor == "IMAGE_EDITOR" else bpy.data.movieclips.load(str(plate_file))
+        setattr(space, EDITORS[editor], datablock)
+        assert bpy.ops.crf.estimate_response.poll()
+        assert not bpy.ops.crf.apply_response.poll()
+        assert bpy.ops.crf.estimate_response("INVOKE_DEFAULT", apply="NODES") == {"FINISHED"}  # no interface: execute
+        assert bpy.ops.crf.apply_response.poll()
+    assert "camera_response" in datablock
+
+
+@pytest.fixture
+def sequence(tmp_path, files, codes):
+    """Three frames of a sequence, and the second is missing."""
+    for number in (7, 9, 10):
+        files.write(tmp_path / f"shot.{number:04d}.png", np.roll(codes, number, axis=0))
+    return tmp_path / "shot.0007.png"
+
+
+def load_sequence(kind, path):
+    if kind == "clip":
+        return bpy.data.movieclips.load(str(path))
+    image = bpy.data.images.load(str(path))
+    image.source = "SEQUENCE"
+    return image
+
+
+@pytest.mark.parametrize("kind", ["image", "clip"])
+def test_a_sequence(addon, sequence, files, codes, estimate, kind):
+    datablock = load_sequence(kind, sequence)
+    assert bpy.ops.crf.estimate_response(**{kind: datablock.name}, apply="BAKE", depth="float") == {"FINISHED"}
+    frames = [sequence.with_name(f"shot.{number:04d}.png") for number in (7, 9, 10)]
+    expected = estimate(*frames)
+    assert_equal(stored(datablock), expected)
+    linear = sorted(path.name for path in sequence.parent.glob("*.exr"))
+    assert linear == ["shot_linear.0007.exr", "shot_linear.0009.exr", "shot_linear.0010.exr"]
+    pixels = files.read(sequence.with_name("shot_linear.0010.exr"))
+    assert np.abs(pixels - expected.curve.inverse(np.roll(codes, 10, axis=0) / 255)).max() < 1e-6
+    collection = bpy.data.images if kind == "image" else bpy.data.movieclips
+    baked = collection["shot_linear.0007.exr"]
+    assert baked.source == "SEQUENCE"
+    assert baked.colorspace_settings.name == "Linear Rec.709"
+
+
+def test_a_packed_image(image, plate_file, estimate):
+    expected = estimate(plate_file)
+    image.pack()
+    plate_file.unlink()
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert_equal(stored(image), expected)
+    with pytest.raises(RuntimeError, match="choose one under Folder"):
+        bpy.ops.crf.apply_response(image=image.name, apply="BAKE")
+
+
+@pytest.mark.parametrize("color_space", ["sRGB", "Non-Color"])
+def test_a_generated_image(addon, codes, estimate, tmp_path, files, color_space):
+    """Its pixels are code values, whatever its colour space."""
+    image = bpy.data.images.new("painted", 256, 256)
+    image.colorspace_settings.name = color_space
+    pixels = np.ones((256, 256, 4), np.float32)
+    pixels[..., :3] = codes[::-1] / 255
+    image.pixels.foreach_set(pixels.ravel())
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert_equal(stored(image), estimate(files.write(tmp_path / "painted.png", codes)))
+
+
+def test_gray_anchor(image, plate_file, codes, files, estimate):
+    """What the plate shows at the given brightness becomes 0.18."""
+    bpy.ops.crf.estimate_response(image=image.name, apply="BAKE", anchor="GRAY", gray=100 / 255, depth="float")
+    linear = files.read(plate_file.with_name("plate_linear.exr"))
+    np.testing.assert_allclose(linear[codes == 100], 0.18, rtol=1e-5)
+
+
+@pytest.mark.parametrize("color_space", ["Filmic Log", "AgX Log", "Linear Rec.709", "ACEScg"])
+def test_log_and_linear_color_spaces_are_warned_of(image, color_space):
+    image.colorspace_settings.name = color_space
+    with pytest.raises(RuntimeError, match="is logarithmic or linear"):
+        bpy.ops.crf.estimate_response(image=image.name)
+    assert "camera_response" not in image
+    assert bpy.ops.crf.estimate_response(image=image.name, force=True) == {"FINISHED"}
+
+
+@pytest.mark.parametrize("color_space", ["sRGB", "Non-Color", "Display P3", "Rec.1886", "Rec.2020"])
+def test_other_color_spaces_are_not(image, color_space):
+    image.colorspace_settings.name = color_space
+    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
+
+
+def test_log_metadata_is_warned_of(addon, tmp_path, files, codes):
+    path = files.write(tmp_path / "scan.dpx", codes, dpx__Transfer="Logarithmic")
+    image = bpy.data.images.load(str(path))
+    with pytest.raises(RuntimeError, match=r"calls itself (KodakLog|Logarithmic)"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_a_dpx_that_is_neither(addon, tmp_path, files, codes, estimate):
+    """Blender takes every DPX for linear; its header says otherwise."""
+    path = files.write(tmp_path / "video.dpx", codes)
+    image = bpy.data.images.load(str(path))
+    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
+    assert_equal(stored(image), estimate(path))
+
+
+def test_linear_files_are_refused(addon, tmp_path, files):
+    path = files.write(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32))
+    image = bpy.data.images.load(str(path))
+    with pytest.raises(RuntimeError, match="linear"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_errors_are_one_sentence_and_leave_nothing(addon, tmp_path, files, codes):
+    small = bpy.data.images.load(str(files.write(tmp_path / "small.png", codes[:100])))
+    float_image = bpy.data.images.new("float", 256, 256, float_buffer=True)
+    for name, words in ((small.name, "at least 227 x 227"), (float_image.name, "linear"), ("nothing", "no image")):
+        with pytest.raises(RuntimeError, match=words) as problem:
+            bpy.ops.crf.estimate_response(image=name)
+        assert "Traceback" not in str(problem.value)
+        assert len(str(problem.value).strip().splitlines()) == 1
+    with pytest.raises(RuntimeError, match="has no estimate yet"):
+        bpy.ops.crf.apply_response(image=small.name)
+    with pytest.raises(RuntimeError, match="No plate is active"):
+        bpy.ops.crf.estimate_response()
+    assert not bpy.data.node_groups
+
+
+def test_a_model_that_is_not_there(image, addon, tmp_path):
+    addon.model = str(tmp_path)
+    with pytest.raises(RuntimeError, match=r"model\.json"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
+MISSING_WHEEL = """
+import sys
+import bpy
+sys.modules["onnxruntime"] = None
+import addon_utils
+assert addon_utils.enable("blender_addon", default_set=True)
+image = bpy.data.images.load(sys.argv[-1])
+try:
+    bpy.ops.crf.estimate_response(image=image.name)
+except RuntimeError as problem:
+    print("FOUND", problem)
+assert "camera_response" not in image
+"""
+
+
+def test_a_missing_wheel_is_told_when_it_is_needed(plate, root, tmp_path):
+    command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(root)!r})\n{MISSING_WHEEL}", str(plate)]
+    done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, cwd=tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "onnxruntime cannot be loaded" in done.stdout
+    assert "Traceback" not in done.stdout + done.stderr
+
+
+def test_enabling_loads_no_estimator(root, tmp_path):
+    code = (
+        f"import sys; sys.path.insert(0, {str(root)!r}); import bpy, addon_utils;"
+        " assert addon_utils.enable('blender_addon', default_set=True);"
+        " print({'onnxruntime', 'crfnet_core', 'ocio', 'PyOpenColorIO', 'OpenImageIO'} & set(sys.modules))"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=tmp_path)
+    assert done.stdout.strip().endswith("set()"), done.stdout + done.stderr
+
+
+def test_blenders_own_libraries_are_used():
+    import PyOpenColorIO
+
+    assert "bpy" in PyOpenColorIO.__file__
+
+
+def test_the_preferences_agree_with_the_estimator(addon):
+    from ocio.lut import DEFAULT_LENGTH
+
+    assert addon.lut_length == DEFAULT_LENGTH
+    assert addon.apply == "NODES"
+    addon.apply = "EXPORT"
+    image = bpy.data.images.new("new", 8, 8)
+    assert image.camera_response_settings.apply == "EXPORT"
+    image.camera_response_settings.apply = "BAKE"
+    addon.apply = "NODES"
+    assert image.camera_response_settings.apply == "BAKE"

@@ -1,0 +1,202 @@
+"""The modal path, with its timer driven by hand: progress, Esc, errors; and the task beneath it."""
+
+import time
+from types import SimpleNamespace
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
+ESC = SimpleNamespace(type="ESC", value="PRESS")
+MOUSE = SimpleNamespace(type="MOUSEMOVE", value="NOTHING")
+
+
+class Interface:
+    """Stands for the context of an interactive session, and records what an operator does to it."""
+
+    def __init__(self):
+        self.window = object()
+        self.window_manager = self.workspace = self
+        self.space_data = None
+        self.scene = bpy.context.scene
+        self.timers, self.status, self.progress, self.handlers = [], [], [], []
+
+    def event_timer_add(self, seconds, *, window):
+        self.timers.append(seconds)
+        return seconds
+
+    def event_timer_remove(self, timer):
+        self.timers.remove(timer)
+
+    def modal_handler_add(self, operator):
+        self.handlers.append(operator)
+
+    def status_text_set(self, text):
+        self.status.append(text)
+
+    def progress_begin(self, first, last):
+        self.progress.append(first)
+
+    def progress_update(self, share):
+        self.progress.append(share)
+
+    def progress_end(self):
+        self.progress.append(None)
+
+
+@pytest.fixture
+def interface(addon):
+    return Interface()
+
+
+@pytest.fixture
+def operator(addon):
+    """An operator of the class that Blender registered, without Blender's part: properties and reports."""
+    from blender_addon.operators import PlateOperator
+
+    class Driven(PlateOperator):
+        def __init__(self, image, **choices):
+            self.image, self.clip, self.reports = image, "", []
+            vars(self).update(choices)
+            self.properties = SimpleNamespace(is_property_set=lambda name: name in choices)
+
+        def report(self, kind, text):
+            self.reports.append((*kind, text))
+
+    return Driven
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+def drive(operator, interface, seconds=60):
+    """Send timer events until the operator ends; return how it ended."""
+    deadline = time.monotonic() + seconds
+    while time.monotonic() < deadline:
+        ended = operator.modal(interface, TIMER)
+        if ended != {"PASS_THROUGH"}:
+            return ended
+        time.sleep(0.01)
+    raise AssertionError("the operator did not end")
+
+
+def test_runs_to_its_end(operator, interface, image, plate_file, estimate):
+    from blender_addon.storage import restored
+
+    run = operator(image.name, apply="NODES")
+    assert run.invoke(interface, None) == {"RUNNING_MODAL"}
+    assert interface.handlers == [run]
+    assert "camera_response" not in image  # nothing happens in Blender before it has succeeded
+    assert run.modal(interface, MOUSE) == {"PASS_THROUGH"}
+    assert drive(run, interface) == {"FINISHED"}
+    assert restored(image).uncertainty == estimate(plate_file).uncertainty
+    assert run.reports[0][0] == "INFO"
+    assert interface.timers == []
+    assert interface.status[-1] is None
+    assert "Esc" in interface.status[0]
+    assert interface.progress[-1] is None
+
+
+def test_esc_cancels_and_changes_nothing(operator, interface, image):
+    run = operator(image.name, apply="NODES")
+    run.invoke(interface, None)
+    assert run.modal(interface, ESC) == {"RUNNING_MODAL"}
+    assert drive(run, interface) == {"CANCELLED"}
+    assert run.reports == [("WARNING", "Cancelled; nothing was changed")]
+    assert "camera_response" not in image
+    assert not bpy.data.node_groups
+    assert interface.timers == []
+    assert interface.status[-1] is None
+
+
+def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, files, codes, monkeypatch):
+    for number in range(8):
+        files.write(tmp_path / f"shot.{number:04d}.png", codes)
+    image = bpy.data.images.load(str(tmp_path / "shot.0000.png"))
+    image.source = "SEQUENCE"
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    run = operator(image.name, apply="BAKE")
+    run.is_estimated = True
+    run.invoke(interface, None)
+    deadline = time.monotonic() + 30
+    while not list(tmp_path.glob("*.exr")) and run._task.is_running and time.monotonic() < deadline:
+        time.sleep(0.001)
+    run.modal(interface, ESC)
+    assert drive(run, interface) == {"CANCELLED"}
+    assert not list(tmp_path.glob("*.exr"))
+    assert image.camera_response_settings.apply == "NODES"
+
+
+def test_errors_are_reported_once(operator, interface, image, plate_file):
+    run = operator(image.name, apply="NODES")
+    plate_file.write_bytes(b"no picture")
+    run.invoke(interface, None)
+    assert drive(run, interface) == {"CANCELLED"}
+    ((kind, text),) = run.reports
+    assert kind == "ERROR"
+    assert "plate.png" in text
+    assert interface.timers == []
+
+
+def test_a_plate_that_is_removed_meanwhile(operator, interface, image):
+    run = operator(image.name, apply="NODES")
+    run.invoke(interface, None)
+    bpy.data.images.remove(image)
+    assert drive(run, interface) == {"CANCELLED"}
+    assert "removed meanwhile" in run.reports[0][1]
+    assert not bpy.data.node_groups
+
+
+def test_an_error_before_the_start_leaves_no_timer(operator, interface):
+    run = operator("nothing")
+    assert run.invoke(interface, None) == {"CANCELLED"}
+    assert interface.timers == interface.handlers == []
+
+
+def test_closing_blender_stops_the_run(operator, interface, image):
+    run = operator(image.name, apply="NODES")
+    run.invoke(interface, None)
+    run.cancel(interface)
+    assert interface.timers == []
+    run._task.wait(30)
+    assert not run._task.is_running
+
+
+def test_the_network_is_loaded_once(addon, image, monkeypatch):
+    from blender_addon import libraries
+
+    pipeline = libraries.load("pipeline")
+    loads, load = [], pipeline.ResponseNetwork.load
+    monkeypatch.setattr(
+        pipeline.ResponseNetwork, "load", lambda *args, **options: loads.append(1) or load(*args, **options)
+    )
+    pipeline._network.cache_clear()
+    for _ in range(3):
+        bpy.ops.crf.estimate_response(image=image.name)
+    assert loads == [1]
+
+
+def test_task():
+    from blender_addon.errors import CancelledError
+    from blender_addon.task import Task
+
+    task = Task(lambda progress: progress(1, 2) or "found")
+    task.start()
+    task.wait(10)
+    assert (task.result(), task.done, task.total, task.is_running) == ("found", 1, 2, False)
+
+    task = Task(lambda progress: 1 / 0)
+    task.start()
+    task.wait(10)
+    with pytest.raises(ZeroDivisionError):
+        task.result()
+
+    task = Task(lambda progress: progress(1, 2))
+    task.cancel()
+    task.start()
+    task.wait(10)
+    with pytest.raises(CancelledError):
+        task.result()

@@ -1,0 +1,157 @@
+"""Compositor nodes: rendered to EXR, they give what numpy gives."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+#: Largest differences against numpy: 8-bit plates, and others. In 4.5 it is half a step of the LUT image.
+IS_BILINEAR = bpy.app.version >= (5, 0, 0)
+CODES, FLOATS = 1e-6, 4e-5 if IS_BILINEAR else 2.6e-4
+
+
+@pytest.fixture
+def load(addon):
+    """Load a file and estimate; returns the image and its group node."""
+
+    def run(path, **choices):
+        image = bpy.data.images.load(str(path))
+        assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES", **choices) == {"FINISHED"}
+        return image, next(node for node in scene_tree().nodes if node.type == "GROUP")
+
+    return run
+
+
+def scene_tree():
+    scene = bpy.context.scene
+    return scene.compositing_node_group if IS_BILINEAR else scene.node_tree
+
+
+def test_every_8_bit_code(load, composited, plate_file, codes, estimate):
+    _, group = load(plate_file)
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
+
+
+def test_a_16_bit_plate(load, composited, tmp_path, files, estimate):
+    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
+    path = files.write(tmp_path / "deep.png", samples)
+    _, group = load(path)
+    expected = estimate(path).curve.inverse(samples / 65535)
+    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < FLOATS
+
+
+def test_exposure_is_a_socket_in_stops(load, composited, plate_file, codes, estimate):
+    _, group = load(plate_file, exposure=1.5)
+    assert group.inputs["Exposure"].default_value == 1.5
+    expected = estimate(plate_file).curve.inverse(codes / 255) * 2**1.5
+    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 3 * CODES
+
+
+@pytest.mark.parametrize("depth", ["uint8", "uint16"])
+def test_alpha(load, composited, tmp_path, files, codes, estimate, depth):
+    alpha = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
+    stored = np.concatenate([codes, alpha], axis=2).astype(depth) * (257 if depth == "uint16" else 1)
+    path = files.write(tmp_path / "cut_out.png", stored.astype(depth))
+    _, group = load(path)
+    expected = estimate(path).curve.inverse(codes / 255) * (alpha / 255)
+    pixels = composited(group.outputs[0])
+    assert np.abs(pixels[..., 3:] - alpha / 255).max() < CODES
+    assert np.abs(pixels[..., :3] - expected).max() < FLOATS
+
+
+def test_saved_and_opened_again(load, composited, tmp_path, plate_file, codes, estimate):
+    load(plate_file)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
+
+
+@pytest.mark.skipif(not IS_BILINEAR, reason="the working space is the config's before Blender 5.0")
+@pytest.mark.parametrize("space", ["ACEScg", "Linear Rec.2020"])
+def test_another_working_space(load, composited, plate_file, codes, estimate, space):
+    """The EXR, which Blender writes as linear Rec.709 or says otherwise, holds the same light."""
+    import PyOpenColorIO as OCIO
+
+    from blender_addon.color_management import running_config
+
+    _, group = load(plate_file)
+    bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=False)
+    try:
+        pixels = np.ascontiguousarray(composited(group.outputs[0])[..., :3])
+    finally:
+        bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
+    config = OCIO.Config.CreateFromFile(running_config())
+    config.getProcessor(space, "Linear Rec.709").getDefaultCPUProcessor().applyRGB(pixels)
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    assert np.abs(pixels - expected).max() < 5e-6
+
+
+def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate_file):
+    image = bpy.data.images.load(str(plate_file))
+    tree = new_tree()
+    plate, blur = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeBlur")
+    plate.image = image
+    tree.links.new(plate.outputs["Image"], blur.inputs["Image"])
+    for exposure in (0, 1):  # the second time it is only brought up to date
+        bpy.ops.crf.estimate_response(image=image.name, apply="NODES", exposure=exposure)
+        (group,) = (node for node in tree.nodes if node.type == "GROUP")
+        assert blur.inputs["Image"].links[0].from_node == group
+        assert group.inputs["Image"].links[0].from_node == plate
+        assert group.inputs["Exposure"].default_value == exposure
+        assert [g.name for g in bpy.data.node_groups if g.name.startswith("Camera")] == ["Camera Response plate"]
+        assert len([image for image in bpy.data.images if image.name.startswith("Camera")]) == 1
+
+
+def test_a_new_compositor_hands_the_render_through(load, plate_file):
+    load(plate_file)
+    output = next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
+    source = output.inputs[0].links[0].from_node
+    assert source.type == "R_LAYERS" or source.inputs[0].links[0].from_node.type == "R_LAYERS"
+
+
+def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
+    tree = new_tree()
+    node = tree.nodes.new("CompositorNodeImage")
+    node.image = bpy.data.images.load(str(plate_file))
+    tree.nodes.active = node
+    with in_editor("NODE_EDITOR") as space:
+        space.node_tree = tree
+        assert bpy.ops.crf.estimate_response.poll()
+        assert bpy.ops.crf.estimate_response() == {"FINISHED"}
+    assert node.outputs["Image"].links[0].to_node.node_tree.name == "Camera Response plate"
+
+
+def test_a_clip(addon, plate_file, composited, codes, estimate):
+    clip = bpy.data.movieclips.load(str(plate_file))
+    assert bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES") == {"FINISHED"}
+    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
+    assert group.inputs["Image"].links[0].from_node.clip == clip
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
+
+
+def new_tree():
+    """Return the scene's empty compositor tree."""
+    from blender_addon.compositor import compositor_tree
+
+    tree = compositor_tree(bpy.context.scene)
+    tree.nodes.clear()
+    return tree
+
+
+def test_the_frames_of_a_sequence(addon, tmp_path, files, codes, composited, estimate):
+    """A new node shows the file of each frame number on that frame."""
+    frames = {number: np.roll(codes, number, axis=0) for number in (7, 8, 10)}
+    paths = [files.write(tmp_path / f"shot.{number:04d}.png", pixels) for number, pixels in frames.items()]
+    image = bpy.data.images.load(str(paths[0]))
+    image.source = "SEQUENCE"
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
+    curve = estimate(*paths).curve
+    for number in (10, 8):
+        bpy.context.scene.frame_set(number)
+        expected = curve.inverse(frames[number] / 255)
+        assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES

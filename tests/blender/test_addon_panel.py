@@ -1,0 +1,98 @@
+"""The panel's picture and words."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name)
+    return image
+
+
+class Layout:
+    """Stands for a layout; records what is drawn into it."""
+
+    def __init__(self):
+        self.drawn = []
+
+    def __getattr__(self, name):
+        def draw(*arguments, **options):
+            self.drawn.append((name, *arguments, *options.values()))
+            return self
+
+        return draw
+
+
+class Panel:
+    def __init__(self):
+        self.layout = Layout()
+
+
+@pytest.mark.parametrize("mode", ["NODES", "COLORSPACE", "BAKE", "EXPORT"])
+def test_it_draws_every_mode(image, in_editor, mode):
+    from blender_addon.panels import ResponsePanel
+
+    image.camera_response_settings.apply = mode
+    panel = Panel()
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        ResponsePanel.draw(panel, bpy.context)
+    texts = " ".join(str(part) for entry in panel.layout.drawn for part in entry[1:] if part not in ("NONE", "BLANK1"))
+    words = " ".join(entry[1] for entry in panel.layout.drawn if entry[0] == "label")
+    assert "windows agree" in words
+    assert "E_est" in words
+    assert "crf.apply_response" in texts
+    assert ("overwrite" in texts) == (mode in ("BAKE", "EXPORT"))
+
+
+def test_every_property_that_it_draws_exists(image, in_editor):
+    from blender_addon.panels import ResponsePanel
+
+    panel = Panel()
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        ResponsePanel.draw(panel, bpy.context)
+    for kind, *arguments in panel.layout.drawn:
+        if kind == "prop":
+            assert arguments[1] in arguments[0].bl_rna.properties
+
+
+@pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
+def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
+    from blender_addon.panels import ResponsePanel
+    from blender_addon.plates import OPEN_A_PLATE
+
+    panel = Panel()
+    with in_editor(editor):
+        assert ResponsePanel.poll(bpy.context)
+        ResponsePanel.draw(panel, bpy.context)
+    assert ("label", OPEN_A_PLATE[editor], "INFO") in panel.layout.drawn
+
+
+def test_the_icon_is_drawn_once_per_estimate(image):
+    from blender_addon import panels
+
+    panels.curve_icon(image)
+    panels.curve_icon(image)
+    (preview,) = panels._previews.values()
+    assert tuple(preview.image_size) == (256, 256)
+    assert np.ptp(preview.image_pixels_float[:]) > 0.5
+
+
+def test_the_picture():
+    from blender_addon.curve_image import BACKGROUND, CURVE, MARGIN, SIZE, draw_response
+
+    uniform = np.linspace(0, 1, 1024)
+    picture = draw_response(np.sqrt(uniform), np.clip(np.sqrt(uniform) - 0.1, 0, 1), np.sqrt(uniform))
+    assert picture.shape == (SIZE, SIZE, 4)
+    assert picture.dtype == np.float32
+    assert (picture[..., 3] == 1).all()
+    assert ((picture >= 0) & (picture <= 1)).all()
+    np.testing.assert_allclose(picture[0, 0, :3], BACKGROUND)
+    column = MARGIN + (SIZE - 2 * MARGIN - 1) // 4
+    row = round(MARGIN + np.sqrt((column - MARGIN) / (SIZE - 2 * MARGIN - 1)) * (SIZE - 2 * MARGIN - 1))
+    np.testing.assert_allclose(picture[row, column, :3], CURVE, atol=1e-6)
