@@ -181,14 +181,17 @@ class ResponseNetwork:
         windows : ndarray
             At least one window; not changed.
         progress : callable, optional
-            Called with (done, total) after every window.
+            Called with (done, total) after every window; what it raises stops the run within a window's time.
         """
         rows = []
-        with ThreadPoolExecutor(self._threads) as pool:
+        pool = ThreadPoolExecutor(self._threads)
+        try:
             for number, row in enumerate(pool.map(self._predict_one, windows), start=1):
                 rows.append(row)
                 if progress is not None:
                     progress(number, len(windows))
+        finally:
+            pool.shutdown(cancel_futures=True)
         weights, log_errors = (np.concatenate(column).astype(np.float64) for column in zip(*rows, strict=True))
         return WindowPredictions(weights, np.exp(log_errors))
 

@@ -55,6 +55,18 @@ def test_progress_counts_the_windows(network, golden):
     assert calls == [(1, 3), (2, 3), (3, 3)]
 
 
+def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
+    run, real = [], ResponseNetwork._predict_one
+    monkeypatch.setattr(ResponseNetwork, "_predict_one", lambda self, window: run.append(1) or real(self, window))
+
+    def stop(done, total):
+        raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        network.predict(np.repeat(golden["windows"], 20, axis=0) / np.float32(255), progress=stop)
+    assert len(run) < 60
+
+
 def test_the_windows_are_not_changed(network, golden):
     windows = golden["windows"] / np.float32(255)
     before = windows.copy()
