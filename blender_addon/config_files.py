@@ -17,14 +17,14 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
-from crfnet_core.files import written_whole
+from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.files import write_text_whole
 from ocio.config import PlateColorSpace, add_plate_color_space, write_config
 from ocio.lut import Lut1D
 from ocio.outputs import check_folder, output_folder
 from ocio.spi1d import write_spi1d
 
-CONFIG_NAME = "config.ocio"
+from .color_management import CONFIG_NAME
 
 #: Our folder beside the config.
 FOLDER = "camera_response"
@@ -149,8 +149,9 @@ def _loaded(config: str) -> OCIO.Config:
     try:
         return OCIO.Config.CreateFromFile(config)
     except OCIO.Exception as problem:
-        reason = " ".join(str(problem).split())
-        raise ConfigError(f"{config}: OpenColorIO refuses this config ({reason}); mend it or choose a folder") from None
+        raise ConfigError(
+            f"{config}: OpenColorIO refuses this config ({one_line(problem)}); mend it or choose a folder"
+        ) from None
 
 
 @contextmanager
@@ -217,8 +218,8 @@ def _record(folder: Path) -> Record | None:
 
 def _write_record(folder: Path, record: Record) -> None:
     """Write down what was done."""
-    with written_whole(folder / FOLDER / RECORD_NAME, overwrite=True, error=ConfigError) as temporary:
-        temporary.write_text(json.dumps(asdict(record), indent=1) + "\n", encoding="utf-8", newline="\n")
+    text = json.dumps(asdict(record), indent=1) + "\n"
+    write_text_whole(folder / FOLDER / RECORD_NAME, text, overwrite=True, error=ConfigError)
 
 
 def role_name(config: str, role: str) -> str:

@@ -27,3 +27,8 @@ class ConfigError(CRFNetError):
 
 class PlateError(CRFNetError):
     """A plate or frame sequence that cannot be found, read or written."""
+
+
+def one_line(problem: Exception) -> str:
+    """Return the text of another library's error on one line."""
+    return " ".join(str(problem).split())

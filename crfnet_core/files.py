@@ -82,6 +82,14 @@ def written_whole(
         temporary.unlink(missing_ok=True)
 
 
+def write_text_whole(
+    path: str | Path, text: str, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
+) -> None:
+    """Write `text` as UTF-8, its line ends as they are; options and errors are those of `written_whole`."""
+    with written_whole(path, overwrite=overwrite, error=error) as temporary:
+        temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
 def _umask() -> int:
     """Return the process's file mode creation mask; it can only be read by setting it, so one thread at a time."""
     with _UMASK_LOCK:

@@ -7,7 +7,7 @@ import json
 import os
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import dataclass, fields
+from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,8 @@ from numpy.typing import NDArray
 from onnxruntime.capi import onnxruntime_pybind11_state as refusals
 
 from crfnet_core.emor import COMPONENTS
-from crfnet_core.errors import ModelError
+from crfnet_core.errors import ModelError, one_line
+from crfnet_core.files import write_text_whole
 from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged model that is used unless another is asked for.
@@ -122,6 +123,10 @@ class ModelConfig:
             )
         return config
 
+    def write(self, path: Path) -> None:
+        """Write a model.json that `read` returns again; an existing one is replaced."""
+        write_text_whole(path, json.dumps(asdict(self), indent=2) + "\n", overwrite=True, error=ModelError)
+
     @property
     def label(self) -> str:
         """The model's name and the head of its hash, for provenance."""
@@ -209,8 +214,9 @@ def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.Inf
     try:
         session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
     except _UNLOADABLE as problem:
-        reason = " ".join(str(problem).split())
-        raise ModelError(f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})") from None
+        raise ModelError(
+            f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"
+        ) from None
     found = {node.name for node in (*session.get_inputs(), *session.get_outputs())}
     absent = {config.input_name, *config.output_names} - found
     if absent:

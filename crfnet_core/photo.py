@@ -204,8 +204,12 @@ def _kind(path: Path) -> str:
 
 def _damaged(path: Path, kind: str, problem: str) -> PhotoError:
     """Return the error of a file that cannot be decoded, with the first line of OpenImageIO's message."""
-    reason = problem.strip().partition("\n")[0] or "OpenImageIO gives no reason"
-    return PhotoError(f"{path}: this {kind} file is damaged or cut short ({reason}); copy it again")
+    return PhotoError(f"{path}: this {kind} file is damaged or cut short ({first_line(problem)}); copy it again")
+
+
+def first_line(problem: str) -> str:
+    """Return the first line of an OpenImageIO message."""
+    return problem.strip().partition("\n")[0] or "OpenImageIO gives no reason"
 
 
 def _linear(kind: str) -> str:

@@ -18,7 +18,7 @@ from xml.sax.saxutils import escape
 import numpy as np
 
 from crfnet_core.errors import LutError
-from crfnet_core.files import written_whole
+from crfnet_core.files import write_text_whole
 from ocio.lut import Lut1D
 from ocio.lut_text import LutText
 
@@ -55,8 +55,7 @@ def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     lines += [f'    <LUT1D {depth} interpolation="linear">', f'        <Array dim="{lut.values.size} 1">']
     lines += [f"{value:.9g}" for value in lut.values.tolist()]
     lines += ["        </Array>", "    </LUT1D>", "</ProcessList>", ""]
-    with written_whole(path, overwrite=overwrite, error=LutError) as temporary:
-        temporary.write_text("\n".join(lines), encoding="utf-8", newline="\n")
+    write_text_whole(path, "\n".join(lines), overwrite=overwrite, error=LutError)
 
 
 def read_clf(path: str | Path) -> Lut1D:

@@ -20,7 +20,7 @@ from tqdm import tqdm
 
 from crfnet_core.errors import ModelError, PlateError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.files import written_whole
+from crfnet_core.files import write_text_whole
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo, read_photo
 from ocio import describe
@@ -212,8 +212,7 @@ def _write_sheet(finding: Finding, path: Path, *, overwrite: bool) -> None:
 
 def _write_json(path: Path, document: dict[str, Any], *, overwrite: bool) -> None:
     """Write a JSON document."""
-    with written_whole(path, overwrite=overwrite, error=PlateError) as temporary:
-        temporary.write_text(_json(document), encoding="utf-8", newline="\n")
+    write_text_whole(path, _json(document), overwrite=overwrite, error=PlateError)
 
 
 def _json(document: dict[str, Any]) -> str:

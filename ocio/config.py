@@ -16,7 +16,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import NDArray
 
-from crfnet_core.errors import ConfigError
+from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.files import written_whole
 from ocio.lut import Lut1D
 
@@ -134,7 +134,7 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
             rules.insertRule(0, space.name, space.name, _rule_regex(space.file_pattern))
             config.setFileRules(rules)
     except OCIO.Exception as problem:
-        raise ConfigError(f"{space.name}: cannot be added to the config ({_one_line(problem)})") from problem
+        raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
     folders = [folder for folder in config.getSearchPaths() if folder not in ("", ".")]
     config.clearSearchPaths()
     for folder in (*folders, "."):
@@ -171,7 +171,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
             for name, lut in check.items():
                 _check_conversion(loaded, name, lut)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
-        raise ConfigError(f"{path}: not written, OpenColorIO refuses it ({_one_line(problem)})") from problem
+        raise ConfigError(f"{path}: not written, OpenColorIO refuses it ({one_line(problem)})") from problem
 
 
 def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
@@ -267,8 +267,3 @@ def _converted(config: OCIO.Config, source: str, target: str, values: NDArray[np
     pixels = np.repeat(values.astype(np.float32), 3)
     config.getProcessor(source, target).getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
     return pixels[::3]
-
-
-def _one_line(problem: Exception) -> str:
-    """Return the text of OpenColorIO's error on one line."""
-    return " ".join(str(problem).split())

@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from crfnet_core.errors import LutError
-from crfnet_core.files import written_whole
+from crfnet_core.files import write_text_whole
 from ocio.lut import Lut1D
 from ocio.lut_text import LutText
 
@@ -37,8 +37,7 @@ def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None
     if lut.domain != (0.0, 1.0):
         lines += [f"DOMAIN_MIN {low:.9g} {low:.9g} {low:.9g}", f"DOMAIN_MAX {high:.9g} {high:.9g} {high:.9g}"]
     lines += [f"{value:.9g} {value:.9g} {value:.9g}" for value in lut.values.tolist()]
-    with written_whole(path, overwrite=overwrite, error=LutError) as temporary:
-        temporary.write_text("\n".join([*lines, ""]), encoding="utf-8", newline="\n")
+    write_text_whole(path, "\n".join([*lines, ""]), overwrite=overwrite, error=LutError)
 
 
 def read_cube(path: str | Path) -> Lut1D:

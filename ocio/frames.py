@@ -14,7 +14,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
-from crfnet_core.photo import MAX_PIXELS, read_codes
+from crfnet_core.photo import MAX_PIXELS, first_line, read_codes
 
 #: Frames that a specification or a sequence with its gaps may span; more is a mistake.
 MAX_FRAMES = 1_000_000
@@ -297,8 +297,3 @@ def _span(files: Iterable[int], path: Path) -> Sequence[int]:
     if numbers[-1] - numbers[0] > MAX_FRAMES:
         raise PlateError(f"{path}: frames {numbers[0]} to {numbers[-1]} are too far apart; say which frames to use")
     return range(numbers[0], numbers[-1] + 1)
-
-
-def first_line(problem: str) -> str:
-    """Return the first line of an OpenImageIO message."""
-    return problem.strip().partition("\n")[0] or "OpenImageIO gives no reason"

@@ -18,19 +18,16 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError, PlateError
 from crfnet_core.files import check_target, written_whole
+from crfnet_core.photo import first_line
 from ocio.frames import (
     EncodedFrame,
     FramePattern,
     FrameSequence,
     find_frames,
-    first_line,
     format_frames,
     read_frame,
-    sample_frames,
 )
 from ocio.lut import Lut1D
-
-__all__ = ["PlateReport", "find_frames", "linearize_plates", "sample_frames"]
 
 #: What a linear plate says of its colours: linear, with the primaries of the plate, which are taken as Rec.709.
 COLOR_INTEROP_ID = "lin_rec709_scene"

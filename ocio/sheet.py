@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import written_whole
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response import SAMPLES, ResponseCurve, srgb_encoded
 from crfnet_core.windows import Window
 from ocio.describe import agreeing, brightness_percent
 
@@ -158,9 +158,7 @@ def _outline(window: Window, *, kept: bool, width: float, color: str) -> Rectang
 
 def _draw_linear(axes: Axes, preview: Pixels, curve: ResponseCurve) -> None:
     """Show the linear plate as a viewer with an sRGB display shows it."""
-    linear = curve.inverse(preview)
-    encoded = np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-    _show(axes, encoded.astype(np.float32), 1, "Linear plate, in an sRGB view")
+    _show(axes, srgb_encoded(curve.inverse(preview)).astype(np.float32), 1, "Linear plate, in an sRGB view")
 
 
 def _show(axes: Axes, pixels: Pixels, stride: int, title: str) -> None:

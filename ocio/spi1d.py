@@ -8,7 +8,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from crfnet_core.errors import LutError
-from crfnet_core.files import written_whole
+from crfnet_core.files import write_text_whole
 from ocio.lut import Lut1D
 from ocio.lut_text import LutText
 
@@ -34,8 +34,7 @@ def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> Non
     head = [f"# {comment}" for comment in lut.comments]
     head += ["Version 1", f"From {low:.9g} {high:.9g}", f"Length {lut.values.size}", "Components 1", "{"]
     lines = [*head, *(f"  {value:.9g}" for value in lut.values.tolist()), "}", ""]
-    with written_whole(path, overwrite=overwrite, error=LutError) as temporary:
-        temporary.write_text("\n".join(lines), encoding="utf-8", newline="\n")
+    write_text_whole(path, "\n".join(lines), overwrite=overwrite, error=LutError)
 
 
 def read_spi1d(path: str | Path) -> Lut1D:

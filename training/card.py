@@ -11,8 +11,9 @@ from dataclasses import asdict, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.files import written_whole
+from crfnet_core.files import write_text_whole
 from crfnet_core.network import ModelConfig
+from training.scenes import VALIDATION_SCENES
 
 INTRODUCTION = """# {name}
 
@@ -48,7 +49,7 @@ def card(folder: Path, config: ModelConfig, real: dict[str, Any]) -> str:
     """Return the model card."""
     entries = asdict(config) | asdict(config.calibration)
     entries["size"] = (folder / "model.onnx").stat().st_size / 1e6
-    entries["calibration_scenes"] = 12
+    entries["calibration_scenes"] = VALIDATION_SCENES
     p0, p4 = config.accuracy["P0"], config.accuracy["P4"]
     rows = [f"| {name} | {figure} | {p4[name]} |" for name, figure in p0.items()]
     cameras = [
@@ -82,11 +83,10 @@ def main() -> None:
     p0, real = (json.loads(path.read_text()) for path in (options.p0, options.real))
     config = ModelConfig.read(options.model / "model.json")
     config = replace(config, accuracy={"P0": p0["summary"], "P4": real["summary"]})
-    with written_whole(options.model / "model.json", overwrite=True) as temporary:
-        temporary.write_text(json.dumps(asdict(config), indent=2) + "\n")
-    with written_whole(options.model / "README.md", overwrite=True) as temporary:
-        temporary.write_text(card(options.model, config, real))
-    print((options.model / "README.md").read_text())
+    config.write(options.model / "model.json")
+    text = card(options.model, config, real)
+    write_text_whole(options.model / "README.md", text, overwrite=True)
+    print(text)
 
 
 if __name__ == "__main__":

@@ -10,7 +10,7 @@ import numpy as np
 import scipy.io
 from scipy.interpolate import PchipInterpolator
 
-from crfnet_core.response import SAMPLES
+from crfnet_core.response import SAMPLES, srgb_encoded
 
 IRRADIANCE = np.linspace(0, 1, SAMPLES)
 
@@ -36,11 +36,6 @@ def camera_response(base: PchipInterpolator, headroom: float) -> np.ndarray:
     """Return f(E) = sRGB(curve(min(1, s E))) / f(1), shape (1024,)."""
     encoded = srgb_encoded(np.clip(base(np.minimum(1, headroom * IRRADIANCE)), 0, 1))
     return encoded / encoded[-1]
-
-
-def srgb_encoded(linear: np.ndarray) -> np.ndarray:
-    """Return the sRGB opto-electronic transfer function (IEC 61966-2-1) of values in [0, 1]."""
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * np.maximum(linear, 1e-9) ** (1 / 2.4) - 0.055)
 
 
 @dataclass(frozen=True)

@@ -17,8 +17,8 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.files import written_whole
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.files import write_text_whole, written_whole
+from crfnet_core.response import SAMPLES, ResponseCurve, srgb_encoded
 
 Floats = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def camera_response(irradiance: Floats) -> Floats:
         Relative irradiance E in [0, 1], any shape.
     """
     rolled = ROLL_OFF * irradiance / (1 + (ROLL_OFF - 1) * irradiance)
-    encoded: Floats = np.where(rolled <= 0.0031308, 12.92 * rolled, 1.055 * rolled ** (1 / 2.4) - 0.055)
+    encoded = srgb_encoded(rolled)
     return (1 - CONTRAST) * encoded + CONTRAST * encoded**2 * (3 - 2 * encoded)
 
 
@@ -95,9 +95,8 @@ def write_photograph(path: Path, pixels: NDArray[np.uint8]) -> None:
 def write_response(path: Path, curve: ResponseCurve) -> None:
     """Write irradiance and brightness as CSV, one row per sample."""
     rows = zip(np.linspace(0, 1, SAMPLES), curve.brightness, strict=True)
-    with written_whole(path, overwrite=True, error=PhotoError) as temporary:
-        lines = ["irradiance,brightness", *(f"{e:.9g},{b:.9g}" for e, b in rows)]
-        temporary.write_text("\n".join(lines) + "\n", encoding="ascii", newline="\n")
+    lines = ["irradiance,brightness", *(f"{e:.9g},{b:.9g}" for e, b in rows), ""]
+    write_text_whole(path, "\n".join(lines), overwrite=True, error=PhotoError)
 
 
 def main() -> None:

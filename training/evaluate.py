@@ -15,6 +15,7 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
+from scipy.stats import spearmanr
 from tqdm import tqdm
 
 from crfnet_core.estimate import ResponseEstimate, estimate_response
@@ -166,7 +167,7 @@ def summary(cases: list[Case]) -> dict[str, float]:
         "E_lin ratio": ratio_to_gamma(linear, gamma_linear),
         "E_lin win rate": win_rate(linear, gamma_linear),
         "uncertainty mean": column["uncertainty"].mean(),
-        "uncertainty rank correlation": _rank_correlation(column["uncertainty"], error),
+        "uncertainty rank correlation": spearmanr(column["uncertainty"], error).statistic,
         "band coverage": column["band_coverage"].mean(),
     }
     return {"photographs": len(cases)} | {name: round(float(figure), 4) for name, figure in figures.items()}
@@ -185,12 +186,6 @@ def by_group(cases: list[Case]) -> dict[str, dict[str, float]]:
         }
         for group, members in chosen.items()
     }
-
-
-def _rank_correlation(first: np.ndarray, second: np.ndarray) -> float:
-    """Return Spearman's correlation of two columns without ties."""
-    ranks = [np.argsort(np.argsort(column)) for column in (first, second)]
-    return float(np.corrcoef(*ranks)[0, 1])
 
 
 def main() -> None:

@@ -7,7 +7,7 @@ import hashlib
 import json
 import subprocess
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict, replace
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -67,10 +67,10 @@ def export_onnx(network: WindowNetwork, path: Path) -> None:
         program.save(temporary)
 
 
-def write_config(folder: Path, name: str, calibration: Calibration, accuracy: dict[str, object]) -> ModelConfig:
-    """Write model.json for the model.onnx in `folder` and return what it says."""
+def write_config(folder: Path, calibration: Calibration) -> None:
+    """Write model.json for the model.onnx in `folder`, whose name is the model's; `training.card` adds the figures."""
     config = ModelConfig(
-        name=name,
+        name=folder.name,
         sha256=hashlib.sha256((folder / "model.onnx").read_bytes()).hexdigest(),
         basis="emor",
         components=COMPONENTS,
@@ -81,11 +81,9 @@ def write_config(folder: Path, name: str, calibration: Calibration, accuracy: di
         opset=OPSET,
         training_commit=_commit(),
         calibration=calibration,
-        accuracy=accuracy,
+        accuracy={},
     )
-    with written_whole(folder / "model.json", overwrite=True) as temporary:
-        temporary.write_text(json.dumps(asdict(config), indent=2) + "\n")
-    return config
+    config.write(folder / "model.json")
 
 
 def write_golden(network: WindowNetwork, plate: Path, path: Path) -> None:
@@ -119,10 +117,8 @@ def calibration_rows(data: Path, folder: Path, number: int) -> np.ndarray:
     for _ in range(CALIBRATION_PHOTOS):
         curve = source.curves.draw(rng)
         exposure = automatic_exposure(curve, source.luminance) * rng.uniform(0.5, 1.6)
-        capture = replace(Capture.draw(rng), blur=0.0)
-        estimate = estimate_response(
-            synthetic_photo(source.scenes[number], curve, exposure, rng, capture), network=network
-        )
+        photo = synthetic_photo(source.scenes[number], curve, exposure, rng, Capture.draw(rng))
+        estimate = estimate_response(photo, network=network)
         true = ResponseCurve.from_samples(curve)
         residual = np.abs(true.brightness - estimate.curve.brightness)
         rows.append([estimation_error(true, estimate.curve), estimate.uncertainty, estimate.spread, *residual])
@@ -165,11 +161,11 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     network = load_network(options.run)
     export_onnx(network, options.out / "model.onnx")
-    write_config(options.out, options.out.name, UNCALIBRATED, {})
+    write_config(options.out, UNCALIBRATED)
     write_golden(network, options.plate, options.golden)
     print(f"torch and onnxruntime differ by at most {assert_parity(options.out, options.golden):.1e}")
     calibration = calibrated(options.data, options.out, workers=options.workers)
-    write_config(options.out, options.out.name, calibration, {})
+    write_config(options.out, calibration)
     print(f"wrote {options.out}: {calibration}")
 
 

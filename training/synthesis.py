@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 from PIL import Image
@@ -83,7 +83,7 @@ def responded(irradiance: np.ndarray, curve: np.ndarray) -> np.ndarray:
 
 
 def photographed(irradiance: np.ndarray, curve: np.ndarray, capture: Capture, rng: np.random.Generator) -> np.ndarray:
-    """Return the 8-bit photograph, uint8 (H, W, 3), of exposed irradiance (H, W, 3)."""
+    """Return the 8-bit photograph, uint8 (H, W, 3), of exposed irradiance (H, W, 3), which is blurred already."""
     if capture.shot_noise or capture.read_noise:
         spread = np.sqrt(capture.shot_noise * irradiance + capture.read_noise**2)
         irradiance = irradiance + spread * rng.standard_normal(irradiance.shape, dtype=np.float32)
@@ -136,8 +136,7 @@ class WindowSource:
     def _photograph(self, piece: np.ndarray, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarray]:
         """Return the window that a random camera makes of the piece, and the camera's response."""
         curve, capture = self.curves.draw(rng), Capture.draw(rng)
-        if capture.blur:
-            piece, capture = blurred(piece, capture.blur), replace(capture, blur=0.0)
+        piece = blurred(piece, capture.blur) if capture.blur else piece
         return photographed(piece * np.float32(self._exposure(piece, curve, rng)), curve, capture, rng), curve
 
     def _exposure(self, piece: np.ndarray, curve: np.ndarray, rng: np.random.Generator) -> float:

@@ -3,7 +3,8 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from training.curves import CurveSource, camera_response, read_base_curves, srgb_encoded
+from crfnet_core.response import srgb_encoded
+from training.curves import CurveSource, camera_response, read_base_curves
 
 UNIFORM = np.linspace(0, 1, 1024)
 

@@ -33,7 +33,7 @@ def exported(tmp_path_factory, root):
     (folder / "run" / "config.json").write_text(json.dumps({"network": asdict(CONFIG)}))
     network = load_network(folder / "run")
     export_onnx(network, folder / "model" / "model.onnx")
-    write_config(folder / "model", "model", UNCALIBRATED, {})
+    write_config(folder / "model", UNCALIBRATED)
     write_golden(network, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
     return folder
 
