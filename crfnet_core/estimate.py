@@ -10,10 +10,10 @@ from numpy.typing import NDArray
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import Calibration, ResponseNetwork
+from crfnet_core.network import Calibration, Pooled, ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.windows import Window, cut_windows, select_windows
+from crfnet_core.windows import FULL_COVERAGE, Window, cut_windows, select_windows
 
 #: A window is an outlier when its estimate lies farther than this many median distances from the median estimate.
 OUTLIER_FACTOR = 2.0
@@ -42,7 +42,7 @@ class WindowEstimate:
     expected_error : float
         The E_est that the network expects of it.
     kept : bool
-        Whether it entered the average, or was an outlier.
+        Whether it agrees with the others; an outlier enters no average of a network that does not pool by itself.
     """
 
     photo: int
@@ -102,12 +102,13 @@ def estimate_response(
     network: ResponseNetwork,
     windows: int = 10,
     seed: int = 0,
+    coverage: int = FULL_COVERAGE,
     progress: Callable[[int, int], None] | None = None,
 ) -> ResponseEstimate:
     """Estimate the response of the camera that took one or several photographs.
 
-    Every window gets an estimate of its own; those far from the others are removed and the rest averaged, as in the
-    CRF-net paper. The windows of several photographs are pooled.
+    The network pools the windows of all photographs into one response. Where it cannot, as that of the CRF-net paper,
+    every window's own estimate counts: those far from the others are removed and the rest averaged.
 
     Parameters
     ----------
@@ -119,6 +120,8 @@ def estimate_response(
         Windows of each photograph.
     seed : int
         Of the choice of windows.
+    coverage : int
+        Code values, of 256, that a window should hold; see `select_windows`.
     progress : callable, optional
         Called with (done, total) after every window.
 
@@ -127,22 +130,23 @@ def estimate_response(
     PhotoError
         If there is no photograph, or one is smaller than a window.
     """
-    evidence = [_evidence(photo, windows, seed) for photo in ((photos,) if isinstance(photos, Photo) else photos)]
+    photos = (photos,) if isinstance(photos, Photo) else photos
+    evidence = [_evidence(photo, windows, seed, coverage) for photo in photos]
     if not evidence:
         raise PhotoError("there is no photograph to analyse; give at least one")
     chosen = [(i, window) for i, part in enumerate(evidence) for window in part.windows]
     samples = np.concatenate([part.samples for part in evidence])
     predictions = network.predict(samples, progress=progress)
     kept = inliers(predictions.weights)
-    weights = predictions.weights[kept].mean(axis=0)
-    spread = float(np.sqrt(np.mean(np.sum((predictions.weights[kept] - weights) ** 2, axis=1))))
+    average = Pooled(predictions.weights[kept].mean(axis=0), float(predictions.expected_errors[kept].mean()))
+    pooled = predictions.pooled or average
+    spread = float(np.sqrt(np.mean(np.sum((predictions.weights[kept] - average.weights) ** 2, axis=1))))
     calibration = network.config.calibration
-    expected = float(predictions.expected_errors[kept].mean())
-    uncertainty = calibration.base + calibration.of_predicted * expected + calibration.of_spread * spread
-    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(weights))
+    uncertainty = calibration.uncertainty(pooled.expected_error, spread)
+    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(pooled.weights))
     return ResponseEstimate(
         curve=curve,
-        weights=weights,
+        weights=pooled.weights,
         windows=tuple(
             WindowEstimate(i, window, predictions.weights[n], float(predictions.expected_errors[n]), bool(kept[n]))
             for n, (i, window) in enumerate(chosen)
@@ -184,10 +188,10 @@ class _Evidence:
     samples: NDArray[np.float32]
 
 
-def _evidence(photo: Photo, count: int, seed: int) -> _Evidence:
+def _evidence(photo: Photo, count: int, seed: int, coverage: int) -> _Evidence:
     """Return the windows of one photograph; an error names its file."""
     try:
-        windows = select_windows(photo.pixels, count=count, seed=seed)
+        windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
     return _Evidence(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))

@@ -19,6 +19,7 @@ from onnxruntime.capi import onnxruntime_pybind11_state as refusals
 from crfnet_core.emor import COMPONENTS
 from crfnet_core.errors import ModelError, one_line
 from crfnet_core.files import write_text_whole
+from crfnet_core.statistics import window_statistics
 from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged model that is used unless another is asked for.
@@ -43,8 +44,9 @@ class Calibration:
     Parameters
     ----------
     base, of_predicted, of_spread : float
-        The uncertainty, in units of E_est, is base + of_predicted * (mean error that the network expects of the kept
-        windows) + of_spread * (RMS distance of the kept windows' estimates from their mean).
+        The uncertainty, in units of E_est, is base + of_predicted * (the error that the network expects of the whole,
+        or without pooling the mean over the kept windows) + of_spread * (RMS distance of the kept windows' estimates
+        from their mean).
     band_profile : tuple of float
         The shape of the 90 % band: its half-width per unit of uncertainty at uniform irradiances from 0 to 1.
     """
@@ -53,6 +55,10 @@ class Calibration:
     of_predicted: float
     of_spread: float
     band_profile: tuple[float, ...]
+
+    def uncertainty(self, expected_error: float, spread: float) -> float:
+        """Return the uncertainty in units of E_est."""
+        return self.base + self.of_predicted * expected_error + self.of_spread * spread
 
 
 @dataclass(frozen=True)
@@ -72,15 +78,19 @@ class ModelConfig:
     window_size : int
         Side of a window in samples.
     input_name : str
-        Windows, float32 (N, 227, 227, 3).
+        "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, STATISTICS): see
+        `crfnet_core.statistics.window_statistics`.
     output_names : tuple of str
-        EMoR weights (N, 11) and the logarithm of the expected E_est (N,).
+        Of each window, EMoR weights (N, 11) and the logarithm of the expected E_est (N,); of a network that pools its
+        windows, then the same of all of them together, (1, 11) and (1,).
     normalisation : str
         What the input holds, in words.
     opset : int
         Of the ONNX graph.
     training_commit : str
         The commit of this project that trained it.
+    training : dict
+        What it has seen: "scene_kinds", and "held_out_curves", the DoRF curves that it has not.
     calibration : Calibration
         From window estimates to an uncertainty.
     accuracy : dict
@@ -97,6 +107,7 @@ class ModelConfig:
     normalisation: str
     opset: int
     training_commit: str
+    training: dict[str, Any]
     calibration: Calibration
     accuracy: dict[str, Any]
 
@@ -128,17 +139,31 @@ class ModelConfig:
         write_text_whole(path, json.dumps(asdict(self), indent=2) + "\n", overwrite=True, error=ModelError)
 
     @property
+    def reads_statistics(self) -> bool:
+        """Whether the network reads the statistics of windows rather than their samples."""
+        return self.input_name == "statistics"
+
+    @property
     def label(self) -> str:
         """The model's name and the head of its hash, for provenance."""
         return f"{self.name} {self.sha256[:12]}"
 
 
 @dataclass(frozen=True)
+class Pooled:
+    """What a network that pools says of all windows together: EMoR weights (11,) and the E_est it expects."""
+
+    weights: Floats
+    expected_error: float
+
+
+@dataclass(frozen=True)
 class WindowPredictions:
-    """What the network says of N windows: EMoR weights (N, 11) and the E_est it expects of each (N,)."""
+    """What the network says of N windows: EMoR weights (N, 11), the E_est it expects of each (N,), and of all."""
 
     weights: Floats
     expected_errors: Floats
+    pooled: Pooled | None = None
 
 
 class ResponseNetwork:
@@ -179,7 +204,7 @@ class ResponseNetwork:
     ) -> WindowPredictions:
         """Return the predictions for `windows`, float32 (N, 227, 227, 3), code values in [0, 1].
 
-        Each window is a run of its own, so that its working set stays in a core's cache; the threads share them out.
+        Windows are prepared one by one, so that the working set stays in a core's cache; the threads share them out.
 
         Parameters
         ----------
@@ -188,21 +213,27 @@ class ResponseNetwork:
         progress : callable, optional
             Called with (done, total) after every window; what it raises stops the run within a window's time.
         """
-        rows = []
+        of_window = window_statistics if self.config.reads_statistics else self._run
+        rows: list[Any] = []
         pool = ThreadPoolExecutor(self._threads)
         try:
-            for number, row in enumerate(pool.map(self._predict_one, windows), start=1):
+            for number, row in enumerate(pool.map(of_window, windows), start=1):
                 rows.append(row)
                 if progress is not None:
                     progress(number, len(windows))
         finally:
             pool.shutdown(cancel_futures=True)
-        weights, log_errors = (np.concatenate(column).astype(np.float64) for column in zip(*rows, strict=True))
-        return WindowPredictions(weights, np.exp(log_errors))
+        if self.config.reads_statistics:
+            outputs = self._run(*rows)
+        else:
+            outputs = [np.concatenate(column) for column in zip(*rows, strict=True)]
+        weights, log_errors, *pooled = (output.astype(np.float64) for output in outputs)
+        whole = Pooled(pooled[0][0], float(np.exp(pooled[1][0]))) if pooled else None
+        return WindowPredictions(weights, np.exp(log_errors), whole)
 
-    def _predict_one(self, window: NDArray[np.float32]) -> list[NDArray[np.float32]]:
-        """Return the network's outputs for one window, (1, 11) and (1,)."""
-        feed = {self.config.input_name: np.ascontiguousarray(window[None], dtype=np.float32)}
+    def _run(self, *rows: NDArray[np.float32]) -> list[NDArray[np.float32]]:
+        """Return the network's outputs for windows or for their statistics."""
+        feed = {self.config.input_name: np.stack(rows).astype(np.float32, copy=False)}
         outputs: list[NDArray[np.float32]] = self._session.run(list(self.config.output_names), feed)
         return outputs
 

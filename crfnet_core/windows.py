@@ -66,11 +66,13 @@ def filled_bins(samples: Pixels) -> int:
     return int(seen.sum())
 
 
-def select_windows(pixels: Pixels, *, count: int = 10, seed: int = 0, step: int | None = None) -> tuple[Window, ...]:
+def select_windows(
+    pixels: Pixels, *, count: int = 10, seed: int = 0, step: int | None = None, coverage: int = FULL_COVERAGE
+) -> tuple[Window, ...]:
     """Return the windows to analyse, those that cover the range first found.
 
-    Candidates are drawn at random; one is taken when its 256-bin histogram over all channels has at least
-    `FULL_COVERAGE` bins filled. After `MAX_ATTEMPTS` candidates the best-covering of those left make up the number, so
+    Candidates are drawn at random; one is taken when its 256-bin histogram over all channels has at least `coverage`
+    bins filled. After `MAX_ATTEMPTS` candidates the best-covering of those left make up the number, so
     look at `Window.covers_range`.
 
     Parameters
@@ -83,6 +85,8 @@ def select_windows(pixels: Pixels, *, count: int = 10, seed: int = 0, step: int 
         The same seed gives the same windows.
     step : int, optional
         Pixels between samples; by default `sampling_step`.
+    coverage : int
+        Code values, of 256, that a window should hold; 0 takes the first candidates.
 
     Raises
     ------
@@ -101,7 +105,7 @@ def select_windows(pixels: Pixels, *, count: int = 10, seed: int = 0, step: int 
     for x, y in _positions(height, width, step, seed):
         window = Window(x, y, step, 0)
         window = Window(x, y, step, filled_bins(window.cut(pixels)))
-        (chosen if window.covers_range else others).append(window)
+        (chosen if window.filled >= coverage else others).append(window)
         if len(chosen) == count:
             return tuple(chosen)
     others.sort(key=lambda window: -window.filled)

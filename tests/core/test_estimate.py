@@ -8,7 +8,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import band_around, estimate_response, inliers
 from crfnet_core.metrics import estimation_error
-from crfnet_core.network import Calibration, ResponseNetwork, WindowPredictions
+from crfnet_core.network import Calibration, Pooled, ResponseNetwork, WindowPredictions
 from crfnet_core.photo import Photo, read_photo
 from crfnet_core.response import ResponseCurve
 
@@ -18,14 +18,15 @@ CALIBRATION = Calibration(base=0.1, of_predicted=0.5, of_spread=2.0, band_profil
 class FakeNetwork:
     """Answers with given rows, whatever the windows."""
 
-    def __init__(self, rows, errors=None):
+    def __init__(self, rows, errors=None, pooled=None):
+        self.pooled = pooled
         self.rows = np.asarray(rows, dtype=np.float64)
         self.errors = np.ones(len(self.rows)) if errors is None else np.asarray(errors, dtype=np.float64)
         self.config = SimpleNamespace(calibration=CALIBRATION, label="fake 000000000000")
 
     def predict(self, windows, *, progress=None):
         assert windows.shape == (len(self.rows), 227, 227, 3)
-        return WindowPredictions(self.rows, self.errors)
+        return WindowPredictions(self.rows, self.errors, self.pooled)
 
 
 def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg"):
@@ -59,6 +60,26 @@ def test_the_average_leaves_outliers_out():
     expected = ResponseCurve.from_samples(EmorBasis.load().reconstruct(CENTRE))
     assert estimation_error(expected, estimate.curve) < 1e-9
     assert estimate.spread == pytest.approx(np.sqrt(0.04 / 5))
+
+
+def test_a_network_that_pools_has_the_last_word():
+    """Its windows only tell the spread; its own expected error enters the uncertainty."""
+    pooled = Pooled(CENTRE + 1, 0.3)
+    rows = rows_around(CENTRE, [-0.1, 0.1, 7.0, -0.1, 0.1])
+    estimate = estimate_response(photo(), network=FakeNetwork(rows, pooled=pooled), windows=5)
+    np.testing.assert_array_equal(estimate.weights, CENTRE + 1)
+    assert [window.kept for window in estimate.windows] == [True, True, False, True, True]
+    assert estimate.uncertainty == pytest.approx(0.1 + 0.5 * 0.3 + 2.0 * 0.1)
+
+
+def test_the_coverage_asked_for_reaches_the_choice_of_windows():
+    dull = np.full((300, 900, 3), 0.5, np.float32)
+    dull[:, 600:] = photo(shape=(300, 300)).pixels
+    dull = Photo(pixels=dull, bit_depth=8, is_gray=False, path=Path("dull.jpg"))
+    network = FakeNetwork(rows_around(CENTRE, [0.0] * 6))
+    asked, any_window = (estimate_response(dull, network=network, windows=6, coverage=c).windows for c in (220, 0))
+    assert all(found.window.covers_range for found in asked)
+    assert not all(found.window.covers_range for found in any_window)
 
 
 def test_uncertainty_is_the_calibrated_sum():

@@ -56,8 +56,8 @@ def test_progress_counts_the_windows(network, golden):
 
 
 def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
-    run, real = [], ResponseNetwork._predict_one
-    monkeypatch.setattr(ResponseNetwork, "_predict_one", lambda self, window: run.append(1) or real(self, window))
+    run, real = [], ResponseNetwork._run
+    monkeypatch.setattr(ResponseNetwork, "_run", lambda self, window: run.append(1) or real(self, window))
 
     def stop(done, total):
         raise KeyboardInterrupt

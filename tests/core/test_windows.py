@@ -31,6 +31,12 @@ def test_windows_that_cover_the_range_are_preferred(half_flat):
     assert all(window.x + window.extent > 500 for window in windows)
 
 
+def test_any_window_will_do_when_no_coverage_is_asked_for(half_flat):
+    windows = select_windows(half_flat, step=1, count=20, coverage=0)
+    assert not all(window.covers_range for window in windows)
+    assert windows[:3] == select_windows(half_flat, step=1, count=3, coverage=0)
+
+
 def test_filled_counts_the_bins_of_all_channels_together():
     pixels = np.zeros((4, 4, 3), np.float32)
     pixels[0, 0] = [1 / 255, 2 / 255, 1]

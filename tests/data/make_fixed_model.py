@@ -69,6 +69,7 @@ def main() -> None:
         "normalisation": "code value / largest code, in [0, 1]",
         "opset": OPSET,
         "training_commit": "none",
+        "training": {},
         "calibration": {"base": 0.1, "of_predicted": 0.9, "of_spread": 0.5, "band_profile": [0, 0.05, 0.07, 0.05, 0]},
         "accuracy": {},
     }
