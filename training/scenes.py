@@ -9,11 +9,16 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 
+from crfnet_core.errors import CRFNetError
+
 #: Every scene keeps its split for ever: the seed of the shuffle that made it.
 SPLIT_SEED = 2017
 
 #: Scenes held out for figures, and scenes held out to choose and to calibrate.
 TEST_SCENES, VALIDATION_SCENES = 20, 12
+
+#: How the source of a scene begins in manifest.csv that `training.bring` added.
+BROUGHT = "brought:"
 
 #: Luminance weights of linear Rec. 709.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
@@ -28,13 +33,19 @@ class Scene:
     is_panorama: bool
 
 
-def split_scenes(folder: Path) -> dict[str, list[tuple[str, bool]]]:
+def split_scenes(folder: Path, *, brought: bool = True) -> dict[str, list[tuple[str, bool]]]:
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
 
-    A quarter of the perspective photographs is tested, none validates; the rest of each split are panoramas.
+    A quarter of the perspective photographs is tested, none validates; the rest of each split are panoramas. What
+    `training.bring` added only trains, so that bringing scenes moves none of the others; without `brought` it is not
+    listed.
     """
     with (folder / "manifest.csv").open(newline="") as file:
-        scenes = sorted((row["file"], row["kind"] == "panorama band") for row in csv.DictReader(file))
+        rows = list(csv.DictReader(file))
+    own = [row.get("source", "").startswith(BROUGHT) for row in rows]
+    listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
+    scenes = sorted(scene for scene, is_own in zip(listed, own, strict=True) if not is_own)
+    more = sorted(scene for scene, is_own in zip(listed, own, strict=True) if is_own and brought)
     rng = np.random.default_rng(SPLIT_SEED)
     panoramas = [scenes[i] for i in rng.permutation(len(scenes)) if scenes[i][1]]
     photographs = [scene for scene in scenes if not scene[1]]
@@ -44,13 +55,22 @@ def split_scenes(folder: Path) -> dict[str, list[tuple[str, bool]]]:
     return {
         "test": photographs[:held_out] + panoramas[:tested],
         "validation": panoramas[tested : tested + validated],
-        "train": photographs[held_out:] + panoramas[tested + validated :],
+        "train": photographs[held_out:] + panoramas[tested + validated :] + more,
     }
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:
-    """Return the scenes of a split, from the EXR files of `folder`."""
-    return [read_scene(folder / name, is_panorama) for name, is_panorama in split_scenes(folder)[split]]
+    """Return the scenes of a split, from the EXR files of `folder`.
+
+    Raises
+    ------
+    CRFNetError
+        If the split has none.
+    """
+    scenes = split_scenes(folder)[split]
+    if not scenes:
+        raise CRFNetError(f"{folder}: too few scenes, none is left for the split {split}; add to the published ones")
+    return [read_scene(folder / name, is_panorama) for name, is_panorama in scenes]
 
 
 def read_scene(path: Path, is_panorama: bool) -> Scene:
