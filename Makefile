@@ -56,13 +56,12 @@ format: $(DEV)/ready  ## let ruff format and mend what it can
 model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER
 	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
 	$(TRAIN)/bin/python -m training.basis --data $(DATA)
-	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards
-	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/shards --split validation --windows 6000
-	$(TRAIN)/bin/python -m training.train --shards $(RUN)/shards --run $(RUN)
+	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/photos
+	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
+	$(TRAIN)/bin/python -m training.train --shards $(RUN)/photos --run $(RUN)
 	$(TRAIN)/bin/python -m training.export --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
-	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --out $(RUN)/p0.json
-	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --real --out $(RUN)/real.json
-	$(TRAIN)/bin/python -m training.card --model $(MODEL) --p0 $(RUN)/p0.json --real $(RUN)/real.json
+	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --out $(RUN)/evaluation
+	$(TRAIN)/bin/python -m training.card --model $(MODEL) --report $(RUN)/evaluation/report.json
 
 bench: $(PLOT)/ready  ## time and memory of `crfnet estimate` beside oiiotool, 24 megapixels
 	$(PLOT)/bin/python tests/bench.py

@@ -1,0 +1,108 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from training.evaluation.camera import balanced_gains, code_counts, enlarged, light_under, synthetic_photo, taken
+from training.evaluation.plan import CLEAN, COOL, Condition
+from training.scenes import LUMINANCE, Scene
+
+UNIFORM = np.linspace(0, 1, 1024)
+CURVE = UNIFORM ** (1 / 2.2)
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(8)
+
+
+@pytest.fixture
+def scene(rng):
+    y, x = np.mgrid[:60, :90] / 20
+    light = np.exp(np.sin(3 * x) + np.cos(2 * y))[:, :, None] * [1.0, 0.8, 0.6]
+    return Scene("made", light.astype(np.float32), False)
+
+
+def photo_of(scene, condition, rng, exposure=0.2):
+    return taken(light_under(condition, scene, rng), CURVE, exposure, condition, "made", rng)
+
+
+def test_a_clean_photograph_is_the_rounded_response(scene, rng):
+    expected = np.rint(255 * np.interp(0.2 * scene.pixels, UNIFORM, CURVE))
+    photo = photo_of(scene, CLEAN, rng)
+    assert np.abs(255 * photo.pixels - expected).max() <= 1
+    assert (photo.bit_depth, photo.is_gray, photo.path.name) == (8, False, "made")
+    np.testing.assert_array_equal(photo.pixels, synthetic_photo(scene, CURVE, 0.2, rng).pixels)
+
+
+def test_the_factor_is_an_exposure(scene, rng):
+    bright = photo_of(scene, Condition("bright", factor=1.4), rng)
+    np.testing.assert_array_equal(bright.pixels, synthetic_photo(scene, CURVE, 0.2 * 1.4, rng).pixels)
+
+
+def test_noise_has_its_variance_in_codes(rng):
+    gray = Scene("gray", np.full((700, 300, 3), 0.5, np.float32), False)
+    condition = Condition("noise", noise=4.0)
+    codes = 255 * photo_of(gray, condition, rng, exposure=1).pixels
+    assert codes.var() == pytest.approx(4 + 1 / 12, rel=0.01)  # rounding adds a twelfth
+    assert np.corrcoef(codes[:512, :, 0].ravel(), codes[:512, :, 1].ravel())[0, 1] == pytest.approx(0, abs=0.01)
+
+
+def test_gray_is_the_luminance_of_the_light(scene, rng):
+    condition = Condition("gray", is_gray=True)
+    photo, light = photo_of(scene, condition, rng), light_under(condition, scene, rng)
+    assert photo.is_gray
+    assert (np.ptp(photo.pixels, axis=2) == 0).all()
+    np.testing.assert_allclose(light[:, :, 0], scene.pixels @ LUMINANCE, rtol=1e-6)
+
+
+def test_gains_keep_the_luminance_of_a_neutral():
+    gains = balanced_gains(COOL)
+    assert gains @ LUMINANCE == pytest.approx(1)
+    assert gains[2] / gains[0] == pytest.approx(1.7 / 0.6)
+
+
+def test_enlarging_is_cubic(rng):
+    ramp = np.repeat(np.linspace(0, 1, 40, dtype=np.float32)[None, :, None], 3, axis=2).repeat(30, axis=0)
+    large = enlarged(ramp, 4)
+    assert large.shape == (120, 160, 3)
+    np.testing.assert_allclose(np.diff(large[60, 12:-12, 0]), 1 / 39 / 4, rtol=0.01)  # a ramp stays one
+    edge = np.zeros((20, 20, 3), np.float32)
+    edge[:, 10:] = 1
+    large = enlarged(edge, 2)
+    assert large.max() > 1.02  # cubic overshoots, linear does not
+    assert large.min() == 0
+
+
+def test_blur_keeps_the_mean_and_smooths(scene, rng):
+    soft = light_under(Condition("blur", blur=4.0), scene, rng)
+    assert soft.mean() == pytest.approx(scene.pixels.mean(), rel=0.02)
+    assert np.abs(np.diff(soft, axis=1)).mean() < np.abs(np.diff(scene.pixels, axis=1)).mean()
+    dot = np.zeros((41, 41, 3), np.float32)
+    dot[20, 20] = 1
+    spread = light_under(Condition("blur", blur=4.0), Scene("dot", dot, False), rng)[:, :, 0]
+    assert (spread.sum(axis=0) * (np.arange(41) - 20) ** 2).sum() == pytest.approx(4, rel=0.05)
+
+
+def test_jpeg_is_lossy_and_lossier_at_low_quality(rng):
+    noise = Scene("noise", rng.uniform(0, 1, (64, 64, 3)).astype(np.float32), False)
+    clean = photo_of(noise, CLEAN, rng, exposure=1).pixels
+    far = [
+        np.abs(photo_of(noise, Condition("j", jpeg_quality=q), rng, exposure=1).pixels - clean).mean() for q in (95, 50)
+    ]
+    assert 0.01 < far[0] < far[1]
+
+
+def test_nothing_writes_into_the_scene(scene, rng):
+    before = scene.pixels.copy()
+    for condition in (CLEAN, Condition("all", 0.8, 2, True, 1.0, 1.0, COOL, 75)):
+        photo_of(scene, condition, rng)
+    np.testing.assert_array_equal(scene.pixels, before)
+
+
+def test_codes_are_counted_over_all_channels(scene, rng):
+    photo = photo_of(scene, CLEAN, rng)
+    counts = code_counts(photo)
+    assert counts.sum() == photo.pixels.size
+    assert counts[255] == (photo.pixels == 1).sum()

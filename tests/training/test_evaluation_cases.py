@@ -1,0 +1,68 @@
+import json
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.metrics import estimation_error, linearisation_error
+from crfnet_core.response import ResponseCurve
+from training.evaluation.cases import CaseFile, code_digest, errors
+
+SETTINGS = {"seed": 1, "sha256": "abc"}
+
+
+def kept(path, code="c"):
+    cases = CaseFile.opened(path, SETTINGS, code)
+    cases.rows = {f"photograph {k}": {"model": {"estimation": k / 8, "curve": [0.0, k]}} for k in range(3)}
+    cases.save()
+    return cases
+
+
+def test_cases_come_back_in_the_order_asked_for(tmp_path):
+    kept(tmp_path / "model" / "p0.json")
+    cases = CaseFile.opened(tmp_path / "model" / "p0.json", SETTINGS, "c")
+    columns = cases.columns(["photograph 2", "photograph 0"])["model"]
+    assert columns["estimation"].tolist() == [0.25, 0.0]
+    assert columns["curve"].tolist() == [[0.0, 2.0], [0.0, 0.0]]
+    assert not cases.is_of_other_code
+
+
+def test_cases_of_other_settings_are_not_read(tmp_path):
+    kept(tmp_path / "p0.json")
+    assert CaseFile.opened(tmp_path / "p0.json", SETTINGS | {"sha256": "other"}, "c").rows == {}
+
+
+def test_cases_of_other_code_are_read_but_marked_for_ever(tmp_path):
+    kept(tmp_path / "p0.json")
+    changed = CaseFile.opened(tmp_path / "p0.json", SETTINGS, "d")
+    assert changed.is_of_other_code
+    assert len(changed.rows) == 3
+    changed.save()
+    assert json.loads((tmp_path / "p0.json").read_text())["code"] == "mixed"
+    assert CaseFile.opened(tmp_path / "p0.json", SETTINGS, "d").is_of_other_code
+
+
+def test_absent_photographs_are_named(tmp_path):
+    with pytest.raises(CRFNetError, match="1 photographs are absent, the first: photograph 9"):
+        kept(tmp_path / "p0.json").columns(["photograph 0", "photograph 9"])
+
+
+def test_errors_are_those_of_the_metrics():
+    true, guess = ResponseCurve.gamma(1.8), ResponseCurve.gamma(2.2)
+    counts = np.arange(256)
+    found = errors(true, guess, counts)
+    codes = np.arange(256) / 255
+    assert found["estimation"] == pytest.approx(estimation_error(true, guess), abs=1e-6)
+    assert found["linearisation"] == pytest.approx(linearisation_error(codes, true, guess, counts=counts), abs=1e-6)
+    lower = np.linspace(0, 1, 1024) <= 0.8 + 1e-3
+    gap = true.brightness - guess.brightness
+    assert found["partial"] == pytest.approx(np.linalg.norm(gap[lower]), abs=1e-3)
+    assert found["partial"] < found["estimation"]
+
+
+def test_the_digest_of_the_code_is_stable():
+    assert code_digest() == code_digest()
+    assert len(code_digest()) == 16

@@ -1,0 +1,70 @@
+from collections import Counter
+
+import pytest
+
+pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from crfnet_core.errors import CRFNetError
+from training.evaluation.plan import CLEAN, CONDITIONS, PLAIN, TRIALS, Condition, balanced, plain_shots, stress_shots
+
+
+@pytest.mark.parametrize(("scenes", "curves"), [(20, 201), (20, 40), (5, 13), (6, 4), (1, 3)])
+def test_all_photographs_are_every_scene_with_every_curve(scenes, curves):
+    cells = balanced(range(scenes), range(curves), count=10_000, seed=1)
+    assert {(scene, curve) for scene, curve, _ in cells} == {(s, c) for s in range(scenes) for c in range(curves)}
+    assert len(cells) == scenes * curves
+
+
+def test_the_five_exposures_are_shared_out_equally():
+    cells = balanced(range(20), range(201), count=10_000, seed=2017)
+    assert Counter(factor for *_, factor in cells) == {0.6: 804, 0.8: 804, 1.0: 804, 1.2: 804, 1.4: 804}
+    for position in (0, 1):
+        shares = Counter((cell[position], cell[2]) for cell in cells)
+        assert max(shares.values()) - min(shares.values()) <= 2
+
+
+@pytest.mark.parametrize("count", [40, 200, 1000])
+def test_every_part_is_balanced(count):
+    cells = balanced(range(20), range(201), count=count, seed=2017)
+    for position, kinds in ((0, 20), (1, 201), (2, 5)):
+        shares = Counter(cell[position] for cell in cells)
+        assert len(shares) == min(kinds, count)
+        assert max(shares.values()) - min(shares.values()) <= 1
+
+
+def test_a_smaller_part_is_the_beginning_of_a_larger_one_and_seeds_differ():
+    large = balanced(range(20), range(201), count=100, seed=2017)
+    assert balanced(range(20), range(201), count=40, seed=2017) == large[:40]
+    assert balanced(range(20), range(201), count=100, seed=1) != large
+
+
+def test_no_photographs_are_refused():
+    with pytest.raises(CRFNetError, match="must be 1 or more, found 0"):
+        balanced([0], [0], count=0, seed=1)
+
+
+def test_every_photograph_has_a_label_of_its_own():
+    shots = stress_shots(range(5), range(13), count=5, seed=1)
+    labels = {shot.label for shot in shots + plain_shots(range(5), range(13), count=65, seed=1)}
+    same = 1  # of the 5 clean ones of P3, the one that P0 takes at exposure 1 as well
+    assert len(labels) == len(shots) + 65 - same
+    assert "scene 1, curve 2, exposure 0.6, clean" in {shot.label for shot in plain_shots([1], [2], count=1, seed=1)}
+
+
+def test_every_condition_and_trial_has_the_same_photographs():
+    shots = stress_shots(range(20), range(201), count=40, seed=3)
+    assert len(shots) == 40 * (len(CONDITIONS) + len(TRIALS)) == 40 * (22 + 11)
+    cells = {(shot.scene, shot.curve) for shot in shots}
+    assert len(cells) == 40
+    assert all(shot.condition == CLEAN for shot in shots if shot.trial != PLAIN)
+
+
+def test_pooling_asks_for_no_more_scenes_than_there_are():
+    assert {shot.trial.pooled for shot in stress_shots(range(5), range(3), count=5, seed=1)} == {1, 2, 4}
+
+
+def test_conditions_that_differ_behind_the_lens_share_their_light():
+    noisy, dark = Condition("noise", noise=2.0), Condition("dark", factor=0.6)
+    assert noisy.light == dark.light == CLEAN.light
+    assert Condition("blur", blur=2.0).light != CLEAN.light

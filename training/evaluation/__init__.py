@@ -1,0 +1,5 @@
+"""Measure models against responses that are known; `training.evaluate` is the command.
+
+`plan` says which photographs are taken, `material` and `camera` take them, `measure` asks every model and baseline for
+the response, `cases` keeps the errors, `tables` sums them up, `markdown` and `figures` show them.
+"""

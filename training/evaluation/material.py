@@ -1,0 +1,131 @@
+"""What photographs are taken of and with: scenes, responses, and the exposure s_crf of each response."""
+
+from __future__ import annotations
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from scipy.stats import norm
+
+from crfnet_core.emor import EmorBasis
+from crfnet_core.response import SAMPLES, ResponseCurve, srgb_encoded
+from training.curves import read_dorf
+from training.lights import LIGHTS, LIGHTS_FOLDER, read_light
+from training.scenes import Scene, read_scene, split_scenes
+from training.splits import checked_splits
+from training.synthesis import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
+
+#: Spread of the log-normal luminance, in stops, that sets the exposures where there are no training scenes: about that
+#: of the training scenes, each scaled to a geometric mean of 1.
+REFERENCE_STOPS = 2.0
+
+IRRADIANCE = np.linspace(0, 1, SAMPLES)
+
+
+@dataclass(frozen=True)
+class SceneFile:
+    """A scene on disk; `kind` is "panorama" or "photograph", and `is_light` one of Blender's studio lights."""
+
+    name: str
+    kind: str
+    path: Path
+    is_light: bool = False
+
+    def read(self) -> Scene:
+        """Return the scene."""
+        return read_light(self.path) if self.is_light else read_scene(self.path, self.kind == "panorama")
+
+
+@dataclass(frozen=True, eq=False)
+class Material:
+    """Scenes that no model was trained on, and responses.
+
+    Parameters
+    ----------
+    scenes : tuple of SceneFile
+        The test scenes.
+    curves : ndarray, shape (N, 1024)
+        True responses.
+    curve_names : tuple of str
+        Their N names.
+    held_out : tuple of int
+        The curves that P2 holds out; empty where there is no such split.
+    data : Path, optional
+        The folder of the data; None for the bundled material.
+    """
+
+    scenes: tuple[SceneFile, ...]
+    curves: np.ndarray
+    curve_names: tuple[str, ...]
+    held_out: tuple[int, ...] = ()
+    data: Path | None = None
+
+    def exposures(self) -> np.ndarray:
+        """Return s_crf of every curve, shape (N,): it belongs to the curve and not to the photograph."""
+        luminance = log_normal_luminance() if self.data is None else training_luminance(self.data)
+        return np.array([automatic_exposure(curve, luminance) for curve in self.curves])
+
+    @property
+    def digest(self) -> str:
+        """A short hash of the scenes' names, the responses and the rule of exposure."""
+        names = "\n".join([*(scene.name for scene in self.scenes), f"{TARGET_BRIGHTNESS:g}"])
+        return hashlib.sha256(names.encode() + np.round(self.curves, 6).tobytes()).hexdigest()[:16]
+
+
+def dorf_material(data: Path) -> Material:
+    """Return the test scenes of the folder `data` and the 201 responses of DoRF.
+
+    Raises
+    ------
+    CRFNetError
+        If the data is split otherwise than training/splits.json says.
+    """
+    held_out = checked_splits(data)["held_out_curves"]
+    curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    files = split_scenes(data / "linear", brought=False)["test"]
+    scenes = tuple(
+        SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
+        for name, is_panorama in files
+    )
+    return Material(scenes, curves, tuple(f"DoRF {k}" for k in range(len(curves))), tuple(held_out), data)
+
+
+def bundled_material(lights: Path = LIGHTS_FOLDER) -> Material:
+    """Return Blender's studio lights and responses made from formulas: what the repository itself holds."""
+    scenes = tuple(SceneFile(Path(light.file).stem, "panorama", lights / light.file, True) for light in LIGHTS)
+    named = formula_curves()
+    return Material(scenes, np.stack(list(named.values())), tuple(named))
+
+
+def formula_curves() -> dict[str, np.ndarray]:
+    """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
+    basis, encoded = EmorBasis.load(), srgb_encoded(IRRADIANCE)
+    steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
+    samples = {f"gamma {power:g}": IRRADIANCE ** (1 / power) for power in (1.4, 1.8, 2.6)}
+    samples |= {f"log {a:g}": np.log1p(a * IRRADIANCE) for a in (8, 60)}
+    samples |= {"sRGB": encoded, "Rec.709": rec709_encoded(IRRADIANCE), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
+    for name, weights in steps.items():
+        samples[f"EMoR {name}"] = basis.reconstruct(np.pad(np.array(weights, dtype=float), (0, 11 - len(weights))))
+    return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}
+
+
+def rec709_encoded(linear: np.ndarray) -> np.ndarray:
+    """Return the transfer function of ITU-R BT.709 of linear values in [0, 1], of the same shape."""
+    return np.where(linear < 0.018, 4.5 * linear, 1.099 * linear**0.45 - 0.099)
+
+
+def training_luminance(data: Path) -> np.ndarray:
+    """Return luminances of the training scenes of the folder `data`, without those that were brought later.
+
+    So the test photographs stay the same when training gets more scenes.
+    """
+    files = split_scenes(data / "linear", brought=False)["train"]
+    return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
+
+
+def log_normal_luminance(size: int = 4096) -> np.ndarray:
+    """Return evenly spread quantiles, float32 (size,), of a log-normal luminance with a geometric mean of 1."""
+    quantiles = norm.ppf((np.arange(size) + 0.5) / size)
+    return np.exp2(REFERENCE_STOPS * quantiles).astype(np.float32)

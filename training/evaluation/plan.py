@@ -1,0 +1,176 @@
+"""Which photographs are taken: scene, curve, exposure and condition of every one, balanced and seeded."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crfnet_core.errors import CRFNetError
+from training.synthesis import EXPOSURE_FACTORS
+
+#: Photographs of P3, each under every condition.
+STRESS_PHOTOGRAPHS = 200
+
+#: Gains in linear light, red to blue, of a camera whose white balance is off by about a stop and a half from red to
+#: blue; scaled by `training.evaluation.camera` so that a neutral keeps its luminance.
+COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
+
+
+@dataclass(frozen=True)
+class Condition:
+    """What is done to a photograph.
+
+    Parameters
+    ----------
+    name : str
+        As in the report.
+    factor : float
+        On the exposure s_crf.
+    upsampling : int
+        Times that the linear scene is enlarged, by cubic interpolation.
+    is_gray : bool
+        Whether all channels hold the luminance of the scene.
+    noise : float
+        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantisation. The paper's Table 3
+        gives no unit; this is our reading of it.
+    blur : float
+        Variance, in squared pixels, of the Gaussian that blurs the linear scene.
+    gains : tuple of float
+        On red, green and blue of the linear scene.
+    jpeg_quality : int, optional
+        Of a JPEG with subsampled chroma.
+    """
+
+    name: str
+    factor: float = 1.0
+    upsampling: int = 1
+    is_gray: bool = False
+    noise: float = 0.0
+    blur: float = 0.0
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    jpeg_quality: int | None = None
+
+    @property
+    def light(self) -> Condition:
+        """The part of the condition that comes before exposure: photographs that share it share the light."""
+        return replace(self, name="", factor=1.0, noise=0.0, jpeg_quality=None)
+
+
+@dataclass(frozen=True)
+class Trial:
+    """How the product is asked about a photograph; None leaves its default.
+
+    Parameters
+    ----------
+    name : str
+        As in the report; that of the plain question is empty.
+    windows : int, optional
+        Windows of each photograph.
+    coverage : int, optional
+        Code values asked of a window; 0 takes random windows.
+    pooled : int
+        Photographs, of as many scenes, given together.
+    averaged : str, optional
+        "kept" or "all": the mean of these windows' weights instead of the product's own answer.
+    """
+
+    name: str = ""
+    windows: int | None = None
+    coverage: int | None = None
+    pooled: int = 1
+    averaged: str | None = None
+
+
+PLAIN = Trial()
+CLEAN = Condition("clean")
+
+CONDITIONS = (
+    CLEAN,
+    *(Condition(f"exposure {factor:g}", factor=factor) for factor in EXPOSURE_FACTORS if factor != 1),
+    *(Condition(f"resolution {times}x", upsampling=times) for times in (2, 4)),
+    Condition("grayscale", is_gray=True),
+    *(Condition(f"noise variance {variance:g}", noise=variance) for variance in (0.5, 1, 2, 4)),
+    *(Condition(f"blur variance {variance:g}", blur=variance) for variance in (1, 2, 4, 8)),
+    Condition("cool white balance", gains=COOL),
+    Condition("warm white balance", gains=WARM),
+    *(Condition(f"JPEG quality {quality}", jpeg_quality=quality) for quality in (95, 85, 75, 50)),
+)
+
+TRIALS = (
+    Trial("random windows", coverage=0),
+    *(Trial(f"{count} window{'s' * (count > 1)}", windows=count) for count in (1, 2, 5, 10, 20)),
+    Trial("windows averaged, outliers removed", averaged="kept"),
+    Trial("windows averaged, none removed", averaged="all"),
+    *(Trial(f"{count} photographs pooled", pooled=count) for count in (2, 4, 8)),
+)
+
+
+@dataclass(frozen=True)
+class Shot:
+    """One photograph to take and one question about it."""
+
+    scene: int
+    curve: int
+    condition: Condition
+    trial: Trial = PLAIN
+
+    @property
+    def label(self) -> str:
+        """Scene, curve, exposure factor and what is special: what cached cases are found by."""
+        special = self.trial.name or self.condition.name
+        return f"scene {self.scene}, curve {self.curve}, exposure {self.condition.factor:g}, {special}"
+
+
+def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[tuple[int, int, float]]:
+    """Return `count` triples (scene, curve, exposure factor), at most one for each scene and curve.
+
+    Both are shuffled and then taken in turn, shifted where the turns would repeat, so that in every beginning of the
+    list each scene and each curve occurs equally often, give or take one; so do the exposures.
+
+    Raises
+    ------
+    CRFNetError
+        If `count` is below 1.
+    """
+    if count < 1:
+        raise CRFNetError(f"the number of photographs must be 1 or more, found {count}")
+    rng = np.random.default_rng(seed)
+    scenes, curves = (rng.permutation(np.asarray(part)).tolist() for part in (scenes, curves))
+    period, factors = math.lcm(len(scenes), len(curves)), len(EXPOSURE_FACTORS)
+    return [
+        (
+            scenes[turn % len(scenes)],
+            curves[(turn + turn // period) % len(curves)],
+            EXPOSURE_FACTORS[(turn + turn // len(scenes)) % factors],
+        )
+        for turn in range(min(count, len(scenes) * len(curves)))
+    ]
+
+
+def plain_shots(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[Shot]:
+    """Return the photographs of P0 and P2: clean, at one of five exposures each, through the product as it is."""
+    cells = balanced(scenes, curves, count=count, seed=seed)
+    return [Shot(scene, curve, Condition("clean", factor=factor)) for scene, curve, factor in cells]
+
+
+def stress_shots(
+    scenes: Sequence[int],
+    curves: Sequence[int],
+    *,
+    count: int,
+    seed: int,
+    conditions: Sequence[Condition] = CONDITIONS,
+    trials: Sequence[Trial] = TRIALS,
+) -> list[Shot]:
+    """Return the photographs of P3: `count` of them under every condition, and the clean ones asked in every way.
+
+    Pooled photographs need as many scenes; trials that ask for more are left out.
+    """
+    cells = [(scene, curve) for scene, curve, _ in balanced(scenes, curves, count=count, seed=seed)]
+    possible = [trial for trial in trials if trial.pooled <= len(scenes)]
+    stressed = [Shot(scene, curve, condition) for condition in conditions for scene, curve in cells]
+    asked = [Shot(scene, curve, CLEAN, trial) for trial in possible for scene, curve in cells]
+    return stressed + asked
