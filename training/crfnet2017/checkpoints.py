@@ -1,0 +1,170 @@
+"""Keep, restore and carry over weights: checkpoints, other runs, and exported model folders."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import onnx
+import torch
+from onnx import numpy_helper
+from torch import Tensor, nn
+
+from crfnet_core.files import written_whole
+from training.crfnet2017.network import CRFNet
+
+#: What the graph of an exported network puts around its parameters' names (see `training.export.halve`).
+GRAPH_PREFIX, HALF_SUFFIX = "network.", "_half"
+
+
+@dataclass
+class Progress:
+    """All that a run needs to go on from where it stopped; randomness follows from the step.
+
+    Parameters
+    ----------
+    network : CRFNet
+        The bare network, never wrapped, so that any number of processes can go on.
+    optimizer : Optimizer
+        With its momenta.
+    step : int
+        Steps done.
+    rows : list
+        The log: step, training loss, validation figure, windows per second, share of waiting.
+    """
+
+    network: CRFNet
+    optimizer: torch.optim.Optimizer
+    step: int = 0
+    rows: list[list[float]] = field(default_factory=list)
+
+    @property
+    def figures(self) -> list[float]:
+        """The validation figures so far."""
+        return [row[2] for row in self.rows]
+
+    def save(self, path: Path) -> None:
+        """Write the checkpoint, whole or not at all."""
+        state = {"network": self.network.state_dict(), "optimizer": self.optimizer.state_dict()}
+        _save(state | {"step": self.step, "rows": self.rows}, path)
+
+    def save_best(self, path: Path) -> None:
+        """Write the weights with the log so far."""
+        _save({"network": self.network.state_dict(), "step": self.step, "rows": self.rows}, path)
+
+    def resume(self, path: Path, device: torch.device) -> None:
+        """Go on from a checkpoint."""
+        state = torch.load(path, map_location=device, weights_only=True)
+        self.network.load_state_dict(state["network"])
+        self.optimizer.load_state_dict(state["optimizer"])
+        self.step, self.rows = state["step"], state["rows"]
+
+
+def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
+    """Copy the weights of another training into the network, in place.
+
+    Parameters
+    ----------
+    network : CRFNet
+        To be changed.
+    source : Path
+        A run folder (its best checkpoint), a checkpoint, or a model folder written by `training.crfnet2017.export`.
+    windows : Tensor, shape (N, 3, 227, 227)
+        Training windows, at least a few; only for model folders, whose convolutions have swallowed the normalisation.
+
+    Returns
+    -------
+    bool
+        Whether the last layer was taken over too; one with another number of outputs stays as it is.
+
+    Raises
+    ------
+    SystemExit
+        If the source is of another network.
+    """
+    exported = (source / "model.onnx").exists()
+    state = _exported_state(source / "model.onnx") if exported else _checkpoint_state(source)
+    same_head = state["head.weight"].shape == network.head.weight.shape
+    kept = state if same_head else {name: tensor for name, tensor in state.items() if not name.startswith("head.")}
+    missing, unexpected = network.load_state_dict(kept, strict=False)
+    missing = [name for name in missing if not name.startswith("head.") or same_head]
+    if unexpected or (missing and not exported):
+        raise SystemExit(f"{source}: is of another network: lacks {missing}, has {unexpected}")
+    if exported:
+        unfold_normalisation(network, windows)
+    return same_head
+
+
+def fold_normalisation(network: CRFNet) -> CRFNet:
+    """Return the network itself, ready to infer, each normalisation gone into the convolution before it."""
+    network.eval()
+    for layers in _sequences(network):
+        for place, layer in enumerate(layers):
+            if isinstance(layer, nn.BatchNorm2d):
+                layers[place - 1] = nn.utils.fuse_conv_bn_eval(layers[place - 1], layer)
+                layers[place] = nn.Identity()
+    return network
+
+
+def unfold_normalisation(network: CRFNet, windows: Tensor) -> None:
+    """Let the normalisations do again, in place, what biases of the convolutions do, without changing the outputs.
+
+    Folding loses the statistics that the normalisation trains with; those of `windows` take their place.
+
+    Parameters
+    ----------
+    network : CRFNet
+        Its `normalisation_bias` entries were loaded into the normalisations' biases (see `_exported_state`), their
+        other parameters are untouched since the network was made.
+    windows : Tensor, shape (N, 3, 227, 227)
+        What to take the statistics of.
+    """
+    normalisations = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
+    hooks = [layer.register_forward_pre_hook(_take_statistics) for layer in normalisations]
+    network.eval()
+    with torch.inference_mode():
+        network(windows)
+    for hook in hooks:
+        hook.remove()
+
+
+def _take_statistics(layer: nn.Module, inputs: tuple[Tensor]) -> None:
+    """Give a normalisation the statistics of its input, and a scale and a bias that undo them but for its own bias."""
+    variance, mean = torch.var_mean(inputs[0], dim=(0, 2, 3), correction=0)
+    layer.running_mean.copy_(mean)
+    layer.running_var.copy_(variance)
+    layer.weight.data.copy_((variance + layer.eps).sqrt())
+    layer.bias.data.add_(mean)
+
+
+def _checkpoint_state(source: Path) -> dict[str, Tensor]:
+    """Return the network's state in a checkpoint or in the best one of a run."""
+    path = source / "best.pt" if source.is_dir() else source
+    state: dict[str, Tensor] = torch.load(path, map_location="cpu", weights_only=True)["network"]
+    return state
+
+
+def _exported_state(graph: Path) -> dict[str, Tensor]:
+    """Return the parameters in an exported graph; biases of convolutions go to the normalisations after them."""
+    values = {
+        tensor.name.removeprefix(GRAPH_PREFIX).removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
+        for tensor in onnx.load(graph).graph.initializer
+        if tensor.name.startswith(GRAPH_PREFIX)
+    }
+    state = {name: torch.from_numpy(value.astype("float32")) for name, value in values.items()}
+    for name in [name for name in state if name.endswith(".bias") and not name.startswith("head.")]:
+        layers, place, _ = name.rsplit(".", 2)
+        state[f"{layers}.{int(place) + 1}.bias"] = state.pop(name)
+    state["body.0.bias"] = torch.zeros_like(state["body.1.bias"])
+    return state
+
+
+def _sequences(network: CRFNet) -> list[nn.Sequential]:
+    """Return all sequences of layers."""
+    return [module for module in network.modules() if isinstance(module, nn.Sequential)]
+
+
+def _save(state: dict[str, object], path: Path) -> None:
+    """Write a file of torch."""
+    with written_whole(path, overwrite=True) as temporary:
+        torch.save(state, temporary)

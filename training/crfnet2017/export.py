@@ -1,0 +1,80 @@
+"""Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
+
+The folder is like those of `training.export`. The paper's network expects no error: its log error is a constant, that
+of the best mean E_est on the validation windows, and the calibration goes by the spread of the windows' estimates.
+"""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import torch
+from torch import Tensor, nn
+
+from crfnet_core.photo import read_photo
+from crfnet_core.windows import cut_windows, select_windows
+from training.crfnet2017.checkpoints import fold_normalisation
+from training.crfnet2017.network import CRFNet
+from training.export import WINDOWED, export_options, rounded, write_model
+
+
+class ShippedCRFNet(nn.Module):
+    """The network as the product runs it.
+
+    Parameters
+    ----------
+    network : CRFNet
+        With 11 outputs.
+    expected_error : float
+        E_est that is expected of every window.
+    """
+
+    def __init__(self, network: CRFNet, expected_error: float) -> None:
+        super().__init__()
+        self.network = network
+        self.register_buffer("log_error", torch.tensor([math.log(expected_error)]))
+
+    def forward(self, windows: Tensor) -> tuple[Tensor, Tensor]:
+        """Return EMoR weights (N, 11) and log errors (N,) of windows of shape (N, 227, 227, 3) in [0, 1]."""
+        return self.network(windows.permute(0, 3, 1, 2)), self.log_error.expand(windows.shape[0])
+
+
+def load_network(run: Path) -> ShippedCRFNet:
+    """Return the best network of a run, ready to infer, its normalisation folded.
+
+    Raises
+    ------
+    SystemExit
+        If the run tells responses apart instead of estimating their weights.
+    """
+    state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
+    network = CRFNet()
+    if state["network"]["head.weight"].shape != network.head.weight.shape:
+        raise SystemExit(f"{run}: is a run of the stage classify; export one of the stage regress")
+    network.load_state_dict(state["network"])
+    return ShippedCRFNet(fold_normalisation(network), min(row[2] for row in state["rows"])).eval()
+
+
+def cost_of_rounding(network: ShippedCRFNet, plate: Path) -> float:
+    """Return the largest change of a weight (units of E_est) on the plate's windows when the network is `rounded`.
+
+    The network stays rounded.
+    """
+    pixels = read_photo(plate).pixels
+    windows = torch.from_numpy(cut_windows(pixels, select_windows(pixels, count=3)))
+    with torch.inference_mode():
+        before = network(windows)[0]
+        return float((rounded(network)(windows)[0] - before).abs().max())
+
+
+def main() -> None:
+    """Export, check the parity, calibrate, and write the model folder."""
+    options = export_options(__doc__).parse_args()
+    network = load_network(options.run)
+    print(f"half precision moves the weights by at most {cost_of_rounding(network, options.plate):.1e}")
+    write_model(network, WINDOWED, options)
+
+
+if __name__ == "__main__":
+    main()

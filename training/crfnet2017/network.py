@@ -1,0 +1,98 @@
+"""The network of Table 1 of the CRF-net paper, for windows of 227 x 227 samples."""
+
+from __future__ import annotations
+
+import torch
+from torch import Tensor, nn
+
+from crfnet_core.emor import COMPONENTS
+
+#: Channels and side of the map that the last layer is fully connected to.
+MAP_CHANNELS, MAP_SIDE = 512, 23
+
+
+class Bottleneck(nn.Module):
+    """A residual block of ResNet-50: 1x1, 3x3 and 1x1 convolutions beside a shortcut.
+
+    The stride is that of the first convolution and of the projection, as in the ResNet-50 of 2015.
+
+    Parameters
+    ----------
+    channels, inner, outputs : int
+        Channels that come in, of the 3x3 convolution, and that go out.
+    stride : int
+        Of the block; other than 1, it needs the projection.
+    """
+
+    def __init__(self, channels: int, inner: int, outputs: int, *, stride: int = 1) -> None:
+        super().__init__()
+        self.branch = nn.Sequential(
+            *_normalised(channels, inner, 1, stride),
+            nn.ReLU(inplace=True),
+            *_normalised(inner, inner, 3, 1),
+            nn.ReLU(inplace=True),
+            *_normalised(inner, outputs, 1, 1),
+        )
+        projected = stride != 1 or channels != outputs
+        self.shortcut = nn.Sequential(*_normalised(channels, outputs, 1, stride)) if projected else nn.Identity()
+
+    def forward(self, maps: Tensor) -> Tensor:
+        """Return maps (N, outputs, H / stride, W / stride) of maps (N, channels, H, W)."""
+        return torch.relu(self.branch(maps) + self.shortcut(maps))
+
+
+class CRFNet(nn.Module):
+    """Windows to EMoR weights, or to the scores of the 201 responses of DoRF.
+
+    Source: CRF-net paper, Table 1. With 11 outputs it has 3 864 203 parameters.
+
+    Parameters
+    ----------
+    outputs : int
+        11 EMoR weights, or 201 responses to tell apart.
+    """
+
+    def __init__(self, outputs: int = COMPONENTS) -> None:
+        super().__init__()
+        self.body = nn.Sequential(
+            nn.Conv2d(3, 64, 7, stride=2, padding=3),
+            nn.BatchNorm2d(64),
+            nn.ReLU(inplace=True),
+            nn.MaxPool2d(3, stride=2, padding=1),
+            Bottleneck(64, 64, 256),
+            Bottleneck(256, 64, 256),
+            Bottleneck(256, 64, 256),
+            Bottleneck(256, 128, 512, stride=2),
+            Bottleneck(512, 128, MAP_CHANNELS),
+            # 7 x 7 in two passes: a third of the time of one, backwards.
+            nn.AvgPool2d((7, 1), stride=1),
+            nn.AvgPool2d((1, 7), stride=1),
+        )
+        self.head = nn.Linear(MAP_CHANNELS * MAP_SIDE * MAP_SIDE, outputs)
+        self._initialise()
+
+    def forward(self, windows: Tensor) -> Tensor:
+        """Return (N, outputs) of windows of shape (N, 3, 227, 227) in [0, 1]."""
+        maps = self.body(windows * 2 - 1)
+        with torch.autocast(maps.device.type, enabled=False):
+            outputs: Tensor = self.head(maps.float().flatten(1))
+        return outputs
+
+    def _initialise(self) -> None:
+        """Scale the convolutions for ReLU; start the head at 0, which is the mean response or equal scores."""
+        for module in self.modules():
+            if isinstance(module, nn.Conv2d):
+                nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
+        nn.init.zeros_(self.head.weight)
+        nn.init.zeros_(self.head.bias)
+
+
+def parameter_count(network: nn.Module) -> int:
+    """Return the number of trained parameters of a network."""
+    return sum(parameter.numel() for parameter in network.parameters())
+
+
+def _normalised(channels: int, outputs: int, size: int, stride: int) -> tuple[nn.Module, nn.Module]:
+    """Return a convolution that keeps the side at stride 1, and the normalisation of its outputs."""
+    convolution = nn.Conv2d(channels, outputs, size, stride=stride, padding=size // 2, bias=False)
+    return convolution, nn.BatchNorm2d(outputs)

@@ -1,0 +1,124 @@
+"""Keep linear scenes ready to be photographed: memory-mapped, with the responses and their exposures.
+
+A pack holds, per split, shards of float16 samples (npy, below 64 MiB each) and an index; beside them the 201 responses
+of DoRF with s_crf of each. s_crf is that of `training.synthesis`: the exposure at which evenly spread samples of the
+training scenes, each scene scaled to a geometric mean luminance of 1, have the mean brightness `TARGET_BRIGHTNESS`
+under the response. It belongs to the curve, not to the photograph, as in the paper (Sec. 3.3), and is the same for
+every split.
+"""
+
+from __future__ import annotations
+
+import json
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from tqdm import tqdm
+
+from crfnet_core.files import write_text_whole, written_whole
+from training.curves import read_dorf
+from training.scenes import Scene, dithered, read_scenes
+from training.synthesis import automatic_exposure, reference_luminance
+
+#: Samples of a shard at most: 60 MiB of float16.
+SHARD_SAMPLES = 30 * 2**20
+
+#: The shorter side of a packed scene holds about this many samples or more, if the scene does.
+SHORTER_SIDE = 395
+
+#: The largest finite float16.
+FLOAT16_MAX = 65504.0
+
+
+@dataclass(frozen=True)
+class ScenePack:
+    """Linear scenes of one split with the responses to photograph them by.
+
+    Parameters
+    ----------
+    scenes : tuple of ndarray, float16, shape (H, W, 3)
+        Irradiance, each scene scaled to a geometric mean luminance of 1; memory-mapped.
+    curves : ndarray, float32, shape (201, 1024)
+        Responses at uniform irradiances.
+    exposures : ndarray, float32, shape (201,)
+        s_crf of each response.
+    """
+
+    scenes: tuple[np.ndarray, ...]
+    curves: np.ndarray
+    exposures: np.ndarray
+
+
+def area_scaled(pixels: np.ndarray) -> np.ndarray:
+    """Return linear pixels (H, W, 3) averaged over boxes, so that the shorter side keeps `SHORTER_SIDE` or more."""
+    factor = max(1, min(pixels.shape[:2]) // SHORTER_SIDE)
+    height, width = (side // factor for side in pixels.shape[:2])
+    boxes = pixels[: height * factor, : width * factor].reshape(height, factor, width, factor, 3)
+    return boxes.mean(axis=(1, 3), dtype=np.float32)
+
+
+def packed_scene(scene: Scene, number: int) -> np.ndarray:
+    """Return a scene as float16 (H, W, 3); panoramas are dithered first, the same way every time."""
+    pixels = dithered(scene.pixels, np.random.default_rng([2017, number])) if scene.is_panorama else scene.pixels
+    return np.minimum(area_scaled(pixels), FLOAT16_MAX).astype(np.float16)
+
+
+def write_pack(data: Path, out: Path, split: str) -> Path:
+    """Write the shards of a split and the responses with their s_crf; return the path of the split's index."""
+    scenes = read_scenes(data / "linear", split)
+    training = scenes if split == "train" else read_scenes(data / "linear", "train")
+    luminance = reference_luminance(training)
+    curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    exposures = [automatic_exposure(curve, luminance) for curve in tqdm(curves, desc="s_crf", disable=None)]
+    out.mkdir(parents=True, exist_ok=True)
+    with written_whole(out / "curves.npz", overwrite=True) as temporary:
+        np.savez(temporary, curves=curves.astype(np.float32), exposures=np.array(exposures, dtype=np.float32))
+    return write_scenes([(scene.name, packed_scene(scene, n)) for n, scene in enumerate(scenes)], out, split)
+
+
+def write_scenes(scenes: list[tuple[str, np.ndarray]], out: Path, split: str) -> Path:
+    """Write named float16 scenes as shards with an index, and return the path of the index."""
+    index, shard, used, number = [], [], 0, 0
+    for name, pixels in scenes:
+        if used + pixels.size > SHARD_SAMPLES and shard:
+            _write_shard(out, split, number, shard)
+            shard, used, number = [], 0, number + 1
+        index.append({"name": name, "shard": number, "start": used, "shape": list(pixels.shape)})
+        shard.append(pixels.ravel())
+        used += pixels.size
+    _write_shard(out, split, number, shard)
+    path = out / f"{split}.json"
+    write_text_whole(path, json.dumps(index, indent=1) + "\n", overwrite=True)
+    return path
+
+
+def read_pack(folder: Path, split: str) -> ScenePack:
+    """Return a split of a pack, its scenes memory-mapped.
+
+    Raises
+    ------
+    FileNotFoundError
+        If the folder holds no such split.
+    """
+    if not (folder / f"{split}.json").exists():
+        raise FileNotFoundError(f"{folder}: no pack of the split {split}; run python -m training.crfnet2017.windows")
+    index = json.loads((folder / f"{split}.json").read_text())
+    shards = [np.load(_shard(folder, split, n), mmap_mode="r") for n in range(index[-1]["shard"] + 1)]
+    scenes = []
+    for entry in index:
+        start, shape = entry["start"], tuple(entry["shape"])
+        scenes.append(shards[entry["shard"]][start : start + int(np.prod(shape))].reshape(shape))
+    with np.load(folder / "curves.npz") as arrays:
+        return ScenePack(tuple(scenes), arrays["curves"], arrays["exposures"])
+
+
+def _shard(folder: Path, split: str, number: int) -> Path:
+    """Return the path of a shard."""
+    return folder / f"{split}_{number:03d}.npy"
+
+
+def _write_shard(folder: Path, split: str, number: int, parts: list[np.ndarray]) -> None:
+    """Write one shard."""
+    with written_whole(_shard(folder, split, number), overwrite=True) as temporary:
+        np.save(temporary, np.concatenate(parts))

@@ -1,0 +1,124 @@
+"""How the paper's network is trained: optimizer, learning rate and size of the steps."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import torch
+
+from training.crfnet2017.network import CRFNet
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How the weights are moved.
+
+    Parameters
+    ----------
+    optimizer : str
+        "sgd" (with `momentum`) or "adamw".
+    learning_rate : float
+        The highest.
+    head_factor : float
+        What the last layer's learning rate is multiplied with: 270 848 inputs move an output together.
+    momentum, weight_decay : float
+        Of the optimizer.
+    batch : int
+        Windows of a step, on each process.
+    schedule : str
+        "steps" (a tenth after each third) or "one-cycle" (up for a tenth, down as a cosine to 0).
+    mixed : bool
+        bfloat16 where it is safe.
+    channels_last : bool
+        Memory order of the maps.
+    clip : float
+        Largest norm of the gradient; 0 for none.
+    squared : bool
+        Regression loss: half the squared distance (Caffe's Euclidean loss), or the distance itself, which is E_est.
+    """
+
+    optimizer: str = "adamw"
+    learning_rate: float = 1e-3
+    head_factor: float = 0.001
+    momentum: float = 0.9
+    weight_decay: float = 0.02
+    batch: int = 16
+    schedule: str = "one-cycle"
+    mixed: bool = True
+    channels_last: bool = True
+    clip: float = 1.0
+    squared: bool = False
+
+
+#: `paper`: what the paper tells of its training, and guesses for the rest. We had no more than a summary of its text.
+#: From it: the two stages, their order, and the Euclidean loss. Assumed, as usual for Caffe in 2017: SGD, momentum 0.9,
+#: a learning rate of 0.01 that drops by 10, weight decay 5e-4, batch 64, the moments of the drops, the initial weights.
+#: `default`: ours, for few windows.
+RECIPES = {
+    "default": Recipe(),
+    "paper": Recipe(
+        optimizer="sgd",
+        learning_rate=1e-2,
+        head_factor=1.0,
+        weight_decay=5e-4,
+        batch=64,
+        schedule="steps",
+        mixed=False,
+        channels_last=False,
+        clip=0.0,
+        squared=True,
+    ),
+}
+
+
+@dataclass(frozen=True)
+class RunConfig:
+    """What a run folder is for; a run goes on only with the same.
+
+    Parameters
+    ----------
+    stage : str
+        "classify" or "regress".
+    recipe : Recipe
+        How the weights are moved.
+    steps : int
+        Of the whole run.
+    seed : int
+        Of the initial weights and, with the step, of the windows.
+    init : str
+        A run, a checkpoint or a model folder whose weights the run starts from; or "none".
+    validate_every : int
+        Steps between validations.
+    per_photograph : int
+        Windows of one photograph at most.
+    """
+
+    stage: str
+    recipe: Recipe
+    steps: int
+    seed: int = 1
+    init: str = "none"
+    validate_every: int = 500
+    per_photograph: int = 1
+
+
+def learning_rate(recipe: Recipe, step: int, steps: int) -> float:
+    """Return the learning rate of a step, counted from 0, of `steps`."""
+    done = step / steps
+    if recipe.schedule == "steps":
+        return recipe.learning_rate * 0.1 ** int(3 * done)
+    if done < 0.1:
+        return recipe.learning_rate * (0.05 + 0.95 * done / 0.1)
+    return recipe.learning_rate * 0.5 * (1 + math.cos(math.pi * (done - 0.1) / 0.9))
+
+
+def make_optimizer(network: CRFNet, recipe: Recipe) -> torch.optim.Optimizer:
+    """Return the recipe's optimizer, body and head in groups of their own; "factor" is that of the learning rate."""
+    groups = [
+        {"params": list(network.body.parameters()), "factor": 1.0},
+        {"params": list(network.head.parameters()), "factor": recipe.head_factor},
+    ]
+    if recipe.optimizer == "sgd":
+        return torch.optim.SGD(groups, recipe.learning_rate, recipe.momentum, weight_decay=recipe.weight_decay)
+    return torch.optim.AdamW(groups, recipe.learning_rate, weight_decay=recipe.weight_decay, fused=True)

@@ -1,0 +1,72 @@
+"""The two stages of the training: which of the known responses is it, then, what are its EMoR weights."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import torch
+from torch import Tensor, nn
+
+from crfnet_core.emor import COMPONENTS, EmorBasis
+
+STAGES = ("classify", "regress")
+
+
+class StageTask:
+    """The loss and the validation figure of a stage.
+
+    Parameters
+    ----------
+    stage : str
+        "classify": cross-entropy, top-1 accuracy. "regress": distance of the EMoR weights, mean E_est.
+    curves : ndarray, shape (N, 1024)
+        The responses that windows are made with; N is 201 for DoRF.
+    squared : bool
+        Whether the loss of the regression is half the squared distance.
+    device : torch.device
+        Where the targets are kept.
+    """
+
+    def __init__(self, stage: str, curves: np.ndarray, *, squared: bool, device: torch.device) -> None:
+        basis = EmorBasis.load()
+        weights = basis.project(curves)
+        residuals = np.linalg.norm(basis.reconstruct(weights) - curves, axis=1)
+        self.stage, self.squared = stage, squared
+        self.weights = torch.from_numpy(weights).float().to(device)
+        self.residuals = torch.from_numpy(residuals).float().to(device)
+
+    @property
+    def classifies(self) -> bool:
+        """Whether this is the first stage, whose figure is the better the higher it is."""
+        return self.stage == "classify"
+
+    @property
+    def outputs(self) -> int:
+        """Outputs of the network."""
+        return len(self.weights) if self.classifies else COMPONENTS
+
+    def loss(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return the loss, mean over the batch, of outputs (N, outputs) for the responses numbered `classes` (N,)."""
+        if self.classifies:
+            return nn.functional.cross_entropy(outputs, classes)
+        squares = self._squares(outputs, classes)
+        return squares.mean() / 2 if self.squared else (squares + 1e-8).sqrt().mean()
+
+    def figures(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return per window, shape (N,), 1 where the right response scores highest, else 0; or E_est.
+
+        The basis is orthonormal: E_est squared is the squared distance of the weights plus that of the curve from the
+        basis.
+        """
+        if self.classifies:
+            return (outputs.argmax(dim=1) == classes).float()
+        return (self._squares(outputs, classes) + self.residuals[classes].square()).sqrt()
+
+    def is_better(self, figure: float, others: list[float]) -> bool:
+        """Return whether a validation figure is better than all others."""
+        return figure > max(others, default=-math.inf) if self.classifies else figure < min(others, default=math.inf)
+
+    def _squares(self, outputs: Tensor, classes: Tensor) -> Tensor:
+        """Return the squared distances of the weights."""
+        return (outputs - self.weights[classes]).square().sum(dim=1)
