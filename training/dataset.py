@@ -1,74 +1,106 @@
-"""Make and read shards of window statistics: ``python -m training.dataset --data DIR --out DIR --windows N``."""
+"""Make and read shards of statistics: ``python -m training.dataset --data DIR --out DIR --photographs N``."""
 
 from __future__ import annotations
 
 import argparse
-import json
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import asdict
+from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
 
 import numpy as np
 import torch
+from torch import Tensor
 from tqdm import tqdm
 
 from crfnet_core.files import written_whole
+from crfnet_core.statistics import window_statistics
 from training.curves import CurveSource, read_base_curves, read_dorf
-from training.model import NetworkConfig, WindowStatistics
+from training.photographs import PhotographSource
 from training.scenes import read_scenes
-from training.synthesis import WindowSource, reference_luminance
+from training.splits import held_out_curves
+from training.synthesis import reference_luminance
 
-#: Windows of one shard file.
-SHARD = 2000
+#: Photographs of one shard file.
+SHARD = 500
 
 #: Every how many-th sample of a response is kept as the target.
 TARGET_STRIDE = 8
 
+#: Statistics are kept as float16 in units of this many samples.
+UNIT = 256
+
+#: Share of photographs whose response is of the in-camera family; the others are of DoRF.
+CAMERA_SHARE = 0.45
+
+#: The sets of responses: DoRF without and with the curves held out of P2, and in-camera curves.
+KEPT, HELD_OUT, IN_CAMERA = 0, 1, 2
+
 
 @cache
-def window_source(data: Path, split: str) -> WindowSource:
-    """Return the source of a split's windows; the exposure always comes from the training scenes."""
-    curves = CurveSource(
-        read_dorf(data / "dorf" / "201_CRF_data.mat"),
-        tuple(read_base_curves(data / "camera_curves" / "base_curves.csv").values()),
+def photograph_source(data: Path, split: str) -> PhotographSource:
+    """Return the source of a split's photographs; the exposure always comes from the training scenes."""
+    dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
+    bases = tuple(read_base_curves(data / "camera_curves" / "base_curves.csv").values())
+    sets = (
+        CurveSource(dorf[~held_out], (), camera_share=0),
+        CurveSource(dorf[held_out], (), camera_share=0),
+        CurveSource(dorf, bases, camera_share=1),
     )
+    of_dorf = 1 - CAMERA_SHARE
+    shares = (of_dorf * float((~held_out).mean()), of_dorf * float(held_out.mean()), CAMERA_SHARE)
     luminance = reference_luminance(read_scenes(data / "linear", "train"))
-    return WindowSource(read_scenes(data / "linear", split), curves, luminance)
+    return PhotographSource(read_scenes(data / "linear", split), sets, shares, luminance)
 
 
-def make_shard(data: Path, out: Path, split: str, number: int, config: NetworkConfig) -> Path:
+def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     """Write the shard `number` of a split, unless it is there already, and return its path.
 
-    Its windows depend only on the split and the number: a run can stop and go on, on any number of processes.
+    Its photographs depend only on the split and the number: a run can stop and go on, on any number of processes.
     """
     path = out / f"{split}_{number:04d}.npz"
     if path.exists():
         return path
-    torch.set_num_threads(1)
-    source, statistics = window_source(data, split), WindowStatistics(config)
-    rng = np.random.default_rng([number, len(split)])
+    source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
     curves: list[np.ndarray] = []
+    sets: list[int] = []
     while len(rows) < SHARD:
-        for window, curve in source.draw(rng)[: SHARD - len(rows)]:
-            with torch.inference_mode():
-                batch = torch.from_numpy(window / np.float32(255)).permute(2, 0, 1)[None]
-                rows.append(statistics(batch)[0].numpy().astype(np.float16))
-            curves.append(curve[::TARGET_STRIDE].astype(np.float32))
+        for photo in source.draw(rng)[: SHARD - len(rows)]:
+            windows = photo.windows / np.float32(255)
+            rows.append((np.stack([window_statistics(w) for w in windows]) / UNIT).astype(np.float16))
+            curves.append(photo.curve[::TARGET_STRIDE].astype(np.float32))
+            sets.append(photo.curve_set)
     with written_whole(path) as temporary:
-        np.savez(temporary, statistics=np.stack(rows), curves=np.stack(curves))
+        np.savez(temporary, statistics=np.stack(rows), curves=np.stack(curves), curve_sets=np.array(sets, np.int8))
     return path
 
 
-def read_shards(folder: Path, split: str) -> tuple[torch.Tensor, torch.Tensor]:
-    """Return statistics, float16 (N, features), and responses, float32 (N, 128), of all shards of a split."""
+@dataclass(frozen=True)
+class Shards:
+    """Photographs: statistics, float16 (P, 4, STATISTICS) in `UNIT`s, responses (P, 128), curve sets (P,)."""
+
+    statistics: Tensor
+    curves: Tensor
+    curve_sets: Tensor
+
+    def only(self, chosen: Tensor) -> Shards:
+        """Return the photographs where `chosen`, bool (P,), is true."""
+        return Shards(self.statistics[chosen], self.curves[chosen], self.curve_sets[chosen])
+
+    def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
+        """Return statistics, float32 (B, 4, STATISTICS), and responses (B, 128), of the photographs in `rows`."""
+        return self.statistics[rows].float() * UNIT, self.curves[rows]
+
+
+def read_shards(folder: Path, split: str) -> Shards:
+    """Return all photographs of a split that are there."""
     shards = [np.load(path) for path in sorted(folder.glob(f"{split}_*.npz"))]
     if not shards:
         raise FileNotFoundError(f"{folder}: no shards of the split {split}; run python -m training.dataset first")
-    names = ("statistics", "curves")
-    statistics, curves = (torch.from_numpy(np.concatenate([shard[name] for shard in shards])) for name in names)
-    return statistics, curves
+    names = ("statistics", "curves", "curve_sets")
+    return Shards(*(torch.from_numpy(np.concatenate([shard[name] for shard in shards])) for name in names))
 
 
 def main() -> None:
@@ -77,15 +109,13 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--split", default="train", choices=["train", "validation"])
-    parser.add_argument("--windows", type=int, default=72_000)
+    parser.add_argument("--photographs", type=int, default=50_000)
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    config = NetworkConfig()
-    (options.out / "statistics.json").write_text(json.dumps(asdict(config), indent=2) + "\n")
-    numbers = range(-(-options.windows // SHARD))
+    numbers = range(-(-options.photographs // SHARD))
     with ProcessPoolExecutor(options.workers) as pool:
-        jobs = [pool.submit(make_shard, options.data, options.out, options.split, n, config) for n in numbers]
+        jobs = [pool.submit(make_shard, options.data, options.out, options.split, n) for n in numbers]
         for job in tqdm(jobs, unit="shard"):
             job.result()
 

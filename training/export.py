@@ -7,12 +7,16 @@ import hashlib
 import json
 import subprocess
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import replace
+from dataclasses import dataclass
 from pathlib import Path
+from typing import TypeVar
 
 import numpy as np
+import onnx
 import torch
+from onnx import TensorProto, helper, numpy_helper
 from scipy.optimize import nnls
+from torch import nn
 from tqdm import tqdm
 
 from crfnet_core.emor import COMPONENTS
@@ -22,10 +26,12 @@ from crfnet_core.metrics import estimation_error
 from crfnet_core.network import Calibration, ModelConfig, ResponseNetwork
 from crfnet_core.photo import read_photo
 from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.statistics import STATISTICS, window_statistics
 from crfnet_core.windows import WINDOW_SIZE, cut_windows, select_windows
-from training.dataset import window_source
+from training.dataset import photograph_source
 from training.evaluate import synthetic_photo
-from training.model import NetworkConfig, ResponseNet, WindowNetwork, WindowStatistics
+from training.model import NetworkConfig, PhotographNet, ShippedNetwork
+from training.splits import SPLITS_FILE
 from training.synthesis import Capture, automatic_exposure
 
 OPSET = 18
@@ -39,83 +45,131 @@ CALIBRATION_PHOTOS = 50
 #: Knots of the band's profile over irradiance.
 BAND_KNOTS = 33
 
+Network = TypeVar("Network", bound=nn.Module)
+
 UNCALIBRATED = Calibration(base=0.0, of_predicted=1.0, of_spread=0.0, band_profile=(0.0,) * BAND_KNOTS)
 
 
-def load_network(run: Path) -> WindowNetwork:
-    """Return the best network of a run, ready to infer."""
-    network = NetworkConfig(**json.loads((run / "config.json").read_text())["network"])
-    network = replace(network, strides=tuple(network.strides))
-    net = ResponseNet(network)
-    net.load_state_dict(torch.load(run / "best.pt", weights_only=True)["net"])
-    return WindowNetwork(WindowStatistics(network), net).eval()
+@dataclass(frozen=True)
+class Signature:
+    """What a network reads and says; see `crfnet_core.network.ModelConfig`."""
+
+    input_name: str
+    input_shape: tuple[int, ...]
+    output_names: tuple[str, ...]
 
 
-def export_onnx(network: WindowNetwork, path: Path) -> None:
-    """Write the graph, from windows to weights and log errors, with a free number of windows."""
-    example = torch.rand(2, WINDOW_SIZE, WINDOW_SIZE, 3)
+#: A network of the statistics of windows, which pools them.
+POOLING = Signature("statistics", (STATISTICS,), ("weights", "log_errors", "pooled_weights", "pooled_log_error"))
+
+#: A network of windows, each for itself.
+WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), ("weights", "log_errors"))
+
+
+def load_network(run: Path) -> ShippedNetwork:
+    """Return the network of a run, ready to infer, with the half-precision parameters that it ships with."""
+    settings = json.loads((run / "config.json").read_text())
+    net = PhotographNet(NetworkConfig(**settings["network"]))
+    net.load_state_dict(torch.load(run / "last.pt", weights_only=True)["net"])
+    return rounded(ShippedNetwork(net).eval())
+
+
+def rounded(network: Network) -> Network:
+    """Return the network itself, its matrices rounded to half precision in place."""
+    with torch.no_grad():
+        for parameter in network.parameters():
+            if parameter.ndim > 1:
+                parameter.copy_(parameter.half().float())
+    return network
+
+
+def export_onnx(network: nn.Module, signature: Signature, path: Path) -> None:
+    """Write the graph of a `rounded` network, with a free number of windows and matrices in half precision."""
     program = torch.onnx.export(
         network,
-        (example,),
-        input_names=["windows"],
-        output_names=["weights", "log_errors"],
+        (torch.rand(2, *signature.input_shape),),
+        input_names=[signature.input_name],
+        output_names=list(signature.output_names),
         dynamic_shapes=({0: torch.export.Dim("windows")},),
         opset_version=OPSET,
         dynamo=True,
     )
+    model = program.model_proto
+    halve(model.graph)
     with written_whole(path, overwrite=True) as temporary:
-        program.save(temporary)
+        onnx.save(model, temporary)
 
 
-def write_config(folder: Path, calibration: Calibration) -> None:
+def halve(graph: onnx.GraphProto) -> None:
+    """Keep the graph's matrices, which half precision represents, in it, and cast them up when they are loaded."""
+    for initializer in graph.initializer:
+        values = numpy_helper.to_array(initializer)
+        if values.dtype == np.float32 and values.ndim > 1 and (values == values.astype(np.float16)).all():
+            name = initializer.name
+            initializer.CopyFrom(numpy_helper.from_array(values.astype(np.float16), f"{name}_half"))
+            graph.node.insert(0, helper.make_node("Cast", [f"{name}_half"], [name], to=TensorProto.FLOAT))
+
+
+def write_config(
+    folder: Path, signature: Signature, calibration: Calibration, *, without_held_out: bool = False
+) -> None:
     """Write model.json for the model.onnx in `folder`, whose name is the model's; `training.card` adds the figures."""
+    splits = json.loads(SPLITS_FILE.read_text())
     config = ModelConfig(
         name=folder.name,
         sha256=hashlib.sha256((folder / "model.onnx").read_bytes()).hexdigest(),
         basis="emor",
         components=COMPONENTS,
         window_size=WINDOW_SIZE,
-        input_name="windows",
-        output_names=("weights", "log_errors"),
+        input_name=signature.input_name,
+        output_names=signature.output_names,
         normalisation="code values divided by the largest code, never rescaled",
         opset=OPSET,
         training_commit=_commit(),
+        training={
+            "scene_kinds": ["panorama", "photograph"],
+            "held_out_curves": splits["held_out_curves"] if without_held_out else [],
+        },
         calibration=calibration,
         accuracy={},
     )
     config.write(folder / "model.json")
 
 
-def write_golden(network: WindowNetwork, plate: Path, path: Path) -> None:
+def write_golden(network: nn.Module, signature: Signature, plate: Path, path: Path) -> None:
     """Write windows of the bundled plate with what torch says of them, for the tests."""
     pixels = read_photo(plate).pixels
     windows = cut_windows(pixels, select_windows(pixels, count=3))
+    read = np.stack([window_statistics(window) for window in windows]) if signature is POOLING else windows
     with torch.inference_mode():
-        weights, log_errors = network(torch.from_numpy(windows))
+        outputs = [output.numpy() for output in network(torch.from_numpy(read))]
     with written_whole(path, overwrite=True) as temporary:
         codes = np.rint(windows * 255).astype(np.uint8)
-        np.savez_compressed(temporary, windows=codes, weights=weights.numpy(), log_errors=log_errors.numpy())
+        np.savez_compressed(temporary, windows=codes, **dict(zip(signature.output_names, outputs, strict=True)))
 
 
 def assert_parity(folder: Path, golden: Path) -> float:
     """Return the largest difference between onnxruntime and the golden torch figures; fail above `PARITY`."""
     with np.load(golden) as expected:
         found = ResponseNetwork.load(folder).predict(expected["windows"] / np.float32(255))
-        difference = max(
+        differences = [
             np.abs(found.weights - expected["weights"]).max(),
             np.abs(np.log(found.expected_errors) - expected["log_errors"]).max(),
-        )
-    if difference > PARITY:
-        raise SystemExit(f"onnxruntime differs from torch by {difference:.2e}, more than {PARITY:.0e}")
-    return float(difference)
+        ]
+        if found.pooled:
+            differences.append(np.abs(found.pooled.weights - expected["pooled_weights"]).max())
+            differences.append(np.abs(np.log(found.pooled.expected_error) - expected["pooled_log_error"]).max())
+    if max(differences) > PARITY:
+        raise SystemExit(f"onnxruntime differs from torch by {max(differences):.2e}, more than {PARITY:.0e}")
+    return float(max(differences))
 
 
 def calibration_rows(data: Path, folder: Path, number: int) -> np.ndarray:
     """Return (E_est, expected error, spread, |residual| ...) of photographs of one validation scene."""
-    source, network = window_source(data, "validation"), ResponseNetwork.load(folder, threads=1)
+    source, network = photograph_source(data, "validation"), ResponseNetwork.load(folder, threads=1)
     rng, rows = np.random.default_rng([7, number]), []
     for _ in range(CALIBRATION_PHOTOS):
-        curve = source.curves.draw(rng)
+        curve, _ = source.draw_curve(rng)
         exposure = automatic_exposure(curve, source.luminance) * rng.uniform(0.5, 1.6)
         photo = synthetic_photo(source.scenes[number], curve, exposure, rng, Capture.draw(rng))
         estimate = estimate_response(photo, network=network)
@@ -131,7 +185,7 @@ def calibrated(data: Path, folder: Path, *, workers: int) -> Calibration:
     The uncertainty is the non-negative least squares fit of the error; the band's half-width is the 90 % quantile of
     the residual in units of the uncertainty, at every irradiance.
     """
-    scenes = range(len(window_source(data, "validation").scenes))
+    scenes = range(len(photograph_source(data, "validation").scenes))
     with ProcessPoolExecutor(workers) as pool:
         jobs = [pool.submit(calibration_rows, data, folder, number) for number in scenes]
         rows = np.concatenate([job.result() for job in tqdm(jobs, desc="calibration", unit="scene")])
@@ -148,25 +202,37 @@ def _commit() -> str:
     return subprocess.run(["git", "rev-parse", "HEAD"], capture_output=True, text=True, check=True).stdout.strip()
 
 
-def main() -> None:
-    """Export, check the parity, calibrate, and write the model folder."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--run", type=Path, required=True, help="folder written by training.train")
+def write_model(
+    network: nn.Module, signature: Signature, options: argparse.Namespace, *, without_held_out: bool = False
+) -> None:
+    """Write the model folder: graph, golden figures, checked parity, and the calibration."""
+    options.out.mkdir(parents=True, exist_ok=True)
+    export_onnx(network, signature, options.out / "model.onnx")
+    write_config(options.out, signature, UNCALIBRATED, without_held_out=without_held_out)
+    write_golden(network, signature, options.plate, options.golden)
+    print(f"torch and onnxruntime differ by at most {assert_parity(options.out, options.golden):.1e}")
+    calibration = calibrated(options.data, options.out, workers=options.workers)
+    write_config(options.out, signature, calibration, without_held_out=without_held_out)
+    print(f"wrote {options.out}: {calibration}")
+
+
+def export_options(description: str | None) -> argparse.ArgumentParser:
+    """Return the parser of the options that every export needs."""
+    parser = argparse.ArgumentParser(description=description)
+    parser.add_argument("--run", type=Path, required=True, help="folder written by the training")
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="the model's folder, named as the model")
     parser.add_argument("--plate", type=Path, default=Path("tests/data/plate.jpg"))
     parser.add_argument("--golden", type=Path, required=True)
     parser.add_argument("--workers", type=int, default=2)
-    options = parser.parse_args()
-    options.out.mkdir(parents=True, exist_ok=True)
-    network = load_network(options.run)
-    export_onnx(network, options.out / "model.onnx")
-    write_config(options.out, UNCALIBRATED)
-    write_golden(network, options.plate, options.golden)
-    print(f"torch and onnxruntime differ by at most {assert_parity(options.out, options.golden):.1e}")
-    calibration = calibrated(options.data, options.out, workers=options.workers)
-    write_config(options.out, calibration)
-    print(f"wrote {options.out}: {calibration}")
+    return parser
+
+
+def main() -> None:
+    """Export, check the parity, calibrate, and write the model folder."""
+    options = export_options(__doc__).parse_args()
+    settings = json.loads((options.run / "config.json").read_text())
+    write_model(load_network(options.run), POOLING, options, without_held_out=settings["training"]["without_held_out"])
 
 
 if __name__ == "__main__":

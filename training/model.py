@@ -1,4 +1,4 @@
-"""The window network: statistics that carry the response, then a small network; one graph from pixels to weights."""
+"""The photograph network: statistics of windows in, one response for all of them out."""
 
 from __future__ import annotations
 
@@ -8,170 +8,182 @@ import torch
 from torch import Tensor, nn
 
 from crfnet_core.emor import COMPONENTS
+from crfnet_core.statistics import COLOR_LEVELS, COLOR_STRIDES, GRID, LEVELS, PARTS, STRIDES
 
-#: Code values of an 8-bit photograph.
-CODES = 256
+#: Features per channel: a histogram and, per stride, four means at every level.
+LEVEL_FEATURES = LEVELS * (1 + 4 * len(STRIDES))
 
-#: Levels on which edges are first counted.
-EDGE_LEVELS = 64
+#: Features of edges: per stride and cell, how many there are and where their middles lie.
+EDGE_FEATURES = 2 * len(STRIDES) * GRID**2
 
-#: Codes between the two sides of an edge, at least, for the place of its middle to mean anything.
-LEAST_EDGE = 6
+#: How much the bend may change from level to level, in units of the mean evidence per level: two readings of it.
+SMOOTHNESS = (1e-2, 1e-1)
+
+#: Features of the equations between channels: per stride, the bends read and the evidence, at every level.
+COLOR_FEATURES = len(COLOR_STRIDES) * (len(SMOOTHNESS) + 1) * COLOR_LEVELS
+
+#: Evidence, in squared codes, that a level's bend of 0 is given beforehand.
+COLOR_PRIOR = 3.0
+
+#: Samples that a level or cell is given beforehand, so that one with few of them says little.
+PRIOR = 4.0
 
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """Sizes of the statistics and of the network."""
+    """Sizes of the network."""
 
-    levels: int = 64
-    grid: int = 16
-    strides: tuple[int, ...] = (1, 2, 4, 8, 16)
     width: int = 384
     dropout: float = 0.2
 
-    @property
-    def level_features(self) -> int:
-        """Statistics per channel: a histogram and, per stride, four means at every brightness level."""
-        return self.levels * (1 + 4 * len(self.strides))
 
-    @property
-    def grid_features(self) -> int:
-        """Statistics of edges: per stride, how many and where the middle sample lies, over (a, c)."""
-        return 2 * len(self.strides) * self.grid**2
+class Features(nn.Module):
+    """Statistics, shape (..., STATISTICS), as features that do not grow with the number of samples.
 
-    @property
-    def features(self) -> int:
-        """Length of a window's statistics."""
-        return 3 * self.level_features + self.grid_features
+    Statistics of several windows may be summed before: see `crfnet_core.statistics.window_statistics`.
+    """
+
+    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Return features per channel, (..., 3, LEVEL_FEATURES), of edges, and of the equations between channels."""
+        sizes = [int(torch.Size(part).numel()) for part in PARTS]
+        histogram, neighbours, edges, colors = (
+            part.unflatten(-1, shape) for part, shape in zip(statistics.split(sizes, dim=-1), PARTS, strict=True)
+        )
+        samples = histogram.sum(-1, keepdim=True)
+        levels = [(histogram * LEVELS / samples + 1e-2).log()]
+        for stride in neighbours.unbind(-4):
+            size, log_size, flat, lean, count = stride.unbind(-2)
+            count = count + PRIOR
+            levels += [(size / count + 0.1).log(), log_size / count, flat / count, lean / (size + count / 2)]
+        count, place = edges.unbind(-3)
+        share = (count * 1e4 / samples.sum((-1, -2))[..., None, None, None] + 1).log()
+        places = torch.stack([share, place / (count + PRIOR) * 4], dim=-3)
+        return torch.cat(levels, dim=-1), places.flatten(-4), self._bends(colors).flatten(-3)
+
+    def _bends(self, equations: Tensor) -> Tensor:
+        """Return bends of the inverse response and the logarithm of their evidence, shape (..., S, 3, COLOR_LEVELS)."""
+        matrix, right = equations[..., :-1, :], equations[..., -1, :]
+        evidence = torch.diagonal(matrix, dim1=-2, dim2=-1)
+        scale = evidence.mean(-1)[..., None, None]
+        bends = []
+        for smoothness in SMOOTHNESS:
+            prior = COLOR_PRIOR * torch.eye(COLOR_LEVELS, device=matrix.device)
+            smooth = smoothness * scale * _second_differences().to(matrix)
+            bends.append((solved(matrix + prior + smooth, right) / 10).clamp(-3, 3))
+        return torch.stack([*bends, (evidence + 1).log()], dim=-2)
 
 
-class WindowStatistics(nn.Module):
-    """Statistics of windows that trace the bend of the response.
+def solved(matrix: Tensor, right: Tensor, steps: int = 2 * COLOR_LEVELS) -> Tensor:
+    """Return x of A x = r for positive definite A (..., L, L) and r (..., L), by conjugate gradients.
 
-    Irradiance mixes linearly across an edge, and its relative gradients hardly depend on its level. So both the
-    gradients at each brightness level, and the place of the middle one b of three samples a, b, c in a row between the
-    outer two, follow the slope and the bend of the response. Per channel and level: the histogram and, per stride, the
-    means over neighbours of |d|, log |d|, flatness and d. Over the grid (a, c): the number of edges and the mean place
-    of b. The ideas are those of Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004.
+    A fixed number of steps of products, which every runtime has, in place of a decomposition.
+    """
+    inverse_diagonal = 1 / torch.diagonal(matrix, dim1=-2, dim2=-1)
+    x, residual = torch.zeros_like(right), right
+    direction = preconditioned = inverse_diagonal * residual
+    size = (residual * preconditioned).sum(-1, keepdim=True)
+    for _ in range(steps):
+        turned = (matrix @ direction[..., None]).squeeze(-1)
+        length = size / ((direction * turned).sum(-1, keepdim=True) + 1e-30)
+        x, residual = x + length * direction, residual - length * turned
+        preconditioned = inverse_diagonal * residual
+        before, size = size, (residual * preconditioned).sum(-1, keepdim=True)
+        direction = preconditioned + size / (before + 1e-30) * direction
+    return x
 
-    Everything is counted on the 256 code values, then gathered into levels by linear interpolation.
+
+def _second_differences() -> Tensor:
+    """Return D' D, shape (COLOR_LEVELS, COLOR_LEVELS), for the second differences D of neighbouring levels."""
+    differences = torch.diff(torch.eye(COLOR_LEVELS), n=2, dim=0)
+    return differences.T @ differences
+
+
+class Embedding(nn.Module):
+    """Statistics, of one window or summed over several, as a vector."""
+
+    def __init__(self, config: NetworkConfig) -> None:
+        super().__init__()
+        width = config.width
+        self.features = Features()
+        self.level_normal = nn.BatchNorm1d(LEVEL_FEATURES, affine=False)
+        self.edge_normal = nn.BatchNorm1d(EDGE_FEATURES, affine=False)
+        self.channel = nn.Sequential(nn.Linear(LEVEL_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.edges = nn.Sequential(nn.Linear(EDGE_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.color_normal = nn.BatchNorm1d(COLOR_FEATURES, affine=False)
+        self.colors = nn.Sequential(nn.Linear(COLOR_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.trunk = nn.Sequential(nn.Linear(4 * width, width), nn.GELU(), nn.Dropout(config.dropout))
+
+    def forward(self, statistics: Tensor) -> Tensor:
+        """Return vectors, shape (N, width), of statistics of shape (N, STATISTICS)."""
+        with torch.no_grad(), torch.autocast("cpu", enabled=False):
+            levels, edges, colors = self.features(statistics)
+        levels = self.level_normal(levels.flatten(0, 1)).unflatten(0, (-1, 3)).clamp(-6, 6)
+        channels = self.channel(levels)
+        edges = self.edges(self.edge_normal(edges).clamp(-6, 6))
+        colors = self.colors(self.color_normal(colors).clamp(-6, 6))
+        return self.trunk(torch.cat([channels.mean(1), channels.amax(1), edges, colors], dim=1))
+
+
+class Head(nn.Module):
+    """A vector as EMoR weights and the logarithm of the expected estimation error."""
+
+    def __init__(self, inputs: int, config: NetworkConfig) -> None:
+        super().__init__()
+        width = config.width
+        self.trunk = nn.Sequential(nn.Linear(inputs, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.weights = nn.Linear(width, COMPONENTS)
+        self.log_error = nn.Linear(width, 1)
+
+    def forward(self, vectors: Tensor) -> tuple[Tensor, Tensor]:
+        """Return weights (N, 11) and log errors (N,)."""
+        hidden = self.trunk(vectors)
+        return self.weights(hidden), self.log_error(hidden).squeeze(1)
+
+
+class PhotographNet(nn.Module):
+    """Windows of photographs -> EMoR weights and log expected errors, of each window and of each photograph.
+
+    The pooling is learned: the vector of a photograph holds the mean of its windows' vectors, weighted by a score that
+    each window earns, and the vector of all its windows' statistics taken together.
     """
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
-        self.config = config
-        code = torch.arange(CODES)
-        distance = (code[:, None] - code[None, :]).float()
-        tables = torch.stack([distance.abs(), (distance.abs() + 1).log(), (distance == 0).float(), -distance])
-        self.register_buffer("tables", torch.cat([tables, torch.ones(1, CODES, CODES)]), persistent=False)
-        self.register_buffer("levels", _triangles(CODES, config.levels), persistent=False)
-        self.register_buffer("cells", _triangles(EDGE_LEVELS, config.grid), persistent=False)
+        self.embedding = Embedding(config)
+        self.score = nn.Linear(config.width, 1)
+        self.window = Head(config.width, config)
+        self.photograph = Head(2 * config.width, config)
 
-    def forward(self, windows: Tensor) -> Tensor:
-        """Return statistics, shape (N, features), of windows of shape (N, 3, 227, 227) in [0, 1]."""
-        codes = (windows * (CODES - 1)).round().int()
-        levels = [self._histogram(codes)]
-        grids = []
-        for stride in self.config.strides:
-            a, b, c = _triples(codes, stride)
-            levels.append(self._level_means(a, b, c))
-            grids.append(self._edge_grid(a, b, c))
-        return torch.cat([torch.cat(levels, dim=2).flatten(1), torch.cat(grids, dim=1)], dim=1)
+    def forward(self, statistics: Tensor, present: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Return window weights (B, K, 11), window log errors (B, K), weights (B, 11) and log errors (B,).
 
-    def _histogram(self, codes: Tensor) -> Tensor:
-        """Return the logarithm of the share of samples at each level, shape (N, 3, levels)."""
-        counts = _counted(codes.flatten(2), CODES)
-        return ((counts @ self.levels) * self.config.levels / counts.sum(2, keepdim=True) + 1e-2).log()
-
-    def _level_means(self, a: Tensor, b: Tensor, c: Tensor) -> Tensor:
-        """Return four means over the neighbours of samples at each level, shape (N, 3, 4 * levels)."""
-        pairs = _counted(torch.cat([b * CODES + a, b * CODES + c], dim=2), CODES * CODES)
-        sums = (pairs.unflatten(2, (1, CODES, CODES)) * self.tables).sum(4) @ self.levels
-        means = sums[:, :, :4] / (sums[:, :, 4:] + 4)
-        size = (means[:, :, :1] + 0.1).log()
-        lean = means[:, :, 3:] / (means[:, :, :1] + 0.5)
-        return torch.cat([size, means[:, :, 1:3], lean], dim=2).flatten(2)
-
-    def _edge_grid(self, a: Tensor, b: Tensor, c: Tensor) -> Tensor:
-        """Return how many edges run from level a to level c and where b lies on them, shape (N, 2 * grid * grid)."""
-        low, high = torch.minimum(a, c), torch.maximum(a, c)
-        height = high - low
-        between = ((height > LEAST_EDGE) & (b >= low) & (b <= high)).float()
-        place = between * ((b - low).float() / (height + 1).float() - 0.5)
-        per_level = EDGE_LEVELS / CODES
-        cell = (low * per_level).int() * EDGE_LEVELS + (high * per_level).int()
-        counts = self._gathered(_counted(cell, EDGE_LEVELS**2, between))
-        moments = self._gathered(_counted(cell, EDGE_LEVELS**2, place))
-        return torch.stack([(counts + 1).log(), moments / (counts + 4) * 4], dim=1).flatten(1)
-
-    def _gathered(self, fine: Tensor) -> Tensor:
-        """Return the fine grids of (N, 3, EDGE_LEVELS ** 2), summed over channels, as (N, grid, grid)."""
-        square = fine.sum(1).unflatten(1, (EDGE_LEVELS, EDGE_LEVELS))
-        return self.cells.T @ square @ self.cells
+        Parameters
+        ----------
+        statistics : Tensor, shape (B, K, STATISTICS)
+            Of K windows of each of B photographs.
+        present : Tensor, bool, shape (B, K)
+            Which windows count; at least one of each photograph.
+        """
+        together = (statistics * present[..., None]).sum(1, keepdim=True)
+        rows = torch.cat([statistics, together], dim=1)
+        vectors = self.embedding(rows.flatten(0, 1)).unflatten(0, rows.shape[:2])
+        windows, whole = vectors[:, :-1], vectors[:, -1]
+        scores = self.score(windows).squeeze(-1).masked_fill(~present, -torch.inf)
+        pooled = (scores.softmax(1)[..., None] * windows).sum(1)
+        weights, log_errors = self.window(windows.flatten(0, 1))
+        weights, log_errors = weights.unflatten(0, present.shape), log_errors.unflatten(0, present.shape)
+        return weights, log_errors, *self.photograph(torch.cat([pooled, whole], dim=1))
 
 
-class ResponseNet(nn.Module):
-    """Statistics -> EMoR weights and the logarithm of the expected estimation error."""
+class ShippedNetwork(nn.Module):
+    """The network as it ships: the windows of one photograph, or of several of one camera, as one set."""
 
-    def __init__(self, config: NetworkConfig) -> None:
+    def __init__(self, net: PhotographNet) -> None:
         super().__init__()
-        self.config = config
-        width = config.width
-        self.register_buffer("offset", torch.zeros(config.features))
-        self.register_buffer("scale", torch.ones(config.features))
-        self.channel = nn.Sequential(nn.Linear(config.level_features, width), nn.GELU(), nn.Dropout(config.dropout))
-        self.edges = nn.Sequential(nn.Linear(config.grid_features, width), nn.GELU(), nn.Dropout(config.dropout))
-        self.trunk = nn.Sequential(
-            nn.Linear(3 * width, width),
-            nn.GELU(),
-            nn.Dropout(config.dropout),
-            nn.Linear(width, width),
-            nn.GELU(),
-            nn.Dropout(config.dropout),
-        )
-        self.weights = nn.Linear(width, COMPONENTS)
-        self.log_error = nn.Linear(width, 1)
-
-    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor]:
-        """Return weights (N, 11) and log expected error (N,) from statistics of shape (N, features)."""
-        normal = ((statistics - self.offset) * self.scale).clamp(-6, 6)
-        per_channel, edges = normal.split([3 * self.config.level_features, self.config.grid_features], dim=1)
-        channels = self.channel(per_channel.unflatten(1, (3, self.config.level_features)))
-        hidden = self.trunk(torch.cat([channels.mean(1), channels.amax(1), self.edges(edges)], dim=1))
-        return self.weights(hidden), self.log_error(hidden).squeeze(1)
-
-
-class WindowNetwork(nn.Module):
-    """The network that ships: windows in, weights and log expected error out."""
-
-    def __init__(self, statistics: WindowStatistics, net: ResponseNet) -> None:
-        super().__init__()
-        self.statistics = statistics
         self.net = net
 
-    def forward(self, windows: Tensor) -> tuple[Tensor, Tensor]:
-        """Return weights (N, 11) and log error (N,) of windows of shape (N, 227, 227, 3) in [0, 1]."""
-        return self.net(self.statistics(windows.permute(0, 3, 1, 2)))
-
-
-def _triples(codes: Tensor, stride: int) -> tuple[Tensor, Tensor, Tensor]:
-    """Return the codes a, b, c, each (N, 3, P), of samples in a row, `stride` apart, along rows and columns."""
-    size = codes.shape[3] - 2 * stride
-    starts = (0, stride, 2 * stride)
-    rows = [codes[:, :, :, start : start + size].flatten(2) for start in starts]
-    columns = [codes[:, :, start : start + size, :].flatten(2) for start in starts]
-    a, b, c = (torch.cat(pair, dim=2) for pair in zip(rows, columns, strict=True))
-    return a, b, c
-
-
-def _counted(places: Tensor, size: int, amounts: Tensor | None = None) -> Tensor:
-    """Return how much falls on each of `size` places, shape (N, 3, size), from places of shape (N, 3, P)."""
-    amounts = torch.ones_like(places, dtype=torch.float32) if amounts is None else amounts
-    empty = torch.zeros((places.shape[0], places.shape[1], size), dtype=torch.float32, device=places.device)
-    return empty.scatter_add(2, places.long(), amounts)
-
-
-def _triangles(codes: int, levels: int) -> Tensor:
-    """Return the linear-interpolation memberships of `codes` values in `levels` centres, shape (codes, levels)."""
-    place = torch.linspace(0, levels - 1, codes)[:, None]
-    return (1 - (place - torch.arange(levels)).abs()).clamp(min=0)
+    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Return weights (N, 11), log errors (N,), pooled ones (1, 11) and (1,), of statistics (N, STATISTICS)."""
+        present = torch.ones(1, statistics.shape[0], dtype=torch.bool)
+        weights, log_errors, pooled, pooled_log_error = self.net(statistics[None], present)
+        return weights[0], log_errors[0], pooled, pooled_log_error

@@ -1,4 +1,4 @@
-"""Train the window network on shards of statistics: ``python -m training.train --shards DIR --run DIR``."""
+"""Train the photograph network on shards of statistics: ``python -m training.train --shards DIR --run DIR``."""
 
 from __future__ import annotations
 
@@ -8,29 +8,37 @@ import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-import numpy as np
 import torch
 from torch import Tensor
 from tqdm import tqdm
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.files import written_whole
-from training.dataset import TARGET_STRIDE, read_shards
-from training.model import NetworkConfig, ResponseNet
+from training.dataset import HELD_OUT, TARGET_STRIDE, Shards, read_shards
+from training.model import NetworkConfig, PhotographNet
 
-#: Weight of the loss of the expected error beside that of the response.
-EXPECTED_ERROR_WEIGHT = 0.1
+#: Weights, beside the loss of the photographs' responses, of that of single windows and of the expected errors.
+WINDOW_WEIGHT, EXPECTED_ERROR_WEIGHT = 0.3, 0.1
 
 
 @dataclass(frozen=True)
 class TrainingConfig:
-    """The recipe: AdamW under one cycle of the learning rate."""
+    """The recipe: AdamW under one cycle of the learning rate.
+
+    Parameters
+    ----------
+    all_windows : float
+        Share of training photographs seen with all their windows; of the others, some are left out at random.
+    without_held_out : bool
+        Whether to leave out the photographs whose response is near a curve held out of P2.
+    """
 
     epochs: int = 10
-    batch: int = 512
+    batch: int = 256
     learning_rate: float = 1e-3
     weight_decay: float = 0.05
-    feature_noise: float = 0.2
+    all_windows: float = 0.6
+    without_held_out: bool = False
     seed: int = 1
 
 
@@ -38,7 +46,7 @@ class TrainingConfig:
 class Progress:
     """Everything that a run needs to go on from where it stopped."""
 
-    net: ResponseNet
+    net: PhotographNet
     optimizer: torch.optim.Optimizer
     schedule: torch.optim.lr_scheduler.OneCycleLR
     epoch: int = 0
@@ -68,79 +76,79 @@ class CurveLoss:
         self.components = torch.from_numpy(basis.components[:, ::TARGET_STRIDE]).float()
 
     def errors(self, weights: Tensor, curves: Tensor) -> Tensor:
-        """Return E_est per window, shape (N,), of weights (N, 11) against responses (N, 128)."""
-        squares = (self.mean + weights @ self.components - curves) ** 2
-        return (squares.sum(dim=1) * TARGET_STRIDE + 1e-6).sqrt()
+        """Return E_est, shape (...), of weights (..., 11) against responses (..., 128)."""
+        squares = (self.mean + weights.float() @ self.components - curves) ** 2
+        return (squares.sum(dim=-1) * TARGET_STRIDE + 1e-6).sqrt()
 
-    def __call__(self, weights: Tensor, log_error: Tensor, curves: Tensor) -> Tensor:
-        """Return the loss; an exponential distribution of mean exp(log_error) models the error."""
-        errors = self.errors(weights, curves)
-        likelihood = errors.detach() * (-log_error).exp() + log_error
-        return (errors + EXPECTED_ERROR_WEIGHT * likelihood).mean()
+    def __call__(self, predictions: tuple[Tensor, Tensor, Tensor, Tensor], present: Tensor, curves: Tensor) -> Tensor:
+        """Return the loss; an exponential distribution of mean exp(log_error) models every error."""
+        window_weights, window_log_errors, weights, log_errors = predictions
+        windows = self._with_likelihood(self.errors(window_weights, curves[:, None]), window_log_errors.float())
+        photographs = self._with_likelihood(self.errors(weights, curves), log_errors.float())
+        return photographs.mean() + WINDOW_WEIGHT * windows[present].mean()
+
+    def _with_likelihood(self, errors: Tensor, log_errors: Tensor) -> Tensor:
+        """Return errors plus the weighted negative log likelihood of the expected ones."""
+        return errors + EXPECTED_ERROR_WEIGHT * (errors.detach() * (-log_errors).exp() + log_errors)
 
 
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig) -> Path:
-    """Train until the last epoch, resuming what `run` holds, and return the path of the best checkpoint."""
-    statistics, curves = read_shards(shards, "train")
-    held_out = read_shards(shards, "validation")
-    torch.manual_seed(config.seed)
-    progress = _start(network, config, statistics)
+    """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint."""
+    photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
+    if config.without_held_out:
+        photographs, held_out = (part.only(part.curve_sets != HELD_OUT) for part in (photographs, held_out))
+    progress = _start(network, config, len(photographs.curves))
     run.mkdir(parents=True, exist_ok=True)
-    (run / "config.json").write_text(json.dumps({"training": asdict(config), "network": asdict(network)}, indent=2))
+    settings = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.curves)}
+    (run / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
     if (run / "last.pt").exists():
         progress.resume(run / "last.pt")
     loss = CurveLoss()
-    best = min((error for _, _, error in _read_log(run)), default=np.inf)
     while progress.epoch < config.epochs:
-        train_error = _train_epoch(progress, loss, statistics, curves, config)
-        error = validation_error(progress.net, loss, *held_out)
-        if error < best:
-            best = error
-            progress.save(run / "best.pt")
+        train_loss = _train_epoch(progress, loss, photographs, config)
+        window_error, error = validation_errors(progress.net, loss, held_out)
         with (run / "log.csv").open("a", newline="") as file:
-            csv.writer(file).writerow([progress.epoch, f"{train_error:.4f}", f"{error:.4f}"])
+            csv.writer(file).writerow([progress.epoch, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
         progress.save(run / "last.pt")
-    return run / "best.pt"
+    return run / "last.pt"
 
 
-def validation_error(net: ResponseNet, loss: CurveLoss, statistics: Tensor, curves: Tensor) -> float:
-    """Return the mean E_est of single windows."""
+def validation_errors(net: PhotographNet, loss: CurveLoss, shards: Shards) -> tuple[float, float]:
+    """Return the mean E_est of single windows and of whole photographs."""
     net.eval()
+    windows, photographs = [], []
     with torch.inference_mode():
-        errors = [
-            loss.errors(net(rows.float())[0], targets)
-            for rows, targets in zip(statistics.split(1000), curves.split(1000), strict=True)
-        ]
-    return float(torch.cat(errors).mean())
+        for rows in torch.arange(len(shards.curves)).split(250):
+            statistics, curves = shards.batch(rows)
+            window_weights, _, weights, _ = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
+            windows.append(loss.errors(window_weights, curves[:, None]).flatten())
+            photographs.append(loss.errors(weights, curves))
+    return float(torch.cat(windows).mean()), float(torch.cat(photographs).mean())
 
 
-def _start(network: NetworkConfig, config: TrainingConfig, statistics: Tensor) -> Progress:
-    """Return an untrained network that standardises its input as the training windows are distributed."""
-    net = ResponseNet(network)
-    sample = statistics[:: max(1, len(statistics) // 8000)].float()
-    net.offset.copy_(sample.mean(dim=0))
-    net.scale.copy_(1 / (sample.std(dim=0) + 1e-2))
+def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> Progress:
+    """Return an untrained network with its optimizer and schedule."""
+    torch.manual_seed(config.seed)
+    net = PhotographNet(network)
     optimizer = torch.optim.AdamW(net.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
-    steps = config.epochs * (len(statistics) // config.batch)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, config.learning_rate, total_steps=steps, pct_start=0.2)
+    steps = config.epochs * (photographs // config.batch)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, config.learning_rate, total_steps=steps, pct_start=0.15)
     return Progress(net, optimizer, schedule)
 
 
-def _train_epoch(
-    progress: Progress, loss: CurveLoss, statistics: Tensor, curves: Tensor, config: TrainingConfig
-) -> float:
+def _train_epoch(progress: Progress, loss: CurveLoss, shards: Shards, config: TrainingConfig) -> float:
     """Run one epoch, in an order that depends on the seed and the epoch only, and return the mean loss."""
     torch.manual_seed(config.seed * 1000 + progress.epoch)
-    order = torch.randperm(len(statistics))
+    order = torch.randperm(len(shards.curves))
     batches = order[: len(order) // config.batch * config.batch].split(config.batch)
     total = 0.0
     progress.net.train()
     for rows in tqdm(batches, desc=f"epoch {progress.epoch + 1}/{config.epochs}", leave=False, disable=None):
-        spread = config.feature_noise / progress.net.scale
-        noisy = statistics[rows].float() + spread * torch.randn(len(rows), len(spread))
+        statistics, curves = shards.batch(rows)
+        present = _some_windows(statistics.shape[:2], config.all_windows)
         with torch.autocast("cpu", torch.bfloat16):
-            weights, log_error = progress.net(noisy)
-        value = loss(weights.float(), log_error.float(), curves[rows])
+            predictions = progress.net(statistics, present)
+        value = loss(predictions, present, curves)
         progress.optimizer.zero_grad()
         value.backward()
         torch.nn.utils.clip_grad_norm_(progress.net.parameters(), 1.0)
@@ -151,12 +159,10 @@ def _train_epoch(
     return total / len(batches)
 
 
-def _read_log(run: Path) -> list[tuple[int, float, float]]:
-    """Return (epoch, training loss, validation E_est) of the epochs done."""
-    if not (run / "log.csv").exists():
-        return []
-    with (run / "log.csv").open(newline="") as file:
-        return [(int(epoch), float(loss), float(error)) for epoch, loss, error in csv.reader(file)]
+def _some_windows(shape: torch.Size, all_windows: float) -> Tensor:
+    """Return which windows of each photograph are present, bool (B, K): all of them, or 1 to K at random."""
+    count = torch.where(torch.rand(shape[0]) < all_windows, shape[1], torch.randint(1, shape[1] + 1, (shape[0],)))
+    return torch.rand(*shape).argsort(dim=1) < count[:, None]
 
 
 def main() -> None:
@@ -168,14 +174,14 @@ def main() -> None:
     parser.add_argument("--epochs", type=int, default=defaults.epochs)
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
     parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
-    parser.add_argument("--feature-noise", type=float, default=defaults.feature_noise)
+    parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
     parser.add_argument("--width", type=int, default=sizes.width)
     parser.add_argument("--seed", type=int, default=defaults.seed)
     options = vars(parser.parse_args())
     network = NetworkConfig(dropout=options.pop("dropout"), width=options.pop("width"))
-    best = train(options.pop("shards"), options.pop("run"), TrainingConfig(**options), network)
-    print((best.parent / "log.csv").read_text(), end="")
+    last = train(options.pop("shards"), options.pop("run"), TrainingConfig(**options), network)
+    print((last.parent / "log.csv").read_text(), end="")
 
 
 if __name__ == "__main__":

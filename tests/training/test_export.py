@@ -5,11 +5,13 @@ import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
+onnx = pytest.importorskip("onnx", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ResponseNetwork
 from training.export import (
     PARITY,
+    POOLING,
     UNCALIBRATED,
     assert_parity,
     export_onnx,
@@ -17,7 +19,7 @@ from training.export import (
     write_config,
     write_golden,
 )
-from training.model import NetworkConfig, ResponseNet
+from training.model import NetworkConfig, PhotographNet
 
 CONFIG = NetworkConfig(width=64)
 
@@ -29,12 +31,12 @@ def exported(tmp_path_factory, root):
     (folder / "run").mkdir()
     (folder / "model").mkdir()
     torch.manual_seed(0)
-    torch.save({"net": ResponseNet(CONFIG).state_dict()}, folder / "run" / "best.pt")
+    torch.save({"net": PhotographNet(CONFIG).state_dict()}, folder / "run" / "last.pt")
     (folder / "run" / "config.json").write_text(json.dumps({"network": asdict(CONFIG)}))
     network = load_network(folder / "run")
-    export_onnx(network, folder / "model" / "model.onnx")
-    write_config(folder / "model", UNCALIBRATED)
-    write_golden(network, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
+    export_onnx(network, POOLING, folder / "model" / "model.onnx")
+    write_config(folder / "model", POOLING, UNCALIBRATED)
+    write_golden(network, POOLING, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
     return folder
 
 
@@ -53,4 +55,14 @@ def test_a_disagreement_stops_the_export(exported, tmp_path):
 def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
-    assert network.predict(np.zeros((2, 227, 227, 3), np.float32)).weights.shape == (2, 11)
+    found = network.predict(np.zeros((2, 227, 227, 3), np.float32))
+    assert found.weights.shape == (2, 11)
+    assert found.pooled.weights.shape == (11,)
+    assert network.config.training["held_out_curves"] == []
+
+
+def test_matrices_are_kept_in_half_precision(exported):
+    graph = onnx.load(exported / "model" / "model.onnx").graph
+    kept = {tuple(tensor.dims): tensor.data_type for tensor in graph.initializer if len(tensor.dims) > 1}
+    assert len(kept) > 5
+    assert set(kept.values()) == {onnx.TensorProto.FLOAT16}

@@ -3,75 +3,85 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
-from training.model import NetworkConfig, ResponseNet, WindowNetwork, WindowStatistics
+from crfnet_core.statistics import window_statistics
+from training.model import (
+    COLOR_FEATURES,
+    EDGE_FEATURES,
+    LEVEL_FEATURES,
+    Features,
+    NetworkConfig,
+    PhotographNet,
+    ShippedNetwork,
+    solved,
+)
 
-CONFIG = NetworkConfig(levels=16, grid=8, strides=(1, 4), width=32)
+CONFIG = NetworkConfig(width=32)
 
 
 @pytest.fixture(scope="module")
-def windows():
-    """Two photographs of one random scene: linear, and through a square root."""
-    rng = np.random.default_rng(0)
-    coarse = rng.uniform(0, 1, (2, 3, 20, 20)).astype(np.float32)
-    smooth = torch.nn.functional.interpolate(torch.from_numpy(coarse), size=227, mode="bilinear")
-    return torch.cat([smooth[:1], smooth[:1].sqrt()])
+def statistics():
+    """Of three windows of smooth random scenes, one through a square root."""
+    coarse = torch.from_numpy(np.random.default_rng(0).uniform(0, 1, (3, 3, 20, 20)).astype(np.float32))
+    windows = torch.nn.functional.interpolate(coarse, size=227, mode="bilinear").permute(0, 2, 3, 1).numpy()
+    windows[2] = np.sqrt(windows[2])
+    return torch.from_numpy(np.stack([window_statistics(window) for window in windows]))
 
 
 @pytest.fixture(scope="module")
-def statistics(windows):
-    return WindowStatistics(CONFIG)(windows)
-
-
-def test_shape_and_range(statistics):
-    assert statistics.shape == (2, CONFIG.features)
-    assert torch.isfinite(statistics).all()
-    assert statistics.abs().max() < 30
-
-
-def test_the_histogram_counts_levels():
-    flat = torch.full((1, 3, 227, 227), 1.0)
-    shares = WindowStatistics(CONFIG)._histogram((flat * 255).int()).exp() - 1e-2
-    np.testing.assert_allclose(shares[0, 0, -1], CONFIG.levels, rtol=1e-5)
-    np.testing.assert_allclose(shares[0, 0, :-1], 0, atol=1e-6)
-
-
-def test_edges_of_a_linear_photograph_have_their_middle_in_the_middle(statistics):
-    """A ramp mixes linearly, so b lies half-way on a linear photograph, and above after a concave response."""
-    means = statistics[:, 3 * CONFIG.level_features :].unflatten(1, (2, 2, CONFIG.grid**2))[:, 1, 1].mean(dim=1)
-    assert abs(float(means[0])) < 0.1
-    assert float(means[1]) > float(means[0]) + 0.03
-
-
-def test_a_row_of_known_triples():
-    """One vertical edge of three grays in every row: a = 0, b = 128, c = 255."""
-    picture = torch.zeros(1, 3, 227, 227)
-    picture[:, :, :, 100] = 128 / 255
-    picture[:, :, :, 101:] = 1
-    a, b, c = (codes.int() for codes in _triples_of(picture))
-    grid = WindowStatistics(CONFIG)._edge_grid(a, b, c)[0]
-    counts, moments = grid.split(CONFIG.grid**2)
-    edges = 3 * 227
-    across, half = CONFIG.grid - 1, slice(3, 5)
-    assert counts[across].exp() - 1 == pytest.approx(edges, rel=1e-3)
-    assert moments[across] == pytest.approx(0, abs=1e-3)
-    assert (counts[half].exp() - 1).sum() == pytest.approx(edges, rel=1e-3)
-    assert (moments[half] < -1.9).all()
-
-
-def _triples_of(picture):
-    from training.model import _triples
-
-    return _triples((picture * 255).round().int(), 1)
-
-
-def test_channels_may_be_exchanged(windows):
+def network():
     torch.manual_seed(0)
-    network = WindowNetwork(WindowStatistics(CONFIG), ResponseNet(CONFIG)).eval()
-    pixels = windows.permute(0, 2, 3, 1)
+    return PhotographNet(CONFIG).eval()
+
+
+def test_features_are_finite_and_of_the_sizes_named(statistics):
+    levels, edges, colors = Features()(statistics)
+    assert levels.shape == (3, 3, LEVEL_FEATURES)
+    assert edges.shape == (3, EDGE_FEATURES)
+    assert colors.shape == (3, COLOR_FEATURES)
+    assert all(part.isfinite().all() and part.abs().max() < 30 for part in (levels, edges, colors))
+
+
+def test_conjugate_gradients_solve():
+    generator = torch.Generator().manual_seed(1)
+    root, right = torch.randn(4, 20, 20, generator=generator), torch.randn(4, 20, generator=generator)
+    matrix = root @ root.mT + 5 * torch.eye(20)
+    np.testing.assert_allclose(solved(matrix, right), torch.linalg.solve(matrix, right), atol=1e-4)
+    assert not solved(matrix, torch.zeros(4, 20)).any()
+
+
+def test_features_hardly_depend_on_the_number_of_samples(statistics):
+    for once, thrice in list(zip(Features()(statistics), Features()(3 * statistics), strict=True))[:2]:
+        assert (once - thrice).abs().mean() < 0.05
+        assert once.std() > 0.5
+
+
+def test_windows_that_are_not_present_change_nothing(network, statistics):
+    present = torch.tensor([[True, True, False]])
     with torch.inference_mode():
-        np.testing.assert_allclose(network(pixels)[0], network(pixels[..., [2, 0, 1]])[0], atol=1e-5)
+        found = network(statistics[None], present)
+        alone = network(statistics[None, :2], present[:, :2])
+    np.testing.assert_allclose(found[2], alone[2], atol=1e-5)
+    np.testing.assert_allclose(found[0][0, :2], alone[0][0], atol=1e-5)
 
 
-def test_windows_do_not_influence_each_other(windows, statistics):
-    alone = WindowStatistics(CONFIG)(windows[1:])
-    np.testing.assert_allclose(alone[0], statistics[1], atol=1e-5)
+def test_the_order_of_windows_and_of_channels_does_not_matter(network, statistics):
+    shipped = ShippedNetwork(network)
+    with torch.inference_mode():
+        expected = shipped(statistics)
+        turned = shipped(statistics[[2, 0, 1]])
+    np.testing.assert_allclose(turned[2], expected[2], atol=1e-5)
+    np.testing.assert_allclose(turned[0], expected[0][[2, 0, 1]], atol=1e-5)
+    assert expected[2].shape == (1, 11)
+    assert expected[3].shape == (1,)
+    levels = Features()(statistics)[0]
+    assert not torch.allclose(levels[:, 0], levels[:, 1])
+
+
+def test_pooling_weighs_windows_by_their_score(network, statistics):
+    present = torch.ones(1, 3, dtype=torch.bool)
+    with torch.inference_mode():
+        before = network(statistics[None], present)[2]
+        network.score.weight.mul_(200)
+        after = network(statistics[None], present)[2]
+        network.score.weight.div_(200)
+    assert (before - after).abs().max() > 1e-4

@@ -6,14 +6,11 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from training.curves import CurveSource
-from training.scenes import Scene, dithered, read_scene, split_scenes
+from crfnet_core.errors import CRFNetError
+from training.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
 from training.synthesis import (
-    LEAST_FILLED,
     TARGET_BRIGHTNESS,
     Capture,
-    WindowSource,
-    augmented,
     automatic_exposure,
     blurred,
     compressed,
@@ -84,25 +81,6 @@ def test_dither_stays_within_half_a_step(rng):
     assert (np.abs(dithered(pixels, rng) - pixels) <= step / 2 + 1e-6).all()
 
 
-def test_drawn_windows_cover_the_range_and_repeat_with_the_seed(scene):
-    curves = CurveSource(np.stack([GAMMA, UNIFORM**0.3]), (), camera_share=0.0)
-    source = WindowSource([scene], curves, reference_luminance([scene]))
-    first, second = (source.draw(np.random.default_rng(3)) for _ in range(2))
-    assert first
-    for (window, curve), (same_window, same_curve) in zip(first, second, strict=True):
-        assert window.shape == (227, 227, 3)
-        assert len(np.unique(window)) >= LEAST_FILLED
-        np.testing.assert_array_equal(window, same_window)
-        np.testing.assert_array_equal(curve, same_curve)
-
-
-def test_augmentation_leaves_the_piece_alone(scene, rng):
-    before = scene.pixels.copy()
-    for _ in range(20):
-        assert augmented(scene.pixels, rng).shape[2] == 3
-    np.testing.assert_array_equal(scene.pixels, before)
-
-
 @pytest.fixture
 def listed(tmp_path):
     lines = [f"pano{n:03d}.exr,panorama band" for n in range(100)] + [f"photo{n:02d}.exr,photograph" for n in range(12)]
@@ -116,6 +94,21 @@ def test_splits_share_no_scene_and_lose_none(listed):
     assert len(names) == len(set(names)) == 112
     assert {split: len(scenes) for split, scenes in splits.items()} == {"test": 20, "validation": 12, "train": 80}
     assert sum(not is_panorama for _, is_panorama in splits["test"]) == 3
+
+
+def test_scenes_of_one_s_own_only_train_and_move_no_other(listed):
+    before = split_scenes(listed)
+    rows = (listed / "manifest.csv").read_text().splitlines()
+    more = ["file,kind,source", *(f"{row},somewhere" for row in rows[1:]), "mine.exr,photograph,brought: mine.dng"]
+    (listed / "manifest.csv").write_text("\n".join(more) + "\n")
+    assert split_scenes(listed) == before | {"train": [*before["train"], ("mine.exr", False)]}
+    assert split_scenes(listed, brought=False) == before
+
+
+def test_a_split_without_scenes_says_so(tmp_path):
+    (tmp_path / "manifest.csv").write_text("file,kind\none.exr,photograph\n")
+    with pytest.raises(CRFNetError, match="none is left for the split validation"):
+        read_scenes(tmp_path, "validation")
 
 
 def test_a_scene_is_scaled_to_a_mean_of_1(tmp_path, scene):

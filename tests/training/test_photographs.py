@@ -1,0 +1,64 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from training.curves import CurveSource
+from training.photographs import LEAST_FILLED, WINDOWS, PhotographSource, augmented, relit
+from training.scenes import Scene
+from training.synthesis import reference_luminance
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+
+@pytest.fixture
+def scene():
+    """Smooth light over many stops, with texture."""
+    rng, (y, x) = np.random.default_rng(5), np.mgrid[:300, :500] / 100
+    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
+    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)
+
+
+@pytest.fixture
+def source(scene):
+    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_share=0, plain_share=1) for power in (0.3, 0.5))
+    return PhotographSource([scene], sets, (0.25, 0.75), reference_luminance([scene]))
+
+
+def test_photographs_cover_the_range_and_repeat_with_the_seed(source):
+    first, second = (source.draw(np.random.default_rng(3)) for _ in range(2))
+    assert first
+    for one, other in zip(first, second, strict=True):
+        assert one.windows.shape == (WINDOWS, 227, 227, 3)
+        assert one.windows.dtype == np.uint8
+        assert max(len(np.unique(window)) for window in one.windows) >= LEAST_FILLED
+        np.testing.assert_array_equal(one.windows, other.windows)
+        np.testing.assert_array_equal(one.curve, other.curve)
+
+
+def test_curves_come_from_the_sets_in_their_shares(source):
+    rng = np.random.default_rng(0)
+    drawn = [source.draw_curve(rng) for _ in range(400)]
+    for curve, chosen in drawn:
+        np.testing.assert_allclose(curve, UNIFORM ** (0.3, 0.5)[chosen])
+    assert np.mean([chosen for _, chosen in drawn]) == pytest.approx(0.75, abs=0.06)
+
+
+def test_augmentation_treats_all_windows_alike_and_leaves_them_unchanged(scene):
+    light = np.stack([scene.pixels[:227, :227]] * 2)
+    before = light.copy()
+    for seed in range(20):
+        turned = augmented(light, np.random.default_rng(seed))
+        assert turned.shape == light.shape
+        np.testing.assert_allclose(turned[0], turned[1], rtol=1e-5)
+    np.testing.assert_array_equal(light, before)
+
+
+def test_relighting_is_smooth_and_keeps_light_positive(scene):
+    light = np.ones((2, 227, 227, 3), np.float32)
+    for seed in range(30):
+        lit = relit(light, np.random.default_rng(seed))
+        assert (lit > 0).all()
+        assert np.abs(np.diff(np.log2(lit), axis=1)).max() < 0.1
+    assert any(relit(light, np.random.default_rng(seed)).std() > 0.05 for seed in range(30))

@@ -1,0 +1,139 @@
+"""Training photographs: windows of a scene as random cameras would have recorded them."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.windows import WINDOW_SIZE, filled_bins
+from training.curves import CurveSource
+from training.scenes import LUMINANCE, Scene, dithered
+from training.synthesis import Capture, automatic_exposure, photographed
+
+#: Windows of a training photograph, and the candidates that they are the best-covering of.
+WINDOWS, CANDIDATES = 4, 8
+
+#: Code values that the best window of a training photograph fills at least, of 256.
+LEAST_FILLED = 120
+
+
+@dataclass(frozen=True)
+class Photograph:
+    """Windows, uint8 (4, 227, 227, 3), of one photograph, the response (1024,), and the set that it was drawn from."""
+
+    windows: np.ndarray
+    curve: np.ndarray
+    curve_set: int
+
+
+@dataclass(frozen=True)
+class PhotographSource:
+    """Draws training photographs.
+
+    Parameters
+    ----------
+    scenes : list of Scene
+        Of one split.
+    curve_sets : tuple of CurveSource
+        Responses, in sets of which some may be left out of a training.
+    shares : tuple of float
+        Share of each set; their sum is 1.
+    luminance : ndarray, shape (N,)
+        See `training.synthesis.automatic_exposure`.
+    cameras : int
+        Cameras that see the same windows of a scene.
+    """
+
+    scenes: list[Scene]
+    curve_sets: tuple[CurveSource, ...]
+    shares: tuple[float, ...]
+    luminance: np.ndarray
+    cameras: int = 3
+
+    def draw(self, rng: np.random.Generator) -> list[Photograph]:
+        """Return up to `cameras` photographs of the same windows."""
+        light = relit(augmented(self._windows(rng), rng), rng)
+        drawn = (self._photograph(light, rng) for _ in range(self.cameras))
+        return [photo for photo in drawn if max(map(_filled, photo.windows)) >= LEAST_FILLED]
+
+    def draw_curve(self, rng: np.random.Generator) -> tuple[np.ndarray, int]:
+        """Return a response, shape (1024,), and the number of its set."""
+        chosen = int(rng.choice(len(self.shares), p=self.shares))
+        return self.curve_sets[chosen].draw(rng), chosen
+
+    def _windows(self, rng: np.random.Generator) -> np.ndarray:
+        """Return linear windows (4, 227, 227, 3) of a scene; sometimes half of them show another scene."""
+        scenes = [self.scenes[i] for i in rng.integers(len(self.scenes), size=2)]
+        if rng.random() > 0.25:
+            return _scene_windows(scenes[0], WINDOWS, rng)
+        return np.concatenate([_scene_windows(scene, WINDOWS // 2, rng) for scene in scenes])
+
+    def _photograph(self, light: np.ndarray, rng: np.random.Generator) -> Photograph:
+        """Return the windows as a random camera records them."""
+        (curve, chosen), capture = self.draw_curve(rng), Capture.draw(rng)
+        exposure = np.float32(self._exposure(light, curve, rng))
+        return Photograph(photographed(light * exposure, curve, capture, rng), curve, chosen)
+
+    def _exposure(self, light: np.ndarray, curve: np.ndarray, rng: np.random.Generator) -> float:
+        """Return the exposure: around s_crf, or one that puts a high percentile of the windows at saturation."""
+        if rng.random() < 0.6:
+            return automatic_exposure(curve, self.luminance) * rng.uniform(0.5, 1.6)
+        return 1 / max(float(np.percentile(light[:, ::4, ::4].max(axis=-1), rng.uniform(80, 99.9))), 1e-6)
+
+
+def augmented(light: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return windows turned, with another illuminant and other primaries, sometimes without colour."""
+    turned = np.rot90(light, rng.integers(4), axes=(1, 2))
+    turned = turned[:, :, ::-1] if rng.random() < 0.5 else turned
+    if rng.random() < 0.08:
+        return np.repeat((turned @ LUMINANCE)[..., None], 3, axis=-1)
+    matrix = np.eye(3) + rng.uniform(0, 0.15, (3, 3))
+    matrix = matrix / matrix.sum(axis=1, keepdims=True) * np.exp2(rng.normal(0, 0.4, 3))[:, None]
+    return turned @ matrix.T.astype(np.float32)
+
+
+def relit(light: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return windows, sometimes under smoothly uneven light, sometimes with more or less contrast.
+
+    Scenes are few: another distribution of light makes other photographs of them. A power of all irradiance bends the
+    edges a little, so it stays mild.
+    """
+    if rng.random() < 0.3:
+        light = light * _uneven(len(light), rng)
+    if rng.random() < 0.3:
+        light = np.maximum(light, 0) ** np.float32(np.exp(rng.normal(0, 0.12)))
+    return np.ascontiguousarray(light, dtype=np.float32)
+
+
+def _uneven(count: int, rng: np.random.Generator) -> np.ndarray:
+    """Return smooth factors around 1, shape (count, 227, 227, 1): one wave across each window, of up to two stops."""
+    place = np.linspace(0, 1, WINDOW_SIZE, dtype=np.float32)
+    turn, start = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
+    across = np.cos(turn) * place[:, None] + np.sin(turn) * place[None, :]
+    stops = rng.uniform(0.2, 2, (count, 1, 1)) * np.sin(rng.uniform(1, 5, (count, 1, 1)) * across + start)
+    return np.exp2(stops)[..., None].astype(np.float32)
+
+
+def _scene_windows(scene: Scene, count: int, rng: np.random.Generator) -> np.ndarray:
+    """Return the `count` linear windows of a scene with most different brightnesses, of twice as many candidates."""
+    height, width = scene.pixels.shape[:2]
+    candidates = []
+    for _ in range(count * CANDIDATES // WINDOWS):
+        step = int(rng.integers(1, min(height, width) // WINDOW_SIZE + 1))
+        extent = (WINDOW_SIZE - 1) * step + 1
+        y, x = rng.integers(height - extent + 1), rng.integers(width - extent + 1)
+        candidates.append(scene.pixels[y : y + extent : step, x : x + extent : step])
+    coverage = [_filled_at_a_glance(candidate) for candidate in candidates]
+    chosen = np.stack([candidates[i] for i in np.argsort(coverage)[::-1][:count]])
+    return dithered(chosen, rng) if scene.is_panorama else chosen
+
+
+def _filled_at_a_glance(light: np.ndarray) -> int:
+    """Return about how many of 256 codes a window fills, seen sparsely at an ordinary exposure."""
+    return filled_bins(np.minimum(light[::4, ::4] * np.float32(0.2), 1) ** np.float32(0.45))
+
+
+def _filled(window: np.ndarray) -> int:
+    """Return how many of the 256 codes of a uint8 window are filled."""
+    return filled_bins(window / np.float32(255))
