@@ -25,6 +25,9 @@ COLOR_FEATURES = len(COLOR_STRIDES) * (len(SMOOTHNESS) + 1) * COLOR_LEVELS
 #: Evidence, in squared codes, that a level's bend of 0 is given beforehand.
 COLOR_PRIOR = 3.0
 
+#: Share of its first squared residual at which a system counts as solved.
+CONVERGED = 1e-10
+
 #: Samples that a level or cell is given beforehand, so that one with few of them says little.
 PRIOR = 4.0
 
@@ -80,16 +83,22 @@ def solved(matrix: Tensor, right: Tensor, steps: int = 2 * COLOR_LEVELS) -> Tens
     """
     inverse_diagonal = 1 / torch.diagonal(matrix, dim1=-2, dim2=-1)
     x, residual = torch.zeros_like(right), right
-    direction = preconditioned = inverse_diagonal * residual
-    size = (residual * preconditioned).sum(-1, keepdim=True)
+    direction = inverse_diagonal * residual
+    size = first = (residual * direction).sum(-1, keepdim=True)
     for _ in range(steps):
+        going = size > CONVERGED * first
         turned = (matrix @ direction[..., None]).squeeze(-1)
-        length = size / ((direction * turned).sum(-1, keepdim=True) + 1e-30)
+        length = _share(going, size, (direction * turned).sum(-1, keepdim=True))
         x, residual = x + length * direction, residual - length * turned
         preconditioned = inverse_diagonal * residual
         before, size = size, (residual * preconditioned).sum(-1, keepdim=True)
-        direction = preconditioned + size / (before + 1e-30) * direction
+        direction = preconditioned + _share(going, size, before) * direction
     return x
+
+
+def _share(chosen: Tensor, part: Tensor, whole: Tensor) -> Tensor:
+    """Return part / whole where chosen, else 0; no tiny number guards it, since graph optimisers drop these."""
+    return torch.where(chosen, part, 0) / torch.where(chosen, whole, 1)
 
 
 def _second_differences() -> Tensor:

@@ -56,6 +56,8 @@ def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
     found = network.predict(np.zeros((2, 227, 227, 3), np.float32))
+    assert np.isfinite(found.weights).all()
+    assert np.isfinite(found.pooled.weights).all()
     assert found.weights.shape == (2, 11)
     assert found.pooled.weights.shape == (11,)
     assert network.config.training["held_out_curves"] == []
