@@ -22,8 +22,9 @@ from crfnet_core.files import write_text_whole
 from crfnet_core.statistics import window_statistics
 from crfnet_core.windows import WINDOW_SIZE
 
-#: The packaged model that is used unless another is asked for.
-DEFAULT_MODEL = Path(__file__).with_name("models") / "window-statistics"
+#: The packaged models, and the one that is used unless another is asked for.
+MODELS = Path(__file__).with_name("models")
+DEFAULT_MODEL = MODELS / "photograph-statistics"
 
 #: What onnxruntime raises for a graph that it cannot load.
 _UNLOADABLE = (
@@ -181,7 +182,7 @@ class ResponseNetwork:
         Parameters
         ----------
         folder : str or Path, optional
-            Holds model.onnx and model.json.
+            Holds model.onnx and model.json; or the name of a packaged model, such as "crfnet2017".
         threads : int
             Windows that run at the same time; 0 takes the processor's number of cores.
 
@@ -192,7 +193,7 @@ class ResponseNetwork:
         """
         if threads < 0:
             raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
-        folder = DEFAULT_MODEL if folder is None else Path(folder)
+        folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")
         graph = _read_bytes(folder / "model.onnx")
         if hashlib.sha256(graph).hexdigest() != config.sha256:
@@ -236,6 +237,14 @@ class ResponseNetwork:
         feed = {self.config.input_name: np.stack(rows).astype(np.float32, copy=False)}
         outputs: list[NDArray[np.float32]] = self._session.run(list(self.config.output_names), feed)
         return outputs
+
+
+def model_folder(wanted: str | Path | None = None) -> Path:
+    """Return the folder of a model: that of a path where there is one, else of the packaged model of this name."""
+    if wanted is None:
+        return DEFAULT_MODEL
+    is_packaged = not Path(wanted).is_dir() and (MODELS / wanted / "model.json").is_file()
+    return MODELS / wanted if is_packaged else Path(wanted)
 
 
 def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:

@@ -158,7 +158,7 @@ def _command(commands: Commands, name: str, summary: str, examples: str) -> argp
 
 def _add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
-    model = parser.add_argument("--model", type=Path, metavar="DIR", help="another model folder than the packaged one")
+    model = parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
     model.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
     parser.add_argument(
         "--threads", type=_count, default=0, metavar="N", help="threads of the network (0: as many as cores)"

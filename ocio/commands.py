@@ -21,7 +21,7 @@ from tqdm import tqdm
 from crfnet_core.errors import ModelError, PlateError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.files import write_text_whole
-from crfnet_core.network import ResponseNetwork
+from crfnet_core.network import ResponseNetwork, model_folder
 from crfnet_core.photo import Photo, read_photo
 from ocio import describe
 from ocio.config import write_config
@@ -34,6 +34,9 @@ from ocio.portable import portable_config
 
 #: Frames of a sequence from which its one response is estimated.
 FRAMES_ANALYSED = 8
+
+#: Either part of a model stands for its folder.
+MODEL_FILES = ("model.json", "model.onnx")
 
 #: Longer side in pixels of the photograph as the sheet shows it.
 PREVIEW_SIDE = 960
@@ -104,8 +107,7 @@ def run_info(options: argparse.Namespace) -> None:
     if subject.suffix.lower() in READERS:
         document = describe.lut_document(subject, read_lut(subject))
         lines = describe.lut_lines(document)
-    elif subject.is_dir() or subject.name in ("model.json", "model.onnx"):
-        folder = subject if subject.is_dir() else subject.parent
+    elif (folder := model_folder(subject.parent if subject.name in MODEL_FILES else subject)).is_dir():
         document = describe.model_document(ResponseNetwork.load(folder).config)
         lines = describe.model_lines(document)
     else:

@@ -52,7 +52,7 @@ def brightness_percent(error: float) -> float:
 
 
 def agreeing(estimate: ResponseEstimate) -> str:
-    """Return how many windows entered the average, in words."""
+    """Return how many windows agree with the others, in words."""
     return f"{sum(window.kept for window in estimate.windows)} of {len(estimate.windows)} windows agree"
 
 

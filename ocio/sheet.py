@@ -139,8 +139,8 @@ def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
 
 
 def _draw_photograph(axes: Axes, preview: Pixels, estimate: ResponseEstimate, stride: int) -> None:
-    """Show the first photograph with its windows: solid if used, dashed if set aside."""
-    _show(axes, preview, stride, "Photograph and its windows (dashed: set aside)")
+    """Show the first photograph with its windows: solid, dashed if far from the others."""
+    _show(axes, preview, stride, "Photograph and its windows (dashed: far from the others)")
     for found in estimate.windows:
         if found.photo == 0:
             axes.add_patch(_outline(found.window, kept=found.kept, width=1.8, color="#000000"))

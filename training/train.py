@@ -38,7 +38,7 @@ class TrainingConfig:
         Whether to leave out the photographs whose response is near a curve held out of P2.
     """
 
-    epochs: int = 10
+    epochs: int = 8
     batch: int = 256
     learning_rate: float = 1e-3
     weight_decay: float = 0.05

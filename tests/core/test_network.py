@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network import DEFAULT_MODEL, Calibration, ModelConfig, ResponseNetwork
+from crfnet_core.network import DEFAULT_MODEL, MODELS, Calibration, ModelConfig, ResponseNetwork, model_folder
+from crfnet_core.statistics import window_statistics
 
 
 @pytest.fixture(scope="module")
@@ -34,6 +35,8 @@ def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
     found = network.predict(golden["windows"] / np.float32(255))
     np.testing.assert_allclose(found.weights, golden["weights"], atol=tolerance.parity)
     np.testing.assert_allclose(np.log(found.expected_errors), golden["log_errors"], atol=tolerance.parity)
+    np.testing.assert_allclose(found.pooled.weights, golden["pooled_weights"][0], atol=tolerance.parity)
+    assert np.log(found.pooled.expected_error) == pytest.approx(golden["pooled_log_error"][0], abs=tolerance.parity)
     assert np.abs(golden["weights"]).max() > 0.1
 
 
@@ -43,10 +46,40 @@ def test_threads_do_not_change_the_result(golden):
     np.testing.assert_array_equal(first.weights, second.weights)
 
 
-def test_windows_are_independent_of_each_other(network, golden):
+def test_windows_are_independent_of_each_other(network, golden, tolerance):
     windows = golden["windows"] / np.float32(255)
     together = network.predict(windows).weights
-    np.testing.assert_array_equal(network.predict(windows[1:2]).weights, together[1:2])
+    np.testing.assert_allclose(network.predict(windows[1:2]).weights, together[1:2], atol=tolerance.parity)
+
+
+def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, golden, tolerance):
+    windows = golden["windows"] / np.float32(255)
+    pooled = network.predict(windows).pooled.weights
+    np.testing.assert_allclose(network.predict(windows[::-1]).pooled.weights, pooled, atol=tolerance.parity)
+    assert np.linalg.norm(network.predict(windows[:2]).pooled.weights - pooled) > 1e-3
+
+
+@pytest.mark.parametrize("level", [0.0, 0.5, 1.0])
+def test_a_flat_window_has_a_finite_answer(network, level):
+    found = network.predict(np.full((2, 227, 227, 3), level, np.float32))
+    assert np.isfinite(found.pooled.weights).all()
+    assert np.isfinite(found.weights).all()
+
+
+def test_a_model_is_found_by_its_name_or_its_folder(copied):
+    assert model_folder() == DEFAULT_MODEL
+    assert model_folder("crfnet2017") == MODELS / "crfnet2017"
+    assert model_folder(copied) == copied
+    assert model_folder("nonesuch").name == "nonesuch"
+
+
+def test_the_paper_s_network_runs_by_name(golden):
+    network = ResponseNetwork.load("crfnet2017")
+    found = network.predict(golden["windows"] / np.float32(255))
+    assert network.config.name == "crfnet2017"
+    assert found.weights.shape == (3, 11)
+    assert found.pooled is None
+    assert len(set(found.expected_errors)) == 1
 
 
 def test_progress_counts_the_windows(network, golden):
@@ -56,8 +89,8 @@ def test_progress_counts_the_windows(network, golden):
 
 
 def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
-    run, real = [], ResponseNetwork._run
-    monkeypatch.setattr(ResponseNetwork, "_run", lambda self, window: run.append(1) or real(self, window))
+    run = []
+    monkeypatch.setattr("crfnet_core.network.window_statistics", lambda w: run.append(1) or window_statistics(w))
 
     def stop(done, total):
         raise KeyboardInterrupt

@@ -31,9 +31,9 @@ def evaluation(model, tmp_path, *, material=None, **settings):
 
 
 def test_a_model_is_found_by_name_or_by_folder(fixed_model):
-    assert Model.found("window-statistics").name == "window-statistics"
+    assert Model.found("crfnet2017").name == "crfnet2017"
     assert Model.found(str(fixed_model)).name == "fixed_model"
-    with pytest.raises(CRFNetError, match=r"nonesuch: is no model folder; .* one of .*window-statistics"):
+    with pytest.raises(CRFNetError, match=r"nonesuch: is no model folder; .* one of .*crfnet2017"):
         Model.found("nonesuch")
 
 

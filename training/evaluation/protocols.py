@@ -14,7 +14,7 @@ import numpy as np
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import write_text_whole
-from crfnet_core.network import DEFAULT_MODEL, ModelConfig
+from crfnet_core.network import MODELS, ModelConfig, model_folder
 from training.evaluation.calibration import calibration
 from training.evaluation.cameras import real_table
 from training.evaluation.cases import CaseFile, code_digest
@@ -67,10 +67,9 @@ class Model:
         CRFNetError
             If there is neither, or the folder is no model.
         """
-        packaged, path = DEFAULT_MODEL.parent / wanted, Path(wanted)
-        folder = packaged if (packaged / "model.json").is_file() else path
+        folder = model_folder(wanted)
         if not (folder / "model.json").is_file():
-            names = ", ".join(sorted(entry.parent.name for entry in DEFAULT_MODEL.parent.glob("*/model.json")))
+            names = ", ".join(sorted(entry.parent.name for entry in MODELS.glob("*/model.json")))
             raise CRFNetError(f"{wanted}: is no model folder; give its path, or one of {names}")
         config = ModelConfig.read(folder / "model.json")
         calibration = hashlib.sha256(repr(config.calibration).encode()).hexdigest()[:16]
