@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.evaluation.camera import balanced_gains, code_counts, enlarged, light_under, synthetic_photo, taken

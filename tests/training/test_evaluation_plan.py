@@ -2,7 +2,7 @@ from collections import Counter
 
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError

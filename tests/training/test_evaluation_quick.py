@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 

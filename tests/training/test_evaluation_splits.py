@@ -3,7 +3,7 @@ import json
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from training import splits

@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.metrics import estimation_error, peak_signal_to_noise, ratio_to_gamma, win_rate
