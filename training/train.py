@@ -20,9 +20,6 @@ from training.model import NetworkConfig, PhotographNet
 #: Weights, beside the loss of the photographs' responses, of that of single windows and of the expected errors.
 WINDOW_WEIGHT, EXPECTED_ERROR_WEIGHT = 0.3, 0.1
 
-#: Least slope of a response, relative to the mean one, that its inverse is judged by.
-LEAST_SLOPE = 0.1
-
 
 @dataclass(frozen=True)
 class TrainingConfig:
@@ -32,8 +29,6 @@ class TrainingConfig:
     ----------
     all_windows : float
         Share of training photographs seen with all their windows; of the others, some are left out at random.
-    inverse_weight : float
-        See `CurveLoss`.
     without_held_out : bool
         Whether to leave out the photographs whose response is near a curve held out of P2.
     """
@@ -43,7 +38,6 @@ class TrainingConfig:
     learning_rate: float = 1e-3
     weight_decay: float = 0.05
     all_windows: float = 0.6
-    inverse_weight: float = 0.0
     without_held_out: bool = False
     seed: int = 1
 
@@ -74,16 +68,9 @@ class Progress:
 
 
 class CurveLoss:
-    """The estimation error itself, that of the inverse, and the likelihood of the error that the network expects.
+    """The estimation error itself, and the likelihood of the error that the network expects."""
 
-    Parameters
-    ----------
-    inverse_weight : float
-        Weight of the error of the inverse response, in the units of E_est, at uniform brightnesses.
-    """
-
-    def __init__(self, inverse_weight: float = 0.0) -> None:
-        self.inverse_weight = inverse_weight
+    def __init__(self) -> None:
         basis = EmorBasis.load()
         self.mean = torch.from_numpy(basis.mean[::TARGET_STRIDE]).float()
         self.components = torch.from_numpy(basis.components[:, ::TARGET_STRIDE]).float()
@@ -93,15 +80,6 @@ class CurveLoss:
         squares = (self.mean + weights.float() @ self.components - curves) ** 2
         return (squares.sum(dim=-1) * TARGET_STRIDE + 1e-6).sqrt()
 
-    def losses(self, weights: Tensor, curves: Tensor) -> Tensor:
-        """Return E_est, with the error of the inverse to first order, shape (...), as `errors`."""
-        estimation = self.errors(weights, curves)
-        if not self.inverse_weight:
-            return estimation
-        slope = torch.gradient(curves, dim=-1)[0] * (curves.shape[-1] - 1)
-        squares = (self.mean + weights.float() @ self.components - curves) ** 2 / slope.clamp(min=LEAST_SLOPE)
-        return estimation + self.inverse_weight * (squares.sum(dim=-1) * TARGET_STRIDE + 1e-6).sqrt()
-
     def __call__(self, predictions: tuple[Tensor, Tensor, Tensor, Tensor], present: Tensor, curves: Tensor) -> Tensor:
         """Return the loss; an exponential distribution of mean exp(log_error) models every error."""
         window_weights, window_log_errors, weights, log_errors = predictions
@@ -110,9 +88,9 @@ class CurveLoss:
         return photographs.mean() + WINDOW_WEIGHT * windows[present].mean()
 
     def _with_likelihood(self, weights: Tensor, log_errors: Tensor, curves: Tensor) -> Tensor:
-        """Return losses plus the weighted negative log likelihood of the expected errors."""
-        errors = self.errors(weights, curves).detach()
-        return self.losses(weights, curves) + EXPECTED_ERROR_WEIGHT * (errors * (-log_errors).exp() + log_errors)
+        """Return errors plus the weighted negative log likelihood of the expected ones."""
+        errors = self.errors(weights, curves)
+        return errors + EXPECTED_ERROR_WEIGHT * (errors.detach() * (-log_errors).exp() + log_errors)
 
 
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig) -> Path:
@@ -126,7 +104,7 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     (run / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
     if (run / "last.pt").exists():
         progress.resume(run / "last.pt")
-    loss = CurveLoss(config.inverse_weight)
+    loss = CurveLoss()
     while progress.epoch < config.epochs:
         train_loss = _train_epoch(progress, loss, photographs, config)
         window_error, error = validation_errors(progress.net, loss, held_out)
@@ -197,7 +175,6 @@ def main() -> None:
     parser.add_argument("--epochs", type=int, default=defaults.epochs)
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
     parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
-    parser.add_argument("--inverse-weight", type=float, default=defaults.inverse_weight)
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
     parser.add_argument("--width", type=int, default=sizes.width)
