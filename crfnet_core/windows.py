@@ -61,8 +61,13 @@ def sampling_step(height: int, width: int) -> int:
 
 def filled_bins(samples: Pixels) -> int:
     """Return how many of the 256 bins of one histogram over all channels hold a sample; samples in [0, 1]."""
+    return filled_codes(np.rint(samples * np.float32(255)).astype(np.uint8))
+
+
+def filled_codes(codes: NDArray[np.uint8]) -> int:
+    """Return how many of the 256 code values occur among `codes`, of any shape."""
     seen = np.zeros(256, dtype=bool)
-    seen[np.rint(samples * np.float32(255)).astype(np.uint8)] = True
+    seen[codes] = True
     return int(seen.sum())
 
 

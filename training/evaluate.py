@@ -17,13 +17,10 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
-from training.evaluation.camera import synthetic_photo
 from training.evaluation.material import bundled_material, dorf_material
 from training.evaluation.plan import TRIALS
 from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation, Model, Settings
 from training.lights import LIGHTS_FOLDER
-
-__all__ = ["main", "parsed", "synthetic_photo"]
 
 #: What the bundled lights are enough for, how many photographs of them are taken, and how many of these stressed.
 QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "p3"), 40, 5

@@ -29,7 +29,7 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.statistics import STATISTICS, window_statistics
 from crfnet_core.windows import WINDOW_SIZE, cut_windows, select_windows
 from training.dataset import photograph_source
-from training.evaluate import synthetic_photo
+from training.evaluation.camera import synthetic_photo
 from training.model import NetworkConfig, PhotographNet, ShippedNetwork
 from training.splits import SPLITS_FILE
 from training.synthesis import Capture, automatic_exposure

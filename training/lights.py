@@ -12,11 +12,9 @@ import hashlib
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import write_text_whole, written_whole
-from training.scenes import LUMINANCE, Scene, read_scene
+from training.scenes import Scene, read_scene
 
 #: Where the repository keeps them.
 LIGHTS_FOLDER = Path(__file__).parents[1] / "tests" / "data" / "lights"
@@ -74,8 +72,7 @@ def read_light(path: Path) -> Scene:
         raise CRFNetError(f"{path}: is absent; write the lights with python -m training.lights")
     pixels = read_scene(path, is_panorama=True).pixels
     low, high = (round(share * len(pixels)) for share in BAND)
-    luminance = pixels[low:high] @ LUMINANCE
-    return Scene(path.stem, pixels[low:high] / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama=True)
+    return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)
 
 
 def copy_lights(source: Path, target: Path) -> None:

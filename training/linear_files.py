@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PhotoError
 from crfnet_core.photo import LINEAR_SIGNATURES, MAX_PIXELS, RAW_SUFFIXES, first_line
 from crfnet_core.windows import WINDOW_SIZE
-from training.scenes import LUMINANCE
+from training.scenes import LUMINANCE, area_averaged
 
 #: The automatic scale leaves the shorter side at least this many samples: windows of step 1 and 2 fit into it.
 LEAST_SIDE = 2 * WINDOW_SIZE
@@ -140,14 +140,6 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
 def automatic_scale(height: int, width: int) -> int:
     """Return the largest whole factor, 1 or more, that leaves the shorter side at least `LEAST_SIDE` samples."""
     return max(1, min(height, width) // LEAST_SIDE)
-
-
-def area_averaged(samples: NDArray[Any], scale: int) -> NDArray[np.float32]:
-    """Return the means of scale x scale samples, float32 (H // scale, W // scale, 3); an incomplete rest is dropped."""
-    height, width = (side // scale for side in samples.shape[:2])
-    whole = samples[: height * scale, : width * scale]
-    means: NDArray[np.float32] = whole.reshape(height, scale, width, scale, 3).mean(axis=(1, 3), dtype=np.float32)
-    return means
 
 
 def _check_file(path: Path) -> None:

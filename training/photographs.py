@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.windows import WINDOW_SIZE, filled_bins
+from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
 from training.curves import CurveSource
 from training.scenes import LUMINANCE, Scene, dithered
 from training.synthesis import Capture, automatic_exposure, photographed
@@ -55,7 +55,7 @@ class PhotographSource:
         """Return up to `cameras` photographs of the same windows."""
         light = relit(augmented(self._windows(rng), rng), rng)
         drawn = (self._photograph(light, rng) for _ in range(self.cameras))
-        return [photo for photo in drawn if max(map(_filled, photo.windows)) >= LEAST_FILLED]
+        return [photo for photo in drawn if max(map(filled_codes, photo.windows)) >= LEAST_FILLED]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[np.ndarray, int]:
         """Return a response, shape (1024,), and the number of its set."""
@@ -132,8 +132,3 @@ def _scene_windows(scene: Scene, count: int, rng: np.random.Generator) -> np.nda
 def _filled_at_a_glance(light: np.ndarray) -> int:
     """Return about how many of 256 codes a window fills, seen sparsely at an ordinary exposure."""
     return filled_bins(np.minimum(light[::4, ::4] * np.float32(0.2), 1) ** np.float32(0.45))
-
-
-def _filled(window: np.ndarray) -> int:
-    """Return how many of the 256 codes of a uint8 window are filled."""
-    return filled_bins(window / np.float32(255))

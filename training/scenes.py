@@ -32,6 +32,12 @@ class Scene:
     pixels: np.ndarray
     is_panorama: bool
 
+    @classmethod
+    def scaled(cls, name: str, pixels: np.ndarray, is_panorama: bool) -> Scene:
+        """Return the scene of linear pixels of any scale."""
+        luminance = pixels @ LUMINANCE
+        return cls(name, pixels / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama)
+
 
 def split_scenes(folder: Path, *, brought: bool = True) -> dict[str, list[tuple[str, bool]]]:
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
@@ -77,9 +83,14 @@ def read_scene(path: Path, is_panorama: bool) -> Scene:
     """Return one scene; negative values, which no sensor records, become 0."""
     pixels = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)[:, :, :3]
     pixels = np.clip(np.nan_to_num(pixels), 0, 65000).astype(np.float32)
-    luminance = pixels @ LUMINANCE
-    positive = luminance[luminance > 0]
-    return Scene(path.stem, pixels / np.exp(np.log(positive).mean()), is_panorama)
+    return Scene.scaled(path.stem, pixels, is_panorama)
+
+
+def area_averaged(samples: np.ndarray, scale: int) -> np.ndarray:
+    """Return the means of scale x scale samples, float32 (H // scale, W // scale, 3); an incomplete rest is dropped."""
+    height, width = (side // scale for side in samples.shape[:2])
+    whole = samples[: height * scale, : width * scale]
+    return whole.reshape(height, scale, width, scale, 3).mean(axis=(1, 3), dtype=np.float32)
 
 
 def dithered(pixels: np.ndarray, rng: np.random.Generator) -> np.ndarray:

@@ -9,8 +9,8 @@ pytest.importorskip("rawpy", reason="bringing photographs needs the train extra"
 
 from crfnet_core.errors import PhotoError
 from training.bring import COLUMNS, bring, main
-from training.linear_files import area_averaged, automatic_scale, linear_scene
-from training.scenes import read_scene, split_scenes
+from training.linear_files import automatic_scale, linear_scene
+from training.scenes import area_averaged, read_scene, split_scenes
 
 #: Linear Rec.709 to CIE XYZ (IEC 61966-2-1), and XYZ to the RGB of two cameras: in the order of magnitude of real ones.
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])

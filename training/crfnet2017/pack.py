@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from crfnet_core.files import write_text_whole, written_whole
 from training.curves import read_dorf
-from training.scenes import Scene, dithered, read_scenes
+from training.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis import automatic_exposure, reference_luminance
 
 #: Samples of a shard at most: 60 MiB of float16.
@@ -53,9 +53,7 @@ class ScenePack:
 def area_scaled(pixels: np.ndarray) -> np.ndarray:
     """Return linear pixels (H, W, 3) averaged over boxes, so that the shorter side keeps `SHORTER_SIDE` or more."""
     factor = max(1, min(pixels.shape[:2]) // SHORTER_SIDE)
-    height, width = (side // factor for side in pixels.shape[:2])
-    boxes = pixels[: height * factor, : width * factor].reshape(height, factor, width, factor, 3)
-    return boxes.mean(axis=(1, 3), dtype=np.float32)
+    return area_averaged(pixels, factor)
 
 
 def packed_scene(scene: Scene, number: int) -> np.ndarray:

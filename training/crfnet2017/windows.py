@@ -17,7 +17,7 @@ import torch
 from torch import Tensor
 from torch.utils.data import IterableDataset, get_worker_info
 
-from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE
+from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
 from training.crfnet2017.pack import ScenePack, write_pack
 from training.synthesis import EXPOSURE_FACTORS, responded
 
@@ -180,14 +180,7 @@ def _covers_range(window: np.ndarray, codes: np.ndarray) -> bool:
     """Return whether the window fills `FULL_COVERAGE` bins."""
     bits = window.view(np.uint16)
     sparse = bits[::SPARSE_STEP, ::SPARSE_STEP]
-    return _filled(codes[sparse]) >= FULL_COVERAGE or _filled(codes[bits]) >= FULL_COVERAGE
-
-
-def _filled(codes: np.ndarray) -> int:
-    """Return how many of the 256 codes occur."""
-    seen = np.zeros(256, dtype=bool)
-    seen[codes] = True
-    return int(seen.sum())
+    return filled_codes(codes[sparse]) >= FULL_COVERAGE or filled_codes(codes[bits]) >= FULL_COVERAGE
 
 
 def main() -> None:

@@ -7,7 +7,8 @@ from scipy.optimize import minimize_scalar
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.response import ResponseCurve, srgb_encoded
-from training.evaluation.material import IRRADIANCE, rec709_encoded
+from training.curves import IRRADIANCE
+from training.evaluation.material import rec709_encoded
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)

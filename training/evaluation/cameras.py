@@ -82,7 +82,7 @@ def _by_camera(cases: Sequence[RealCase], columns: dict[str, dict[str, np.ndarra
 
 def _one(case: RealCase, columns: dict[str, dict[str, np.ndarray]], models: Sequence[str], number: int) -> Table:
     """Return the errors on one photograph."""
-    figures: Table = {"gamma 2.2": {"E_est": float(columns[GAMMA]["estimation"][number])}}
+    figures: Table = {GAMMA: {"E_est": float(columns[GAMMA]["estimation"][number])}}
     for name in models:
         part = columns[name]
         figures[name] = {

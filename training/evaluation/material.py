@@ -10,8 +10,8 @@ import numpy as np
 from scipy.stats import norm
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.response import SAMPLES, ResponseCurve, srgb_encoded
-from training.curves import read_dorf
+from crfnet_core.response import ResponseCurve, srgb_encoded
+from training.curves import IRRADIANCE, read_dorf
 from training.lights import LIGHTS, LIGHTS_FOLDER, read_light
 from training.scenes import Scene, read_scene, split_scenes
 from training.splits import checked_splits
@@ -20,8 +20,6 @@ from training.synthesis import TARGET_BRIGHTNESS, automatic_exposure, reference_
 #: Spread of the log-normal luminance, in stops, that sets the exposures where there are no training scenes: about that
 #: of the training scenes, each scaled to a geometric mean of 1.
 REFERENCE_STOPS = 2.0
-
-IRRADIANCE = np.linspace(0, 1, SAMPLES)
 
 
 @dataclass(frozen=True)
