@@ -65,29 +65,31 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
     curves: list[np.ndarray] = []
-    sets: list[int] = []
+    sets: list[tuple[int, int]] = []
     while len(rows) < SHARD:
         for photo in source.draw(rng)[: SHARD - len(rows)]:
             windows = photo.windows / np.float32(255)
             rows.append((np.stack([window_statistics(w) for w in windows]) / UNIT).astype(np.float16))
             curves.append(photo.curve[::TARGET_STRIDE].astype(np.float32))
-            sets.append(photo.curve_set)
+            sets.append((photo.curve_set, photo.fold))
     with written_whole(path) as temporary:
-        np.savez(temporary, statistics=np.stack(rows), curves=np.stack(curves), curve_sets=np.array(sets, np.int8))
+        curve_sets, folds = np.array(sets, np.int8).T
+        np.savez(temporary, statistics=np.stack(rows), curves=np.stack(curves), curve_sets=curve_sets, folds=folds)
     return path
 
 
 @dataclass(frozen=True)
 class Shards:
-    """Photographs: statistics, float16 (P, 4, STATISTICS) in `UNIT`s, responses (P, 128), curve sets (P,)."""
+    """Photographs: statistics, float16 (P, 4, STATISTICS) in `UNIT`s, responses (P, 128), curve sets, folds (P,)."""
 
     statistics: Tensor
     curves: Tensor
     curve_sets: Tensor
+    folds: Tensor
 
     def only(self, chosen: Tensor) -> Shards:
         """Return the photographs where `chosen`, bool (P,), is true."""
-        return Shards(self.statistics[chosen], self.curves[chosen], self.curve_sets[chosen])
+        return Shards(self.statistics[chosen], self.curves[chosen], self.curve_sets[chosen], self.folds[chosen])
 
     def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
         """Return statistics, float32 (B, 4, STATISTICS), and responses (B, 128), of the photographs in `rows`."""
@@ -99,7 +101,7 @@ def read_shards(folder: Path, split: str) -> Shards:
     shards = [np.load(path) for path in sorted(folder.glob(f"{split}_*.npz"))]
     if not shards:
         raise FileNotFoundError(f"{folder}: no shards of the split {split}; run python -m training.dataset first")
-    names = ("statistics", "curves", "curve_sets")
+    names = ("statistics", "curves", "curve_sets", "folds")
     return Shards(*(torch.from_numpy(np.concatenate([shard[name] for shard in shards])) for name in names))
 
 
@@ -109,7 +111,7 @@ def main() -> None:
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--split", default="train", choices=["train", "validation"])
-    parser.add_argument("--photographs", type=int, default=32_000)
+    parser.add_argument("--photographs", type=int, default=20_000)
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)

@@ -5,11 +5,13 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import gaussian_filter, zoom
 
 from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
 from training.curves import CurveSource
 from training.scenes import LUMINANCE, Scene, dithered
 from training.synthesis import Capture, automatic_exposure, photographed
+from training.views import View
 
 #: Windows of a training photograph, and the candidates that they are the best-covering of.
 WINDOWS, CANDIDATES = 4, 8
@@ -17,14 +19,23 @@ WINDOWS, CANDIDATES = 4, 8
 #: Code values that the best window of a training photograph fills at least, of 256.
 LEAST_FILLED = 120
 
+#: Scenes are dealt into so many folds; a photograph shows scenes of one fold only, so that what a network that was
+#: trained without a fold says of its photographs is what it would say of new scenes.
+FOLDS = 3
+
+#: Shares of photographs: half of the windows show another scene; windows are views at any angle and scale; windows are
+#: pieced together of two scenes; large-scale contrast is changed; nothing but the response lies between light and file.
+TWO_SCENES, VIEWS, PIECED, CONTRAST, CLEAN = 0.25, 0.35, 0.15, 0.2, 0.15
+
 
 @dataclass(frozen=True)
 class Photograph:
-    """Windows, uint8 (4, 227, 227, 3), of one photograph, the response (1024,), and the set that it was drawn from."""
+    """Windows, uint8 (4, 227, 227, 3), of one photograph, the response (1024,), its set, and the scenes' fold."""
 
     windows: np.ndarray
     curve: np.ndarray
     curve_set: int
+    fold: int
 
 
 @dataclass(frozen=True)
@@ -53,8 +64,9 @@ class PhotographSource:
 
     def draw(self, rng: np.random.Generator) -> list[Photograph]:
         """Return up to `cameras` photographs of the same windows."""
-        light = relit(augmented(self._windows(rng), rng), rng)
-        drawn = (self._photograph(light, rng) for _ in range(self.cameras))
+        fold = int(rng.integers(min(FOLDS, len(self.scenes))))
+        light = relit(augmented(self._windows(self.scenes[fold::FOLDS], rng), rng), rng)
+        drawn = (self._photograph(light, fold, rng) for _ in range(self.cameras))
         return [photo for photo in drawn if max(map(filled_codes, photo.windows)) >= LEAST_FILLED]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[np.ndarray, int]:
@@ -62,18 +74,23 @@ class PhotographSource:
         chosen = int(rng.choice(len(self.shares), p=self.shares))
         return self.curve_sets[chosen].draw(rng), chosen
 
-    def _windows(self, rng: np.random.Generator) -> np.ndarray:
-        """Return linear windows (4, 227, 227, 3) of a scene; sometimes half of them show another scene."""
-        scenes = [self.scenes[i] for i in rng.integers(len(self.scenes), size=2)]
-        if rng.random() > 0.25:
-            return _scene_windows(scenes[0], WINDOWS, rng)
-        return np.concatenate([_scene_windows(scene, WINDOWS // 2, rng) for scene in scenes])
+    def _windows(self, scenes: list[Scene], rng: np.random.Generator) -> np.ndarray:
+        """Return linear windows (4, 227, 227, 3) of one or two of the scenes."""
+        first, second = (scenes[i] for i in rng.integers(len(scenes), size=2))
+        if rng.random() > TWO_SCENES:
+            light = _scene_windows(first, WINDOWS, rng)
+        else:
+            light = np.concatenate([_scene_windows(scene, WINDOWS // 2, rng) for scene in (first, second)])
+        if rng.random() < PIECED:
+            light = pieced(light, _scene_windows(scenes[rng.integers(len(scenes))], WINDOWS, rng), rng)
+        return light
 
-    def _photograph(self, light: np.ndarray, rng: np.random.Generator) -> Photograph:
+    def _photograph(self, light: np.ndarray, fold: int, rng: np.random.Generator) -> Photograph:
         """Return the windows as a random camera records them."""
-        (curve, chosen), capture = self.draw_curve(rng), Capture.draw(rng)
+        curve, chosen = self.draw_curve(rng)
+        capture = Capture() if rng.random() < CLEAN else Capture.draw(rng)
         exposure = np.float32(self._exposure(light, curve, rng))
-        return Photograph(photographed(light * exposure, curve, capture, rng), curve, chosen)
+        return Photograph(photographed(light * exposure, curve, capture, rng), curve, chosen, fold)
 
     def _exposure(self, light: np.ndarray, curve: np.ndarray, rng: np.random.Generator) -> float:
         """Return the exposure: around s_crf, or one that puts a high percentile of the windows at saturation."""
@@ -97,10 +114,12 @@ def relit(light: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return windows, sometimes under smoothly uneven light, sometimes with more or less contrast.
 
     Scenes are few: another distribution of light makes other photographs of them. A power of all irradiance bends the
-    edges a little, so it stays mild.
+    edges a little, so it stays mild; contrast at a large scale leaves the edges alone, and may change a lot.
     """
     if rng.random() < 0.3:
         light = light * _uneven(len(light), rng)
+    if rng.random() < CONTRAST:
+        light = light * _large_scale(light, rng)
     if rng.random() < 0.3:
         light = np.maximum(light, 0) ** np.float32(np.exp(rng.normal(0, 0.12)))
     return np.ascontiguousarray(light, dtype=np.float32)
@@ -115,20 +134,50 @@ def _uneven(count: int, rng: np.random.Generator) -> np.ndarray:
     return np.exp2(stops)[..., None].astype(np.float32)
 
 
+def pieced(light: np.ndarray, other: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return windows (4, 227, 227, 3) of which a piece shows other windows, more or less exposed.
+
+    The border is a straight line, along which a sample mixes the light of both, as in a photograph.
+    """
+    exposure = np.float32(np.exp2(rng.normal(0, 1.2)))
+    place = np.arange(WINDOW_SIZE, dtype=np.float32) - WINDOW_SIZE / 2
+    turn, distance = rng.uniform(0, 2 * np.pi, (WINDOWS, 1, 1)), rng.uniform(-60, 60, (WINDOWS, 1, 1))
+    beyond = np.cos(turn) * place[:, None] + np.sin(turn) * place[None, :] - distance
+    share = np.clip(beyond + 0.5, 0, 1)[..., None].astype(np.float32)
+    return light * (1 - share) + other * exposure * share
+
+
+def _large_scale(light: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    """Return smooth factors, shape (4, 227, 227, 1), that spread or squeeze the light's large-scale contrast."""
+    fine = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))
+    coarse = gaussian_filter(fine, (0, *np.full(2, rng.uniform(2, 10))))
+    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, WINDOW_SIZE / coarse.shape[1])), order=1)
+    return np.exp((np.exp(rng.normal(0, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
+
+
 def _scene_windows(scene: Scene, count: int, rng: np.random.Generator) -> np.ndarray:
     """Return the `count` linear windows of a scene with most different brightnesses, of twice as many candidates."""
+    candidates = count * CANDIDATES // WINDOWS
+    if rng.random() < VIEWS:
+        views = [View.draw(scene, rng) for _ in range(candidates)]
+        chosen = [views[i].window() for i in _best_covering([view.glance() for view in views], count)]
+    else:
+        crops = [_crop(scene, rng) for _ in range(candidates)]
+        chosen = [crops[i] for i in _best_covering([crop[::4, ::4] for crop in crops], count)]
+    light = np.stack(chosen)
+    return dithered(light, rng) if scene.is_panorama else light
+
+
+def _crop(scene: Scene, rng: np.random.Generator) -> np.ndarray:
+    """Return a window of the scene, point-sampled at any step that fits."""
     height, width = scene.pixels.shape[:2]
-    candidates = []
-    for _ in range(count * CANDIDATES // WINDOWS):
-        step = int(rng.integers(1, min(height, width) // WINDOW_SIZE + 1))
-        extent = (WINDOW_SIZE - 1) * step + 1
-        y, x = rng.integers(height - extent + 1), rng.integers(width - extent + 1)
-        candidates.append(scene.pixels[y : y + extent : step, x : x + extent : step])
-    coverage = [_filled_at_a_glance(candidate) for candidate in candidates]
-    chosen = np.stack([candidates[i] for i in np.argsort(coverage)[::-1][:count]])
-    return dithered(chosen, rng) if scene.is_panorama else chosen
+    step = int(rng.integers(1, min(height, width) // WINDOW_SIZE + 1))
+    extent = (WINDOW_SIZE - 1) * step + 1
+    y, x = rng.integers(height - extent + 1), rng.integers(width - extent + 1)
+    return scene.pixels[y : y + extent : step, x : x + extent : step]
 
 
-def _filled_at_a_glance(light: np.ndarray) -> int:
-    """Return about how many of 256 codes a window fills, seen sparsely at an ordinary exposure."""
-    return filled_bins(np.minimum(light[::4, ::4] * np.float32(0.2), 1) ** np.float32(0.45))
+def _best_covering(glances: list[np.ndarray], count: int) -> np.ndarray:
+    """Return the places of the `count` sparse windows that fill most of 256 codes at an ordinary exposure."""
+    coverage = [filled_bins(np.clip(light * np.float32(0.2), 0, 1) ** np.float32(0.45)) for light in glances]
+    return np.argsort(coverage)[::-1][:count]

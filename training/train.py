@@ -16,6 +16,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.files import written_whole
 from training.dataset import HELD_OUT, TARGET_STRIDE, Shards, read_shards
 from training.model import NetworkConfig, PhotographNet
+from training.photographs import FOLDS
 
 #: Weights, beside the loss of the photographs' responses, of that of single windows and of the expected errors.
 WINDOW_WEIGHT, EXPECTED_ERROR_WEIGHT = 0.3, 0.1
@@ -31,6 +32,8 @@ class TrainingConfig:
         Share of training photographs seen with all their windows; of the others, some are left out at random.
     without_held_out : bool
         Whether to leave out the photographs whose response is near a curve held out of P2.
+    without_fold : int, optional
+        The fold of training scenes to leave out and to validate on, instead of on the validation scenes.
     """
 
     epochs: int = 8
@@ -39,6 +42,7 @@ class TrainingConfig:
     weight_decay: float = 0.05
     all_windows: float = 0.6
     without_held_out: bool = False
+    without_fold: int | None = None
     seed: int = 1
 
 
@@ -98,6 +102,9 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
     if config.without_held_out:
         photographs, held_out = (part.only(part.curve_sets != HELD_OUT) for part in (photographs, held_out))
+    if config.without_fold is not None:
+        left_out = photographs.folds == config.without_fold
+        photographs, held_out = photographs.only(~left_out), photographs.only(left_out)
     progress = _start(network, config, len(photographs.curves))
     run.mkdir(parents=True, exist_ok=True)
     settings = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.curves)}
@@ -176,6 +183,7 @@ def main() -> None:
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
     parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
+    parser.add_argument("--without-fold", type=int, choices=range(FOLDS), help="leave out and validate on these scenes")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
     parser.add_argument("--width", type=int, default=sizes.width)
     parser.add_argument("--seed", type=int, default=defaults.seed)

@@ -5,7 +5,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.curves import CurveSource
-from training.photographs import LEAST_FILLED, WINDOWS, PhotographSource, augmented, relit
+from training.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource, augmented, pieced, relit
 from training.scenes import Scene
 from training.synthesis import reference_luminance
 
@@ -53,6 +53,28 @@ def test_augmentation_treats_all_windows_alike_and_leaves_them_unchanged(scene):
         assert turned.shape == light.shape
         np.testing.assert_allclose(turned[0], turned[1], rtol=1e-5)
     np.testing.assert_array_equal(light, before)
+
+
+def test_a_photograph_shows_scenes_of_its_fold_only(scene):
+    """Scenes of one colour each, by fold; the augmentation keeps which is the brightest channel as a rule."""
+    colors = np.eye(3, dtype=np.float32) * 0.9 + 0.1
+    scenes = [Scene(str(n), scene.pixels[:, :, :1] * colors[n % FOLDS], False) for n in range(2 * FOLDS)]
+    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_share=0, plain_share=1),)
+    source = PhotographSource(scenes, sets, (1.0,), reference_luminance(scenes), cameras=1)
+    photos = [photo for seed in range(12) for photo in source.draw(np.random.default_rng(seed))]
+    assert {photo.fold for photo in photos} == set(range(FOLDS))
+    for photo in photos:
+        means = photo.windows.mean(axis=(1, 2))
+        assert means.std() < 1 or (means.argmax(axis=1) == photo.fold).mean() >= 0.75
+
+
+def test_a_pieced_window_shows_both_and_mixes_them_at_the_border():
+    ones, threes = (np.full((WINDOWS, 227, 227, 3), value, np.float32) for value in (1, 3))
+    light = pieced(ones, threes, np.random.default_rng(0))
+    assert (light == 1).any(axis=(1, 2, 3)).all()
+    assert (light.max(axis=(1, 2, 3)) == light.max()).all()
+    between = (light > 1) & (light < light.max())
+    assert 0 < between.mean() < 0.02
 
 
 def test_relighting_is_smooth_and_keeps_light_positive(scene):

@@ -11,6 +11,7 @@ from crfnet_core.statistics import LEVELS, PARTS, STATISTICS
 from training import train as training_run
 from training.dataset import HELD_OUT, TARGET_STRIDE, read_shards
 from training.model import NetworkConfig
+from training.photographs import FOLDS
 from training.train import CurveLoss, TrainingConfig, train
 
 SIZES = NetworkConfig(width=32, dropout=0.1)
@@ -26,12 +27,14 @@ def shards(tmp_path_factory):
         weights = np.zeros((256, 11))
         weights[:, 0] = rng.normal(0, 2, 256)
         statistics = rng.uniform(0, 1, (256, 2, STATISTICS)).astype(np.float16)
-        statistics[:, :, -int(np.prod(PARTS[-1])) :] = 0  # gray: random numbers would be no normal equations
+        ends = np.cumsum([int(np.prod(part)) for part in PARTS])
+        statistics[:, :, ends[2] : ends[3]] = 0  # gray: random numbers would be no normal equations
         lean = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
         statistics[:, :, : 3 * LEVELS] = np.broadcast_to(lean, (256, 2, 3, LEVELS)).reshape(256, 2, -1)
         curves = basis.reconstruct(weights)[:, ::TARGET_STRIDE].astype(np.float32)
         sets = (np.arange(256) % 3).astype(np.int8)
-        np.savez(folder / f"{split}_{number:04d}.npz", statistics=statistics, curves=curves, curve_sets=sets)
+        path, folds = folder / f"{split}_{number:04d}.npz", (np.arange(256) % FOLDS).astype(np.int8)
+        np.savez(path, statistics=statistics, curves=curves, curve_sets=sets, folds=folds)
     return folder
 
 
@@ -83,6 +86,14 @@ def test_held_out_curves_can_be_left_out(shards, tmp_path):
     settings = json.loads((tmp_path / "p2" / "config.json").read_text())
     assert settings["photographs"] == sum(n % 3 != HELD_OUT for n in range(256)) * 2 == 342
     assert settings["training"]["without_held_out"]
+
+
+def test_a_fold_of_scenes_can_be_left_out_and_validated_on(shards, tmp_path):
+    train(shards, tmp_path / "fold", replace(RECIPE, epochs=1, without_fold=1), SIZES)
+    settings = json.loads((tmp_path / "fold" / "config.json").read_text())
+    assert settings["photographs"] == sum(n % FOLDS != 1 for n in range(256)) * 2
+    train(shards, tmp_path / "all", replace(RECIPE, epochs=1), SIZES)
+    assert read_log(tmp_path / "fold") != read_log(tmp_path / "all")
 
 
 def test_absent_shards_are_named(tmp_path):
