@@ -8,6 +8,16 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crfnet_core.candidates import (
+    CANDIDATES,
+    KINDS,
+    MIXING_STRIDES,
+    MIXING_SUMS,
+    SHADING_STRIDES,
+    mixing_sums,
+    shading_sums,
+)
+
 #: Code values that samples are counted on.
 CODES = 256
 
@@ -39,6 +49,10 @@ PARTS = (
     (len(STRIDES), 3, NEIGHBOUR_SUMS, LEVELS),
     (len(STRIDES), 2, GRID, GRID),
     (len(COLOR_STRIDES), COLOR_LEVELS + 1, COLOR_LEVELS),
+    (len(MIXING_STRIDES), KINDS, MIXING_SUMS, CANDIDATES),
+    (len(MIXING_STRIDES), KINDS, 2),
+    (len(SHADING_STRIDES), CANDIDATES),
+    (len(SHADING_STRIDES), 1),
 )
 
 #: Length of a window's statistics.
@@ -62,7 +76,8 @@ def window_statistics(window: Floats) -> Floats:
     level, over both neighbours along rows and columns, the sums of |d|, log(1 + |d|), d = 0, d (in codes) and 1; per
     stride and cell (lower level, upper level), over all channels, the number of edges and the sum of the places of b,
     in -0.5 .. 0.5 around the middle; per colour stride the normal equations A k = r, the rows of A and then r, whose
-    solution k is the bend of the inverse response, g''/g', at `COLOR_LEVELS` levels.
+    solution k is the bend of the inverse response, g''/g', at `COLOR_LEVELS` levels; and per stride how far from linear
+    light the window is under each candidate response, with the numbers of samples (`crfnet_core.candidates`).
 
     Parameters
     ----------
@@ -76,7 +91,10 @@ def window_statistics(window: Floats) -> Floats:
     neighbours = np.stack([_neighbour_sums(planes, stride) for stride in STRIDES])
     edges = np.stack([_edge_sums(planes, stride) for stride in STRIDES])
     colors = np.stack([_color_equations(planes, stride) for stride in COLOR_STRIDES])
-    parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors)
+    mixing = zip(*(mixing_sums(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES), strict=True)
+    shading = zip(*(shading_sums(_both_ways(planes, stride, 2)) for stride in SHADING_STRIDES), strict=True)
+    candidates = [np.stack(part) for part in (*mixing, *shading)]
+    parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors, *candidates)
     return np.concatenate([part.ravel() for part in parts]).astype(np.float32)
 
 
@@ -154,6 +172,12 @@ def _lines(planes: Codes, stride: int, places: tuple[int, ...]) -> list[tuple[Co
     rows = tuple(planes[..., ::skip, start : start + size] for start in starts)
     columns = tuple(planes[..., start : start + size, ::skip] for start in starts)
     return [tuple(side.reshape(*planes.shape[:-2], -1) for side in line) for line in (rows, columns)]
+
+
+def _both_ways(planes: Codes, stride: int, count: int) -> tuple[Codes, ...]:
+    """Return `count` samples in a row, `stride` apart, along rows and then along columns, each (3, M)."""
+    rows, columns = _lines(planes, stride, tuple(range(count)))
+    return tuple(np.concatenate(sides, axis=1) for sides in zip(rows, columns, strict=True))
 
 
 @cache

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
+from crfnet_core.candidates import CANDIDATES, KINDS, MIXING_STRIDES, MIXING_SUMS, SHADING_STRIDES
 from crfnet_core.emor import COMPONENTS
 from crfnet_core.statistics import COLOR_LEVELS, COLOR_STRIDES, GRID, LEVELS, PARTS, STRIDES
 
@@ -22,6 +23,14 @@ SMOOTHNESS = (1e-2, 1e-1)
 #: Features of the equations between channels: per stride, the bends read and the evidence, at every level.
 COLOR_FEATURES = len(COLOR_STRIDES) * (len(SMOOTHNESS) + 1) * COLOR_LEVELS
 
+#: Features of candidate responses: per stride and kind of mixture the means at every candidate, and how many there are.
+CANDIDATE_FEATURES = len(MIXING_STRIDES) * KINDS * (MIXING_SUMS * CANDIDATES + 2) + len(SHADING_STRIDES) * (
+    CANDIDATES + 1
+)
+
+#: Mixtures that a mean at a candidate is given beforehand.
+CANDIDATE_PRIOR = 50.0
+
 #: Evidence, in squared codes, that a level's bend of 0 is given beforehand.
 COLOR_PRIOR = 3.0
 
@@ -34,10 +43,11 @@ PRIOR = 4.0
 
 @dataclass(frozen=True)
 class NetworkConfig:
-    """Sizes of the network."""
+    """Sizes of the network, and shares of hidden values and of whole kinds of features that training leaves out."""
 
     width: int = 384
     dropout: float = 0.2
+    kind_dropout: float = 0.15
 
 
 class Features(nn.Module):
@@ -46,10 +56,10 @@ class Features(nn.Module):
     Statistics of several windows may be summed before: see `crfnet_core.statistics.window_statistics`.
     """
 
-    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return features per channel, (..., 3, LEVEL_FEATURES), of edges, and of the equations between channels."""
+    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
+        """Return features per channel, (..., 3, LEVEL_FEATURES), of edges, of equations, and of candidates."""
         sizes = [int(torch.Size(part).numel()) for part in PARTS]
-        histogram, neighbours, edges, colors = (
+        histogram, neighbours, edges, colors, *candidates = (
             part.unflatten(-1, shape) for part, shape in zip(statistics.split(sizes, dim=-1), PARTS, strict=True)
         )
         samples = histogram.sum(-1, keepdim=True)
@@ -61,7 +71,17 @@ class Features(nn.Module):
         count, place = edges.unbind(-3)
         share = (count * 1e4 / samples.sum((-1, -2))[..., None, None, None] + 1).log()
         places = torch.stack([share, place / (count + PRIOR) * 4], dim=-3)
-        return torch.cat(levels, dim=-1), places.flatten(-4), self._bends(colors).flatten(-3)
+        bends, means = self._bends(colors).flatten(-3), self._means(*candidates)
+        return torch.cat(levels, dim=-1), places.flatten(-4), bends, means
+
+    def _means(self, mixing: Tensor, mixtures: Tensor, shading: Tensor, shaded: Tensor) -> Tensor:
+        """Return means at every candidate and logarithms of the numbers of samples, (..., CANDIDATE_FEATURES)."""
+        shares, compared = mixtures.unbind(-1)
+        numbers = torch.stack([shares, shares, shares, compared], dim=-1)[..., None]
+        means = [mixing / (numbers + CANDIDATE_PRIOR), shading / (shaded + CANDIDATE_PRIOR)]
+        logs = [(mixtures + 10).log(), (shaded + 10).log()]
+        flat = [part.flatten(start) for part, start in zip([*means, *logs], (-4, -2, -3, -2), strict=True)]
+        return torch.cat(flat, dim=-1)
 
     def _bends(self, equations: Tensor) -> Tensor:
         """Return bends of the inverse response and the logarithm of their evidence, shape (..., S, 3, COLOR_LEVELS)."""
@@ -112,7 +132,7 @@ class Embedding(nn.Module):
 
     def __init__(self, config: NetworkConfig) -> None:
         super().__init__()
-        width = config.width
+        width, self.kind_dropout = config.width, config.kind_dropout
         self.features = Features()
         self.level_normal = nn.BatchNorm1d(LEVEL_FEATURES, affine=False)
         self.edge_normal = nn.BatchNorm1d(EDGE_FEATURES, affine=False)
@@ -120,17 +140,28 @@ class Embedding(nn.Module):
         self.edges = nn.Sequential(nn.Linear(EDGE_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
         self.color_normal = nn.BatchNorm1d(COLOR_FEATURES, affine=False)
         self.colors = nn.Sequential(nn.Linear(COLOR_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
-        self.trunk = nn.Sequential(nn.Linear(4 * width, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.candidate_normal = nn.BatchNorm1d(CANDIDATE_FEATURES, affine=False)
+        self.candidates = nn.Sequential(nn.Linear(CANDIDATE_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.trunk = nn.Sequential(nn.Linear(5 * width, width), nn.GELU(), nn.Dropout(config.dropout))
 
     def forward(self, statistics: Tensor) -> Tensor:
         """Return vectors, shape (N, width), of statistics of shape (N, STATISTICS)."""
         with torch.no_grad(), torch.autocast("cpu", enabled=False):
-            levels, edges, colors = self.features(statistics)
-        levels = self.level_normal(levels.flatten(0, 1)).unflatten(0, (-1, 3)).clamp(-6, 6)
-        channels = self.channel(levels)
-        edges = self.edges(self.edge_normal(edges).clamp(-6, 6))
-        colors = self.colors(self.color_normal(colors).clamp(-6, 6))
-        return self.trunk(torch.cat([channels.mean(1), channels.amax(1), edges, colors], dim=1))
+            levels, edges, colors, candidates = self.features(statistics)
+        levels = self.level_normal(levels.flatten(0, 1)).unflatten(0, (-1, 3))
+        channels = self.channel(self._kept(levels))
+        edges = self.edges(self._kept(self.edge_normal(edges)))
+        colors = self.colors(self._kept(self.color_normal(colors)))
+        candidates = self.candidates(self._kept(self.candidate_normal(candidates)))
+        return self.trunk(torch.cat([channels.mean(1), channels.amax(1), edges, colors, candidates], dim=1))
+
+    def _kept(self, features: Tensor) -> Tensor:
+        """Return normalised features within 6 deviations; in training, those of some rows as 0."""
+        features = features.clamp(-6, 6)
+        if not self.training:
+            return features
+        row = (len(features), *[1] * (features.ndim - 1))
+        return features * (torch.rand(row, device=features.device) >= self.kind_dropout)
 
 
 class Head(nn.Module):

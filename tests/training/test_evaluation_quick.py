@@ -24,7 +24,7 @@ from training.scenes import LUMINANCE
 #: Mean figures of `python -m training.evaluate --quick --protocol p0 --photographs 10`, by the head of the packaged
 #: model's hash. A new model, or another pipeline: measure, look whether it got better, and write them down here.
 EXPECTED = {
-    "2de6c4177333": {"E_est mean": 1.656, "E_lin mean": 4.013, "E_est ratio": 0.756},
+    "17d81c95551a": {"E_est mean": 1.698, "E_lin mean": 4.213, "E_est ratio": 0.775},
 }
 
 #: What rounding on other processors may change: a few windows of a few photographs.

@@ -5,9 +5,11 @@ torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics import window_statistics
 from training.model import (
+    CANDIDATE_FEATURES,
     COLOR_FEATURES,
     EDGE_FEATURES,
     LEVEL_FEATURES,
+    Embedding,
     Features,
     NetworkConfig,
     PhotographNet,
@@ -34,11 +36,21 @@ def network():
 
 
 def test_features_are_finite_and_of_the_sizes_named(statistics):
-    levels, edges, colors = Features()(statistics)
+    levels, edges, colors, candidates = Features()(statistics)
     assert levels.shape == (3, 3, LEVEL_FEATURES)
     assert edges.shape == (3, EDGE_FEATURES)
     assert colors.shape == (3, COLOR_FEATURES)
-    assert all(part.isfinite().all() and part.abs().max() < 30 for part in (levels, edges, colors))
+    assert candidates.shape == (3, CANDIDATE_FEATURES)
+    assert all(part.isfinite().all() and part.abs().max() < 30 for part in (levels, edges, colors, candidates))
+
+
+def test_training_leaves_out_kinds_of_features_of_some_rows_only():
+    torch.manual_seed(0)
+    embedding = Embedding(NetworkConfig(width=8, kind_dropout=0.5))
+    left_out = [(embedding._kept(torch.ones(400, 3, 5)) == 0) for _ in range(2)]
+    assert all((rows.all(-1).all(-1) == rows.any(-1).any(-1)).all() for rows in left_out)
+    assert left_out[0].float().mean() == pytest.approx(0.5, abs=0.1)
+    assert not (embedding.eval()._kept(torch.ones(400, 5)) == 0).any()
 
 
 def test_conjugate_gradients_solve():
