@@ -40,8 +40,8 @@ MOST_COMPARED = 350
 LEAST_HEIGHT = 12
 
 #: Codes by which the sides of a mixture differ between two channels, more than which the channels are compared; and
-#: the part of its height by which b is away from both sides then.
-LEAST_DIFFERENCE, INNER = 60, 0.2
+#: the part of its height, one in so many, by which b is away from both sides then.
+LEAST_DIFFERENCE, INNER = 60, 5
 
 #: A mixture is isolated when its surroundings change by less than its height divided by these.
 FLATNESS = (2, 5)
@@ -112,11 +112,12 @@ def mixing_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     lines : tuple of five ndarrays, uint8, shape (3, M)
         Samples in a row: what lies before a, then a, b, c, and what lies behind c.
     """
+    tables = CandidateTables.load()
     before, a, b, c, behind = (side.astype(np.int16) for side in lines)
     heights, rises, middles = c - a, b - a, a + c
     sizes = np.abs(heights)
     is_mixture = (sizes > LEAST_HEIGHT) & (rises * np.sign(heights) >= 0) & (np.abs(rises) <= sizes)
-    is_inner = np.minimum(np.abs(rises), np.abs(b - c)) > INNER * sizes
+    is_inner = INNER * np.minimum(np.abs(rises), np.abs(b - c)) > sizes
     change = np.maximum(np.abs(a - before), np.abs(c - behind))
     is_isolated = np.stack([flatness * change <= np.maximum(sizes, flatness) for flatness in FLATNESS])
     sums, numbers = np.zeros((KINDS, MIXING_SUMS, CANDIDATES), np.float32), np.zeros((KINDS, 2), np.float32)
@@ -130,14 +131,19 @@ def mixing_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
             for places in (shared, telling)
         )
         for channel in (first, second):
-            share, _, density = _shares(*(side[channel].take(shared) for side in (a, b, c)))
+            sides = [side[channel].take(shared) for side in (a, b, c)]
+            share, height = _shares(*sides)
+            density = tables.log_slope.take(sides[1], axis=0) - np.log(np.abs(height))
             brighter = np.where((heights[channel].take(shared) > 0)[:, None], share, 1 - share) - np.float32(0.5)
             sums[:, :3] += np.stack([shared_kinds @ part for part in (density, brighter, brighter**2)], axis=1)
-        (share, variance, _), (other_share, other_variance, _) = (
-            _shares(*(side[channel].take(telling) for side in (a, b, c))) for channel in (first, second)
-        )
-        squared = (share - other_share) ** 2
-        sums[:, 3] += telling_kinds @ (squared / (squared + variance + other_variance + np.float32(SHARE_SPREAD**2)))
+        compared, spread = [], np.full((len(telling), CANDIDATES), SHARE_SPREAD**2, np.float32)
+        for channel in (first, second):
+            sides = [side[channel].take(telling) for side in (a, b, c)]
+            share, height = _shares(*sides)
+            compared.append(share)
+            spread += (tables.slope.take(sides[1], axis=0) / height) ** 2 / np.float32(6)
+        squared = (compared[0] - compared[1]) ** 2
+        sums[:, 3] += telling_kinds @ (squared / (squared + spread))
         numbers += np.stack([2 * shared_kinds.sum(axis=1), telling_kinds.sum(axis=1)], axis=1)
     sums[:, [0, 3]] -= sums[:, [0, 3]].mean(axis=2, keepdims=True)
     return sums, numbers
@@ -162,8 +168,10 @@ def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     ratios, variances = [], []
     for channel in range(3):
         first, second = a[channel].take(chosen), b[channel].take(chosen)
-        ratios.append(tables.log_irradiance[first] - tables.log_irradiance[second])
-        variances.append((tables.slope[first] / tables.irradiance[first]) ** 2 / np.float32(6))
+        ratios.append(tables.log_irradiance.take(first, axis=0) - tables.log_irradiance.take(second, axis=0))
+        variances.append(
+            (tables.slope.take(first, axis=0) / tables.irradiance.take(first, axis=0)) ** 2 / np.float32(6)
+        )
     sums = np.zeros(CANDIDATES, np.float32)
     for i, j in ((0, 1), (1, 2), (0, 2)):
         squared = (ratios[i] - ratios[j]) ** 2
@@ -172,13 +180,12 @@ def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     return sums - sums.mean(), np.array([3 * len(chosen)], np.float32)
 
 
-def _shares(a: NDArray[np.int16], b: NDArray[np.int16], c: NDArray[np.int16]) -> tuple[Floats, Floats, Floats]:
-    """Return the share of c in b, its variance by rounding, and the logarithm of b's density, each (M, CANDIDATES)."""
-    tables = CandidateTables.load()
-    height = tables.irradiance[c] - tables.irradiance[a]
-    share: Floats = (tables.irradiance[b] - tables.irradiance[a]) / height
-    rounding = tables.slope[b] / height
-    return share, np.asarray(rounding * rounding / 6, dtype=np.float32), tables.log_slope[b] - np.log(np.abs(height))
+def _shares(a: NDArray[np.int16], b: NDArray[np.int16], c: NDArray[np.int16]) -> tuple[Floats, Floats]:
+    """Return the share of c in b, and the height c - a in irradiance, each (M, CANDIDATES)."""
+    irradiance = CandidateTables.load().irradiance
+    low = irradiance.take(a, axis=0)
+    height = irradiance.take(c, axis=0) - low
+    return (irradiance.take(b, axis=0) - low) / height, height
 
 
 def _kinds(isolated: NDArray[np.bool_]) -> Floats:
