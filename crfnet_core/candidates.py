@@ -33,6 +33,9 @@ MIXING_STRIDES, SHADING_STRIDES = (1, 2, 4), (2, 8)
 #: Sums over mixtures at each candidate: see `mixing_sums`.
 MIXING_SUMS = 4
 
+#: Channels that are compared with each other.
+CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))
+
 #: Mixtures of a kind and shading compared per pair of channels and stride, at most.
 MOST_COMPARED = 350
 
@@ -121,7 +124,7 @@ def mixing_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     change = np.maximum(np.abs(a - before), np.abs(c - behind))
     is_isolated = np.stack([flatness * change <= np.maximum(sizes, flatness) for flatness in FLATNESS])
     sums, numbers = np.zeros((KINDS, MIXING_SUMS, CANDIDATES), np.float32), np.zeros((KINDS, 2), np.float32)
-    for first, second in ((0, 1), (1, 2), (0, 2)):
+    for first, second in CHANNEL_PAIRS:
         is_shared = is_mixture[first] & is_mixture[second]
         apart = np.abs(middles[first] - middles[second]) + np.abs(heights[first] - heights[second])
         is_telling = is_shared & is_inner[first] & is_inner[second] & (apart > LEAST_DIFFERENCE)
@@ -173,7 +176,7 @@ def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
             (tables.slope.take(first, axis=0) / tables.irradiance.take(first, axis=0)) ** 2 / np.float32(6)
         )
     sums = np.zeros(CANDIDATES, np.float32)
-    for i, j in ((0, 1), (1, 2), (0, 2)):
+    for i, j in CHANNEL_PAIRS:
         squared = (ratios[i] - ratios[j]) ** 2
         other = np.float32(SHADING_SPREAD**2 / 2) * (ratios[i] ** 2 + ratios[j] ** 2)
         sums += (squared / (squared + variances[i] + variances[j] + other + np.float32(1e-6))).sum(axis=0)

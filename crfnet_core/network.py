@@ -184,7 +184,7 @@ class ResponseNetwork:
         folder : str or Path, optional
             Holds model.onnx and model.json; or the name of a packaged model, such as "crfnet2017".
         threads : int
-            Windows that run at the same time; 0 takes the processor's number of cores.
+            Windows that run at the same time, in a network that reads windows; 0 takes the processor's number of cores.
 
         Raises
         ------

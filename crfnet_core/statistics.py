@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.candidates import (
     CANDIDATES,
+    CHANNEL_PAIRS,
     KINDS,
     MIXING_STRIDES,
     MIXING_SUMS,
@@ -137,7 +138,7 @@ def _color_equations(planes: Codes, stride: int) -> Floats:
         sizes = np.abs(heights)
         is_edge = (sizes > LEAST_COLOR_EDGE) & (rises * np.sign(heights) >= 0) & (np.abs(rises) <= sizes)
         levels = (a.astype(np.uint16) + c) * np.uint16(COLOR_LEVELS) // np.uint16(2 * CODES - 1)
-        for first, second in ((0, 1), (1, 2), (0, 2)):
+        for first, second in CHANNEL_PAIRS:
             chosen = np.flatnonzero(is_edge[first] & is_edge[second])
             sides = [[array[n].take(chosen) for array in (heights, rises, levels)] for n in (first, second)]
             _add_pair(equations, *sides)

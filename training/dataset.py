@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 from concurrent.futures import ProcessPoolExecutor
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from functools import cache
 from pathlib import Path
 
@@ -89,7 +89,7 @@ class Shards:
 
     def only(self, chosen: Tensor) -> Shards:
         """Return the photographs where `chosen`, bool (P,), is true."""
-        return Shards(self.statistics[chosen], self.curves[chosen], self.curve_sets[chosen], self.folds[chosen])
+        return Shards(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
         """Return statistics, float32 (B, 4, STATISTICS), and responses (B, 128), of the photographs in `rows`."""
@@ -101,8 +101,8 @@ def read_shards(folder: Path, split: str) -> Shards:
     shards = [np.load(path) for path in sorted(folder.glob(f"{split}_*.npz"))]
     if not shards:
         raise FileNotFoundError(f"{folder}: no shards of the split {split}; run python -m training.dataset first")
-    names = ("statistics", "curves", "curve_sets", "folds")
-    return Shards(*(torch.from_numpy(np.concatenate([shard[name] for shard in shards])) for name in names))
+    parts = (np.concatenate([shard[field.name] for shard in shards]) for field in fields(Shards))
+    return Shards(*map(torch.from_numpy, parts))
 
 
 def main() -> None:

@@ -127,6 +127,11 @@ def _second_differences() -> Tensor:
     return differences.T @ differences
 
 
+def _dense(inputs: int, config: NetworkConfig) -> nn.Sequential:
+    """Return a layer from `inputs` values to the network's width."""
+    return nn.Sequential(nn.Linear(inputs, config.width), nn.GELU(), nn.Dropout(config.dropout))
+
+
 class Embedding(nn.Module):
     """Statistics, of one window or summed over several, as a vector."""
 
@@ -136,13 +141,13 @@ class Embedding(nn.Module):
         self.features = Features()
         self.level_normal = nn.BatchNorm1d(LEVEL_FEATURES, affine=False)
         self.edge_normal = nn.BatchNorm1d(EDGE_FEATURES, affine=False)
-        self.channel = nn.Sequential(nn.Linear(LEVEL_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
-        self.edges = nn.Sequential(nn.Linear(EDGE_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.channel = _dense(LEVEL_FEATURES, config)
+        self.edges = _dense(EDGE_FEATURES, config)
         self.color_normal = nn.BatchNorm1d(COLOR_FEATURES, affine=False)
-        self.colors = nn.Sequential(nn.Linear(COLOR_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.colors = _dense(COLOR_FEATURES, config)
         self.candidate_normal = nn.BatchNorm1d(CANDIDATE_FEATURES, affine=False)
-        self.candidates = nn.Sequential(nn.Linear(CANDIDATE_FEATURES, width), nn.GELU(), nn.Dropout(config.dropout))
-        self.trunk = nn.Sequential(nn.Linear(5 * width, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.candidates = _dense(CANDIDATE_FEATURES, config)
+        self.trunk = _dense(5 * width, config)
 
     def forward(self, statistics: Tensor) -> Tensor:
         """Return vectors, shape (N, width), of statistics of shape (N, STATISTICS)."""
@@ -170,7 +175,7 @@ class Head(nn.Module):
     def __init__(self, inputs: int, config: NetworkConfig) -> None:
         super().__init__()
         width = config.width
-        self.trunk = nn.Sequential(nn.Linear(inputs, width), nn.GELU(), nn.Dropout(config.dropout))
+        self.trunk = _dense(inputs, config)
         self.weights = nn.Linear(width, COMPONENTS)
         self.log_error = nn.Linear(width, 1)
 

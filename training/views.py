@@ -28,7 +28,6 @@ class View:
     scene: Scene
     matrix: np.ndarray
     centre: np.ndarray
-    scale: float
 
     @classmethod
     def draw(cls, scene: Scene, rng: np.random.Generator) -> View:
@@ -37,7 +36,12 @@ class View:
         stretch = np.exp(rng.normal(0, STRETCH))
         turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
         matrix = scale * turn @ np.diag([stretch, 1 / stretch])
-        return cls(scene, matrix, rng.uniform(0, scene.pixels.shape[:2]), scale)
+        return cls(scene, matrix, rng.uniform(0, scene.pixels.shape[:2]))
+
+    @property
+    def scale(self) -> float:
+        """Pixels of the scene per sample."""
+        return float(np.sqrt(abs(np.linalg.det(self.matrix))))
 
     def window(self) -> np.ndarray:
         """Return the linear window, float32 (227, 227, 3)."""

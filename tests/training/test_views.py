@@ -15,7 +15,7 @@ def scene():
 
 
 def test_an_upright_view_shows_the_pixels(scene):
-    light = View(scene, np.eye(2), np.array([150.0, 200.0]), 1.0).window()
+    light = View(scene, np.eye(2), np.array([150.0, 200.0])).window()
     assert light.shape == (227, 227, 3)
     assert light.dtype == np.float32
     np.testing.assert_allclose(light[1:, 1:, 0] - light[:-1, 1:, 0], 1, atol=1e-4)
@@ -24,7 +24,7 @@ def test_an_upright_view_shows_the_pixels(scene):
 
 def test_a_view_from_farther_away_shows_more_and_turns(scene):
     quarter = np.array([[0.0, -2.0], [2.0, 0.0]])
-    light = View(scene, quarter, np.array([150.0, 250.0]), 2.0).window()
+    light = View(scene, quarter, np.array([150.0, 250.0])).window()
     inner = light[100:130, 100:130]
     np.testing.assert_allclose(np.diff(inner[:, :, 0], axis=1), -2, atol=1e-3)
     np.testing.assert_allclose(np.diff(inner[:, :, 1], axis=0), 2, atol=1e-3)
@@ -39,6 +39,6 @@ def test_a_glance_is_every_fourth_sample(scene):
 
 
 def test_beyond_its_sides_a_scene_is_mirrored(scene):
-    light = View(scene, np.eye(2), np.array([0.0, 250.0]), 1.0).window()
+    light = View(scene, np.eye(2), np.array([0.0, 250.0])).window()
     np.testing.assert_allclose(light[112], light[114], atol=1e-4)
     assert light.min() >= 0
