@@ -27,24 +27,11 @@ CANDIDATES = len(FIRST_WEIGHTS) * len(SECOND_WEIGHTS)
 #: Share of the identity mixed into every candidate, so that no inverse is too steep for 8 bits.
 LINEAR_SHARE = 0.02
 
-#: Distances between samples in a row, for mixtures and for shading.
-MIXING_STRIDES, SHADING_STRIDES = (1, 2, 4), (2, 8)
-
-#: Sums over mixtures at each candidate: see `mixing_sums`.
-MIXING_SUMS = 4
-
-#: Channels that are compared with each other.
-CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))
-
-#: Mixtures of a kind and shading compared per pair of channels and stride, at most.
-MOST_COMPARED = 350
+#: Distances between samples in a row, of mixtures.
+MIXING_STRIDES = (1, 2, 4)
 
 #: Codes between the two sides of a mixture, more than which its share means anything.
 LEAST_HEIGHT = 12
-
-#: Codes by which the sides of a mixture differ between two channels, more than which the channels are compared; and
-#: the part of its height, one in so many, by which b is away from both sides then.
-LEAST_DIFFERENCE, INNER = 60, 5
 
 #: A mixture is isolated when its surroundings change by less than its height divided by these.
 FLATNESS = (2, 5)
@@ -52,11 +39,35 @@ FLATNESS = (2, 5)
 #: Kinds of mixtures that are summed up: all, and those that are isolated.
 KINDS = 1 + len(FLATNESS)
 
+#: Sums over mixtures at each candidate: see `share_sums`.
+SHARE_SUMS = 3
+
+#: Channels that are compared with each other.
+CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))
+
+#: Mixtures that are summed up, and mixtures or shaded samples that are compared, at most: of a stride and a pair.
+MOST_SUMMED, MOST_COMPARED = 350, 500
+
+#: Codes by which the sides of a mixture differ between two channels, more than which the channels are compared; and
+#: the part of its height, one in so many, by which b is away from both sides then.
+LEAST_DIFFERENCE, INNER = 60, 5
+
+#: Kinds of mixtures that are compared: all, and those isolated by the first of `FLATNESS`.
+COMPARED_KINDS = 2
+
+#: Bands of the level of b in which what is compared is kept apart.
+BANDS = 4
+
 #: Spread of the difference between the shares of two channels that has other reasons than rounding.
 SHARE_SPREAD = 0.07
 
-#: Codes between two samples of the same shaded surface, least and most; and between channels, for them to differ.
-SHADING, LEAST_CHROMA = (4, 24), 24
+#: Codes between two samples of the same shaded surface, least and most: little and much shading; and the distances
+#: between such samples.
+LITTLE, MUCH = (4, 24), (24, 80)
+SHADING = ((1, LITTLE), (2, LITTLE), (4, LITTLE), (8, LITTLE), (16, LITTLE), (2, MUCH), (8, MUCH), (16, MUCH))
+
+#: Codes between channels, more than which their shading is compared.
+LEAST_CHROMA = 24
 
 #: Codes that are bright and dark enough for the ratio of two of them to mean anything.
 DARKEST, BRIGHTEST = 8, 247
@@ -66,6 +77,7 @@ SHADING_SPREAD = 0.4
 
 Floats = NDArray[np.float32]
 Codes = NDArray[np.uint8]
+Samples = NDArray[np.int16]
 
 
 @dataclass(frozen=True)
@@ -102,57 +114,93 @@ class CandidateTables:
         return cls(*(table.astype(np.float32) for table in (irradiance, slope, np.log(slope), np.log(positive))))
 
 
-def mixing_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
-    """Return sums over mixtures at each candidate, float32 (KINDS, 4, CANDIDATES), and their numbers, (KINDS, 2).
-
-    First over all mixtures, then over isolated ones, for both channels of each pair: the logarithm of the density of b
-    under a uniform share; the share of the brighter side, less a half; its square; and over the pairs of channels that
-    differ enough how much their shares disagree, from 0 to 1. The first and the last are relative to their means over
-    the candidates. The numbers are those of the shares and of the compared pairs.
+@dataclass(frozen=True)
+class Mixtures:
+    """Samples a, b, c in a row, codes as int16 (3, M), of which b may be a mixture of a and c in two channels or more.
 
     Parameters
     ----------
-    lines : tuple of five ndarrays, uint8, shape (3, M)
-        Samples in a row: what lies before a, then a, b, c, and what lies behind c.
+    a, b, c : ndarray
+        The samples.
+    is_mixture : ndarray, bool, shape (3, M)
+        Whether a and c differ enough, and b lies between them.
+    is_isolated : ndarray, bool, shape (len(FLATNESS), 3, M)
+        Whether the samples before a and behind c hardly differ from these.
+    """
+
+    a: Samples
+    b: Samples
+    c: Samples
+    is_mixture: NDArray[np.bool_]
+    is_isolated: NDArray[np.bool_]
+
+    @classmethod
+    def among(cls, lines: tuple[Codes, ...]) -> Mixtures:
+        """Return the mixtures among five samples in a row, each uint8 (3, M)."""
+        _, first, middle, last, _ = lines
+        low, high = np.minimum(first, last), np.maximum(first, last)
+        is_mixture = (high - low > LEAST_HEIGHT) & (middle >= low) & (middle <= high)
+        places = np.flatnonzero(is_mixture.sum(axis=0, dtype=np.uint8) > 1)
+        before, a, b, c, behind = (side.take(places, axis=1).astype(np.int16) for side in lines)
+        change, size = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
+        is_isolated = np.stack([flatness * change <= np.maximum(size, flatness) for flatness in FLATNESS])
+        return cls(a, b, c, is_mixture.take(places, axis=1), is_isolated)
+
+    def taken(self, channel: int, places: NDArray[np.intp]) -> tuple[Samples, Samples, Samples]:
+        """Return a, b and c of one channel at some places."""
+        return self.a[channel].take(places), self.b[channel].take(places), self.c[channel].take(places)
+
+
+def share_sums(mixtures: Mixtures) -> tuple[Floats, Floats]:
+    """Return sums over mixtures at each candidate, float32 (KINDS, SHARE_SUMS, CANDIDATES), and their numbers (KINDS,).
+
+    First over all mixtures, then over isolated ones: the logarithm of the density of b under a uniform share, relative
+    to its mean over the candidates; the share of the brighter side, less a half; and its square.
     """
     tables = CandidateTables.load()
-    before, a, b, c, behind = (side.astype(np.int16) for side in lines)
-    heights, rises, middles = c - a, b - a, a + c
-    sizes = np.abs(heights)
-    is_mixture = (sizes > LEAST_HEIGHT) & (rises * np.sign(heights) >= 0) & (np.abs(rises) <= sizes)
-    is_inner = INNER * np.minimum(np.abs(rises), np.abs(b - c)) > sizes
-    change = np.maximum(np.abs(a - before), np.abs(c - behind))
-    is_isolated = np.stack([flatness * change <= np.maximum(sizes, flatness) for flatness in FLATNESS])
-    sums, numbers = np.zeros((KINDS, MIXING_SUMS, CANDIDATES), np.float32), np.zeros((KINDS, 2), np.float32)
+    sums, numbers = np.zeros((KINDS, SHARE_SUMS, CANDIDATES), np.float32), np.zeros(KINDS, np.float32)
     for first, second in CHANNEL_PAIRS:
-        is_shared = is_mixture[first] & is_mixture[second]
-        apart = np.abs(middles[first] - middles[second]) + np.abs(heights[first] - heights[second])
-        is_telling = is_shared & is_inner[first] & is_inner[second] & (apart > LEAST_DIFFERENCE)
-        shared, telling = _some(is_shared), _some(is_telling)
-        shared_kinds, telling_kinds = (
-            _kinds(is_isolated[:, first].take(places, axis=1) & is_isolated[:, second].take(places, axis=1))
-            for places in (shared, telling)
+        places = _some(mixtures.is_mixture[first] & mixtures.is_mixture[second], MOST_SUMMED)
+        isolated = mixtures.is_isolated[:, first].take(places, axis=1) & mixtures.is_isolated[:, second].take(
+            places, axis=1
         )
+        kinds = np.concatenate([np.ones((1, len(places))), isolated]).astype(np.float32)
         for channel in (first, second):
-            sides = [side[channel].take(shared) for side in (a, b, c)]
-            share, height = _shares(*sides)
-            density = tables.log_slope.take(sides[1], axis=0) - np.log(np.abs(height))
-            brighter = np.where((heights[channel].take(shared) > 0)[:, None], share, 1 - share) - np.float32(0.5)
-            sums[:, :3] += np.stack([shared_kinds @ part for part in (density, brighter, brighter**2)], axis=1)
-        compared, spread = [], np.full((len(telling), CANDIDATES), SHARE_SPREAD**2, np.float32)
-        for channel in (first, second):
-            sides = [side[channel].take(telling) for side in (a, b, c)]
-            share, height = _shares(*sides)
-            compared.append(share)
-            spread += (tables.slope.take(sides[1], axis=0) / height) ** 2 / np.float32(6)
-        squared = (compared[0] - compared[1]) ** 2
-        sums[:, 3] += telling_kinds @ (squared / (squared + spread))
-        numbers += np.stack([2 * shared_kinds.sum(axis=1), telling_kinds.sum(axis=1)], axis=1)
-    sums[:, [0, 3]] -= sums[:, [0, 3]].mean(axis=2, keepdims=True)
+            a, b, c = mixtures.taken(channel, places)
+            share, height = _shares(a, b, c)
+            density = tables.log_slope.take(b, axis=0) - np.log(np.abs(height))
+            brighter = np.where((c > a)[:, None], share, 1 - share) - np.float32(0.5)
+            sums += np.stack([kinds @ part for part in (density, brighter, brighter**2)], axis=1)
+            numbers += kinds.sum(axis=1)
+    sums[:, 0] -= sums[:, 0].mean(axis=1, keepdims=True)
     return sums, numbers
 
 
-def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
+def disagreement_sums(mixtures: Mixtures) -> tuple[Floats, Floats]:
+    """Return how much channels disagree on shares, float32 (COMPARED_KINDS, BANDS, CANDIDATES), and of how many.
+
+    Each comparison of a pair of channels that differ enough gives from 0 to 1; the sums are relative to their means
+    over the candidates. The numbers have the shape (COMPARED_KINDS, BANDS).
+    """
+    sums = np.zeros((COMPARED_KINDS, BANDS, CANDIDATES), np.float32)
+    numbers = np.zeros((COMPARED_KINDS, BANDS), np.float32)
+    heights, middles = mixtures.c - mixtures.a, mixtures.a + mixtures.c
+    nearer = np.minimum(np.abs(mixtures.b - mixtures.a), np.abs(mixtures.b - mixtures.c))
+    is_inner = mixtures.is_mixture & (INNER * nearer > np.abs(heights))
+    for first, second in CHANNEL_PAIRS:
+        apart = np.abs(middles[first] - middles[second]) + np.abs(heights[first] - heights[second])
+        is_telling = is_inner[first] & is_inner[second] & (apart > LEAST_DIFFERENCE)
+        is_isolated = mixtures.is_isolated[0, first] & mixtures.is_isolated[0, second]
+        for kind, chosen in enumerate((is_telling, is_telling & is_isolated)):
+            places = _some(chosen, MOST_COMPARED)
+            sides = [mixtures.taken(channel, places) for channel in (first, second)]
+            bands = _in_bands((sides[0][1] + sides[1][1]) >> 1)
+            sums[kind] += bands @ _disagreement(*sides)
+            numbers[kind] += bands.sum(axis=1)
+    return sums - sums.mean(axis=2, keepdims=True), numbers
+
+
+def shading_sums(lines: tuple[Codes, ...], change: tuple[int, int]) -> tuple[Floats, Floats]:
     """Return how much channels disagree on shading at each candidate, float32 (CANDIDATES,), and of how many pairs.
 
     The sums are relative to their mean over the candidates.
@@ -161,13 +209,16 @@ def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     ----------
     lines : tuple of two ndarrays, uint8, shape (3, M)
         Samples in a row.
+    change : tuple of int
+        Codes between them, least and most.
     """
     tables = CandidateTables.load()
-    a, b = (side.astype(np.int16) for side in lines)
-    change = np.abs(a - b).max(axis=0)
-    darkest, brightest = np.minimum(a, b).min(axis=0), np.maximum(a, b).max(axis=0)
-    is_shading = (change >= SHADING[0]) & (change <= SHADING[1]) & (darkest > DARKEST) & (brightest < BRIGHTEST)
-    chosen = _some(is_shading & (a.max(axis=0) - a.min(axis=0) > LEAST_CHROMA))
+    a, b = lines
+    low, high = np.minimum(a, b), np.maximum(a, b)
+    most = (high - low).max(axis=0)
+    is_shading = (most >= change[0]) & (most <= change[1])
+    is_shading &= (low.min(axis=0) > DARKEST) & (high.max(axis=0) < BRIGHTEST)
+    chosen = _some(is_shading & (a.max(axis=0) - a.min(axis=0) > LEAST_CHROMA), MOST_COMPARED)
     ratios, variances = [], []
     for channel in range(3):
         first, second = a[channel].take(chosen), b[channel].take(chosen)
@@ -183,7 +234,7 @@ def shading_sums(lines: tuple[Codes, ...]) -> tuple[Floats, Floats]:
     return sums - sums.mean(), np.array([3 * len(chosen)], np.float32)
 
 
-def _shares(a: NDArray[np.int16], b: NDArray[np.int16], c: NDArray[np.int16]) -> tuple[Floats, Floats]:
+def _shares(a: Samples, b: Samples, c: Samples) -> tuple[Floats, Floats]:
     """Return the share of c in b, and the height c - a in irradiance, each (M, CANDIDATES)."""
     irradiance = CandidateTables.load().irradiance
     low = irradiance.take(a, axis=0)
@@ -191,12 +242,25 @@ def _shares(a: NDArray[np.int16], b: NDArray[np.int16], c: NDArray[np.int16]) ->
     return (irradiance.take(b, axis=0) - low) / height, height
 
 
-def _kinds(isolated: NDArray[np.bool_]) -> Floats:
-    """Return whether mixtures are of each kind, 0 or 1, shape (KINDS, M), of which are isolated."""
-    return np.concatenate([np.ones((1, isolated.shape[1])), isolated]).astype(np.float32)
+def _disagreement(*sides: tuple[Samples, Samples, Samples]) -> Floats:
+    """Return how much two channels, each a, b and c, disagree on the share of c in b, from 0 to 1, (M, CANDIDATES)."""
+    slope = CandidateTables.load().slope
+    shares, heights = zip(*(_shares(*side) for side in sides), strict=True)
+    rounding = [(slope.take(b, axis=0) / height) ** 2 for (_, b, _), height in zip(sides, heights, strict=True)]
+    squared = (shares[0] - shares[1]) ** 2
+    disagreement: Floats = squared / (
+        squared + (rounding[0] + rounding[1]) / np.float32(6) + np.float32(SHARE_SPREAD**2)
+    )
+    return disagreement
 
 
-def _some(chosen: NDArray[np.bool_]) -> NDArray[np.intp]:
-    """Return the places that are chosen, or `MOST_COMPARED` at most, evenly spread over them."""
+def _in_bands(level: Samples) -> Floats:
+    """Return whether codes (M,) are in each band of levels, 0 or 1, shape (BANDS, M)."""
+    bands: Floats = (level * BANDS // 256 == np.arange(BANDS)[:, None]).astype(np.float32)
+    return bands
+
+
+def _some(chosen: NDArray[np.bool_], most: int) -> NDArray[np.intp]:
+    """Return the places that are chosen, or `most` of them, evenly spread."""
     places = np.flatnonzero(chosen)
-    return places[:: max(1, -(-len(places) // MOST_COMPARED))]
+    return places[:: max(1, -(-len(places) // most))]

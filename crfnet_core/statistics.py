@@ -9,14 +9,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crfnet_core.candidates import (
+    BANDS,
     CANDIDATES,
     CHANNEL_PAIRS,
+    COMPARED_KINDS,
     KINDS,
     MIXING_STRIDES,
-    MIXING_SUMS,
-    SHADING_STRIDES,
-    mixing_sums,
+    SHADING,
+    SHARE_SUMS,
+    Mixtures,
+    disagreement_sums,
     shading_sums,
+    share_sums,
 )
 
 #: Code values that samples are counted on.
@@ -50,10 +54,12 @@ PARTS = (
     (len(STRIDES), 3, NEIGHBOUR_SUMS, LEVELS),
     (len(STRIDES), 2, GRID, GRID),
     (len(COLOR_STRIDES), COLOR_LEVELS + 1, COLOR_LEVELS),
-    (len(MIXING_STRIDES), KINDS, MIXING_SUMS, CANDIDATES),
-    (len(MIXING_STRIDES), KINDS, 2),
-    (len(SHADING_STRIDES), CANDIDATES),
-    (len(SHADING_STRIDES), 1),
+    (len(MIXING_STRIDES), KINDS, SHARE_SUMS, CANDIDATES),
+    (len(MIXING_STRIDES), KINDS, 1, 1),
+    (len(MIXING_STRIDES), COMPARED_KINDS, BANDS, CANDIDATES),
+    (len(MIXING_STRIDES), COMPARED_KINDS, BANDS, 1),
+    (len(SHADING), CANDIDATES),
+    (len(SHADING), 1),
 )
 
 #: Length of a window's statistics.
@@ -92,9 +98,13 @@ def window_statistics(window: Floats) -> Floats:
     neighbours = np.stack([_neighbour_sums(planes, stride) for stride in STRIDES])
     edges = np.stack([_edge_sums(planes, stride) for stride in STRIDES])
     colors = np.stack([_color_equations(planes, stride) for stride in COLOR_STRIDES])
-    mixing = zip(*(mixing_sums(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES), strict=True)
-    shading = zip(*(shading_sums(_both_ways(planes, stride, 2)) for stride in SHADING_STRIDES), strict=True)
-    candidates = [np.stack(part) for part in (*mixing, *shading)]
+    mixtures = [Mixtures.among(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES]
+    by_candidate = (
+        map(share_sums, mixtures),
+        map(disagreement_sums, mixtures),
+        (shading_sums(_both_ways(planes, stride, 2), change) for stride, change in SHADING),
+    )
+    candidates = [np.stack(part) for sums in by_candidate for part in zip(*sums, strict=True)]
     parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors, *candidates)
     return np.concatenate([part.ravel() for part in parts]).astype(np.float32)
 
@@ -133,14 +143,17 @@ def _color_equations(planes: Codes, stride: int) -> Floats:
     that of rounding, which goes with 1 / h ** 2.
     """
     equations = np.zeros((COLOR_LEVELS + 1, COLOR_LEVELS))
-    for a, b, c in _lines(planes, stride, (0, 1, 2)):
-        heights, rises = c.astype(np.int16) - a, b.astype(np.int16) - a
-        sizes = np.abs(heights)
-        is_edge = (sizes > LEAST_COLOR_EDGE) & (rises * np.sign(heights) >= 0) & (np.abs(rises) <= sizes)
-        levels = (a.astype(np.uint16) + c) * np.uint16(COLOR_LEVELS) // np.uint16(2 * CODES - 1)
-        for first, second in CHANNEL_PAIRS:
-            chosen = np.flatnonzero(is_edge[first] & is_edge[second])
-            sides = [[array[n].take(chosen) for array in (heights, rises, levels)] for n in (first, second)]
+    for line in _lines(planes, stride, (0, 1, 2)):
+        first, middle, last = line
+        low, high = np.minimum(first, last), np.maximum(first, last)
+        is_edge = (high - low > LEAST_COLOR_EDGE) & (middle >= low) & (middle <= high)
+        places = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
+        is_edge = is_edge.take(places, axis=1)
+        a, b, c = (side.take(places, axis=1).astype(np.int16) for side in line)
+        heights, rises, levels = c - a, b - a, (a + c) * COLOR_LEVELS // (2 * CODES - 1)
+        for pair in CHANNEL_PAIRS:
+            chosen = np.flatnonzero(is_edge[pair[0]] & is_edge[pair[1]])
+            sides = [[array[n].take(chosen) for array in (heights, rises, levels)] for n in pair]
             _add_pair(equations, *sides)
     return equations.astype(np.float32)
 
@@ -154,7 +167,7 @@ def _add_pair(equations: NDArray[np.float64], first: list[NDArray[Any]], second:
     mixing = mean * (1 - mean) / 2
     weight = (height * other_h) ** 2 / (h * h + other_h * other_h) * (np.abs(apart) < MOST_APART)
     squared, linear = weight * mixing * mixing, weight * mixing * apart
-    cell = level * np.uint16(COLOR_LEVELS) + other_level
+    cell = level * COLOR_LEVELS + other_level
     own, other, cross, right, other_right = (
         np.bincount(cell, amounts, minlength=COLOR_LEVELS**2).reshape(COLOR_LEVELS, COLOR_LEVELS)
         for amounts in (squared * h * h, squared * other_h**2, squared * h * other_h, linear * h, linear * other_h)

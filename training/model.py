@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.candidates import CANDIDATES, KINDS, MIXING_STRIDES, MIXING_SUMS, SHADING_STRIDES
+from crfnet_core.candidates import BANDS, CANDIDATES, COMPARED_KINDS, KINDS, MIXING_STRIDES, SHADING, SHARE_SUMS
 from crfnet_core.emor import COMPONENTS
 from crfnet_core.statistics import COLOR_LEVELS, COLOR_STRIDES, GRID, LEVELS, PARTS, STRIDES
 
@@ -23,10 +23,10 @@ SMOOTHNESS = (1e-2, 1e-1)
 #: Features of the equations between channels: per stride, the bends read and the evidence, at every level.
 COLOR_FEATURES = len(COLOR_STRIDES) * (len(SMOOTHNESS) + 1) * COLOR_LEVELS
 
-#: Features of candidate responses: per stride and kind of mixture the means at every candidate, and how many there are.
-CANDIDATE_FEATURES = len(MIXING_STRIDES) * KINDS * (MIXING_SUMS * CANDIDATES + 2) + len(SHADING_STRIDES) * (
-    CANDIDATES + 1
-)
+#: Features of candidate responses: means at every candidate, and how many samples they are of.
+CANDIDATE_FEATURES = len(MIXING_STRIDES) * (
+    KINDS * (SHARE_SUMS * CANDIDATES + 1) + COMPARED_KINDS * BANDS * (CANDIDATES + 1)
+) + len(SHADING) * (CANDIDATES + 1)
 
 #: Mixtures that a mean at a candidate is given beforehand.
 CANDIDATE_PRIOR = 50.0
@@ -71,17 +71,21 @@ class Features(nn.Module):
         count, place = edges.unbind(-3)
         share = (count * 1e4 / samples.sum((-1, -2))[..., None, None, None] + 1).log()
         places = torch.stack([share, place / (count + PRIOR) * 4], dim=-3)
-        bends, means = self._bends(colors).flatten(-3), self._means(*candidates)
+        bends, means = self._bends(colors).flatten(-3), self._means(candidates)
         return torch.cat(levels, dim=-1), places.flatten(-4), bends, means
 
-    def _means(self, mixing: Tensor, mixtures: Tensor, shading: Tensor, shaded: Tensor) -> Tensor:
-        """Return means at every candidate and logarithms of the numbers of samples, (..., CANDIDATE_FEATURES)."""
-        shares, compared = mixtures.unbind(-1)
-        numbers = torch.stack([shares, shares, shares, compared], dim=-1)[..., None]
-        means = [mixing / (numbers + CANDIDATE_PRIOR), shading / (shaded + CANDIDATE_PRIOR)]
-        logs = [(mixtures + 10).log(), (shaded + 10).log()]
-        flat = [part.flatten(start) for part, start in zip([*means, *logs], (-4, -2, -3, -2), strict=True)]
-        return torch.cat(flat, dim=-1)
+    def _means(self, parts: list[Tensor]) -> Tensor:
+        """Return means at every candidate and logarithms of the numbers of samples, (..., CANDIDATE_FEATURES).
+
+        The parts are sums and the numbers they are of, in turn.
+        """
+        features = []
+        for sums, numbers, shape in zip(parts[::2], parts[1::2], PARTS[4::2], strict=True):
+            features += [
+                (sums / (numbers + CANDIDATE_PRIOR)).flatten(-len(shape)),
+                (numbers + 10).log().flatten(-len(shape)),
+            ]
+        return torch.cat(features, dim=-1)
 
     def _bends(self, equations: Tensor) -> Tensor:
         """Return bends of the inverse response and the logarithm of their evidence, shape (..., S, 3, COLOR_LEVELS)."""

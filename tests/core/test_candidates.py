@@ -1,7 +1,18 @@
 import numpy as np
 import pytest
 
-from crfnet_core.candidates import CANDIDATES, SECOND_WEIGHTS, CandidateTables, mixing_sums, shading_sums
+from crfnet_core.candidates import (
+    BANDS,
+    CANDIDATES,
+    LITTLE,
+    MUCH,
+    SECOND_WEIGHTS,
+    CandidateTables,
+    Mixtures,
+    disagreement_sums,
+    shading_sums,
+    share_sums,
+)
 
 TABLES = CandidateTables.load()
 
@@ -33,32 +44,51 @@ def test_candidates_are_inverse_responses():
 
 
 @pytest.mark.parametrize("true", TRUE)
-def test_mixtures_agree_under_the_true_response(true):
-    sums, numbers = mixing_sums(edges(true))
-    assert (numbers[:, 0] > 500).all()
-    density, share, squared, disagreement = sums[-1] / numbers[-1, [0, 0, 0, 1]][:, None]
-    assert disagreement.argmin() == true
+def test_shares_are_even_under_the_true_response(true):
+    sums, numbers = share_sums(Mixtures.among(edges(true)))
+    assert (numbers > 500).all()
+    density, share, squared = sums[-1] / numbers[-1]
     assert density.argmax() == true
     assert abs(share[true]) < 0.02
     assert squared[true] == pytest.approx(1 / 12, abs=0.01)
     assert np.abs(share).max() > 0.07
 
 
+@pytest.mark.parametrize("true", TRUE)
+def test_channels_agree_on_shares_under_the_true_response(true):
+    sums, numbers = disagreement_sums(Mixtures.among(edges(true)))
+    assert (numbers.sum(axis=1) > 500).all()
+    assert sums.sum(axis=1).argmin(axis=1).tolist() == [true, true]
+
+
+def test_bands_part_what_is_compared_by_level():
+    dim = tuple(side // 4 for side in edges(TRUE[1]))
+    numbers = disagreement_sums(Mixtures.among(dim))[1]
+    assert numbers.shape == (2, BANDS)
+    assert numbers[0, 0] > 0
+    assert not numbers[:, 1:].any()
+
+
 def test_only_isolated_mixtures_count_as_such():
-    number = mixing_sums(edges(TRUE[0], isolated=False))[1]
-    assert number[2, 0] < 0.1 * number[0, 0]
+    mixtures = Mixtures.among(edges(TRUE[0], isolated=False))
+    assert share_sums(mixtures)[1][2] < 0.1 * share_sums(mixtures)[1][0]
+    compared = disagreement_sums(mixtures)[1].sum(axis=1)
+    assert compared[1] < 0.5 * compared[0]
 
 
 @pytest.mark.parametrize("true", TRUE)
-def test_shading_agrees_under_the_true_response(true):
+@pytest.mark.parametrize(("change", "least", "most"), [(LITTLE, 0.85, 1.15), (MUCH, 0.4, 1.2)])
+def test_shading_agrees_under_the_true_response(true, change, least, most):
     rng = np.random.default_rng(2)
     light = rng.uniform(0.05, 0.8, (3, 20_000))
-    shaded = light * rng.uniform(0.85, 1.15, 20_000)
-    sums, number = shading_sums((recorded(light, true), recorded(shaded, true)))
+    shaded = light * rng.uniform(least, most, 20_000)
+    sums, number = shading_sums((recorded(light, true), recorded(shaded, true)), change)
     assert number[0] > 500
     assert sums[true] < np.quantile(sums, 0.2)
 
 
 def test_a_flat_window_says_nothing():
     flat = np.full((3, 500), 100, np.uint8)
-    assert all(not part.any() for part in (*mixing_sums((flat,) * 5), *shading_sums((flat,) * 2)))
+    mixtures = Mixtures.among((flat,) * 5)
+    parts = (*share_sums(mixtures), *disagreement_sums(mixtures), *shading_sums((flat,) * 2, LITTLE))
+    assert not any(part.any() for part in parts)

@@ -24,7 +24,7 @@ def smooth():
 
 def test_the_length_is_that_of_the_parts(smooth):
     found = window_statistics(smooth)
-    assert found.shape == (STATISTICS,) == (10468,)
+    assert found.shape == (STATISTICS,) == (11161,)
     assert found.dtype == np.float32
 
 
