@@ -104,7 +104,7 @@ TRIALS = (
     *(Trial(f"{count} window{'s' * (count > 1)}", windows=count) for count in (1, 2, 5, 10, 20)),
     Trial("windows averaged, outliers removed", averaged="kept"),
     Trial("windows averaged, none removed", averaged="all"),
-    *(Trial(f"{count} photographs pooled", pooled=count) for count in (2, 4, 8)),
+    *(Trial(f"{count} photographs pooled", pooled=count) for count in (2, 4, 8, 16)),
 )
 
 
