@@ -54,7 +54,7 @@ def test_every_photograph_has_a_label_of_its_own():
 
 def test_every_condition_and_trial_has_the_same_photographs():
     shots = stress_shots(range(20), range(201), count=40, seed=3)
-    assert len(shots) == 40 * (len(CONDITIONS) + len(TRIALS)) == 40 * (22 + 11)
+    assert len(shots) == 40 * (len(CONDITIONS) + len(TRIALS)) == 40 * (22 + 12)
     cells = {(shot.scene, shot.curve) for shot in shots}
     assert len(cells) == 40
     assert all(shot.condition == CLEAN for shot in shots if shot.trial != PLAIN)
