@@ -114,6 +114,18 @@ class CandidateTables:
         return cls(*(table.astype(np.float32) for table in (irradiance, slope, np.log(slope), np.log(positive))))
 
 
+def shared_edges(line: tuple[Codes, ...], least: int) -> tuple[NDArray[np.intp], NDArray[np.bool_]]:
+    """Return where b lies between a and c, more than `least` codes apart, in two channels or more, and in which.
+
+    Of the three samples in a row a, b and c, each (3, M): the places (N,), and whether each channel is such, (3, N).
+    """
+    a, b, c = line
+    low, high = np.minimum(a, c), np.maximum(a, c)
+    is_edge = (high - low > least) & (b >= low) & (b <= high)
+    places = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
+    return places, is_edge.take(places, axis=1)
+
+
 @dataclass(frozen=True)
 class Mixtures:
     """Samples a, b, c in a row, codes as int16 (3, M), of which b may be a mixture of a and c in two channels or more.
@@ -137,14 +149,11 @@ class Mixtures:
     @classmethod
     def among(cls, lines: tuple[Codes, ...]) -> Mixtures:
         """Return the mixtures among five samples in a row, each uint8 (3, M)."""
-        _, first, middle, last, _ = lines
-        low, high = np.minimum(first, last), np.maximum(first, last)
-        is_mixture = (high - low > LEAST_HEIGHT) & (middle >= low) & (middle <= high)
-        places = np.flatnonzero(is_mixture.sum(axis=0, dtype=np.uint8) > 1)
+        places, is_mixture = shared_edges(lines[1:4], LEAST_HEIGHT)
         before, a, b, c, behind = (side.take(places, axis=1).astype(np.int16) for side in lines)
         change, size = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
         is_isolated = np.stack([flatness * change <= np.maximum(size, flatness) for flatness in FLATNESS])
-        return cls(a, b, c, is_mixture.take(places, axis=1), is_isolated)
+        return cls(a, b, c, is_mixture, is_isolated)
 
     def taken(self, channel: int, places: NDArray[np.intp]) -> tuple[Samples, Samples, Samples]:
         """Return a, b and c of one channel at some places."""
@@ -161,9 +170,7 @@ def share_sums(mixtures: Mixtures) -> tuple[Floats, Floats]:
     sums, numbers = np.zeros((KINDS, SHARE_SUMS, CANDIDATES), np.float32), np.zeros(KINDS, np.float32)
     for first, second in CHANNEL_PAIRS:
         places = _some(mixtures.is_mixture[first] & mixtures.is_mixture[second], MOST_SUMMED)
-        isolated = mixtures.is_isolated[:, first].take(places, axis=1) & mixtures.is_isolated[:, second].take(
-            places, axis=1
-        )
+        isolated = (mixtures.is_isolated[:, first] & mixtures.is_isolated[:, second]).take(places, axis=1)
         kinds = np.concatenate([np.ones((1, len(places))), isolated]).astype(np.float32)
         for channel in (first, second):
             a, b, c = mixtures.taken(channel, places)

@@ -21,6 +21,7 @@ from crfnet_core.candidates import (
     disagreement_sums,
     shading_sums,
     share_sums,
+    shared_edges,
 )
 
 #: Code values that samples are counted on.
@@ -48,18 +49,23 @@ COLOR_STRIDES, COLOR_LEVELS = (1, 2, 4, 8), 20
 #: places of its middle from which on it is no mixture of its sides.
 LEAST_COLOR_EDGE, MOST_APART = 12, 0.3
 
-#: Shapes of the parts of a window's statistics, in their order.
-PARTS = (
-    (3, LEVELS),
-    (len(STRIDES), 3, NEIGHBOUR_SUMS, LEVELS),
-    (len(STRIDES), 2, GRID, GRID),
-    (len(COLOR_STRIDES), COLOR_LEVELS + 1, COLOR_LEVELS),
+#: Shapes of what is counted at every candidate response: sums and the numbers that they are of, in turn.
+CANDIDATE_PARTS = (
     (len(MIXING_STRIDES), KINDS, SHARE_SUMS, CANDIDATES),
     (len(MIXING_STRIDES), KINDS, 1, 1),
     (len(MIXING_STRIDES), COMPARED_KINDS, BANDS, CANDIDATES),
     (len(MIXING_STRIDES), COMPARED_KINDS, BANDS, 1),
     (len(SHADING), CANDIDATES),
     (len(SHADING), 1),
+)
+
+#: Shapes of the parts of a window's statistics, in their order.
+PARTS = (
+    (3, LEVELS),
+    (len(STRIDES), 3, NEIGHBOUR_SUMS, LEVELS),
+    (len(STRIDES), 2, GRID, GRID),
+    (len(COLOR_STRIDES), COLOR_LEVELS + 1, COLOR_LEVELS),
+    *CANDIDATE_PARTS,
 )
 
 #: Length of a window's statistics.
@@ -99,10 +105,11 @@ def window_statistics(window: Floats) -> Floats:
     edges = np.stack([_edge_sums(planes, stride) for stride in STRIDES])
     colors = np.stack([_color_equations(planes, stride) for stride in COLOR_STRIDES])
     mixtures = [Mixtures.among(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES]
+    pairs = {stride: _both_ways(planes, stride, 2) for stride in {stride for stride, _ in SHADING}}
     by_candidate = (
         map(share_sums, mixtures),
         map(disagreement_sums, mixtures),
-        (shading_sums(_both_ways(planes, stride, 2), change) for stride, change in SHADING),
+        (shading_sums(pairs[stride], change) for stride, change in SHADING),
     )
     candidates = [np.stack(part) for sums in by_candidate for part in zip(*sums, strict=True)]
     parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors, *candidates)
@@ -144,11 +151,7 @@ def _color_equations(planes: Codes, stride: int) -> Floats:
     """
     equations = np.zeros((COLOR_LEVELS + 1, COLOR_LEVELS))
     for line in _lines(planes, stride, (0, 1, 2)):
-        first, middle, last = line
-        low, high = np.minimum(first, last), np.maximum(first, last)
-        is_edge = (high - low > LEAST_COLOR_EDGE) & (middle >= low) & (middle <= high)
-        places = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
-        is_edge = is_edge.take(places, axis=1)
+        places, is_edge = shared_edges(line, LEAST_COLOR_EDGE)
         a, b, c = (side.take(places, axis=1).astype(np.int16) for side in line)
         heights, rises, levels = c - a, b - a, (a + c) * COLOR_LEVELS // (2 * CODES - 1)
         for pair in CHANNEL_PAIRS:

@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.candidates import BANDS, CANDIDATES, COMPARED_KINDS, KINDS, MIXING_STRIDES, SHADING, SHARE_SUMS
 from crfnet_core.emor import COMPONENTS
-from crfnet_core.statistics import COLOR_LEVELS, COLOR_STRIDES, GRID, LEVELS, PARTS, STRIDES
+from crfnet_core.statistics import CANDIDATE_PARTS, COLOR_LEVELS, COLOR_STRIDES, GRID, LEVELS, PARTS, STRIDES
 
 #: Features per channel: a histogram and, per stride, four means at every level.
 LEVEL_FEATURES = LEVELS * (1 + 4 * len(STRIDES))
@@ -24,9 +23,7 @@ SMOOTHNESS = (1e-2, 1e-1)
 COLOR_FEATURES = len(COLOR_STRIDES) * (len(SMOOTHNESS) + 1) * COLOR_LEVELS
 
 #: Features of candidate responses: means at every candidate, and how many samples they are of.
-CANDIDATE_FEATURES = len(MIXING_STRIDES) * (
-    KINDS * (SHARE_SUMS * CANDIDATES + 1) + COMPARED_KINDS * BANDS * (CANDIDATES + 1)
-) + len(SHADING) * (CANDIDATES + 1)
+CANDIDATE_FEATURES = sum(torch.Size(part).numel() for part in CANDIDATE_PARTS)
 
 #: Mixtures that a mean at a candidate is given beforehand.
 CANDIDATE_PRIOR = 50.0
@@ -75,12 +72,9 @@ class Features(nn.Module):
         return torch.cat(levels, dim=-1), places.flatten(-4), bends, means
 
     def _means(self, parts: list[Tensor]) -> Tensor:
-        """Return means at every candidate and logarithms of the numbers of samples, (..., CANDIDATE_FEATURES).
-
-        The parts are sums and the numbers they are of, in turn.
-        """
+        """Return `CANDIDATE_PARTS` as means and logarithms of the numbers of samples, (..., CANDIDATE_FEATURES)."""
         features = []
-        for sums, numbers, shape in zip(parts[::2], parts[1::2], PARTS[4::2], strict=True):
+        for sums, numbers, shape in zip(parts[::2], parts[1::2], CANDIDATE_PARTS[::2], strict=True):
             features += [
                 (sums / (numbers + CANDIDATE_PRIOR)).flatten(-len(shape)),
                 (numbers + 10).log().flatten(-len(shape)),
