@@ -30,6 +30,10 @@ LINEAR_SHARE = 0.02
 #: Distances between samples in a row, of mixtures.
 MIXING_STRIDES = (1, 2, 4)
 
+#: Distances between blocks in a row, of mixtures of these: means of 2 x 2 samples, since most files keep colour at half
+#: the resolution.
+BLOCK_STRIDES = (1, 2)
+
 #: Codes between the two sides of a mixture, more than which its share means anything.
 LEAST_HEIGHT = 12
 

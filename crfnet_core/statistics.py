@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.candidates import (
     BANDS,
+    BLOCK_STRIDES,
     CANDIDATES,
     CHANNEL_PAIRS,
     COMPARED_KINDS,
@@ -57,6 +58,8 @@ CANDIDATE_PARTS = (
     (len(MIXING_STRIDES), COMPARED_KINDS, BANDS, 1),
     (len(SHADING), CANDIDATES),
     (len(SHADING), 1),
+    (len(BLOCK_STRIDES), COMPARED_KINDS, BANDS, CANDIDATES),
+    (len(BLOCK_STRIDES), COMPARED_KINDS, BANDS, 1),
 )
 
 #: Shapes of the parts of a window's statistics, in their order.
@@ -105,11 +108,13 @@ def window_statistics(window: Floats) -> Floats:
     edges = np.stack([_edge_sums(planes, stride) for stride in STRIDES])
     colors = np.stack([_color_equations(planes, stride) for stride in COLOR_STRIDES])
     mixtures = [Mixtures.among(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES]
+    blocks = _blocks(planes)
     pairs = {stride: _both_ways(planes, stride, 2) for stride in {stride for stride, _ in SHADING}}
     by_candidate = (
         map(share_sums, mixtures),
         map(disagreement_sums, mixtures),
         (shading_sums(pairs[stride], change) for stride, change in SHADING),
+        (disagreement_sums(Mixtures.among(_both_ways(blocks, stride, 5))) for stride in BLOCK_STRIDES),
     )
     candidates = [np.stack(part) for sums in by_candidate for part in zip(*sums, strict=True)]
     parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors, *candidates)
@@ -195,6 +200,14 @@ def _both_ways(planes: Codes, stride: int, count: int) -> tuple[Codes, ...]:
     """Return `count` samples in a row, `stride` apart, along rows and then along columns, each (3, M)."""
     rows, columns = _lines(planes, stride, tuple(range(count)))
     return tuple(np.concatenate(sides, axis=1) for sides in zip(rows, columns, strict=True))
+
+
+def _blocks(planes: Codes) -> Codes:
+    """Return the means of 2 x 2 samples, rounded, of planes (3, 227, 227), shape (3, 113, 113)."""
+    even = planes[:, : planes.shape[1] // 2 * 2, : planes.shape[2] // 2 * 2].astype(np.uint16)
+    rows = even[:, ::2] + even[:, 1::2]
+    means: Codes = ((rows[:, :, ::2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8)
+    return means
 
 
 @cache

@@ -43,7 +43,7 @@ class NetworkConfig:
     """Sizes of the network, and shares of hidden values and of whole kinds of features that training leaves out."""
 
     width: int = 384
-    dropout: float = 0.2
+    dropout: float = 0.1
     kind_dropout: float = 0.15
 
 

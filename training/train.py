@@ -36,7 +36,7 @@ class TrainingConfig:
         The fold of training scenes to leave out and to validate on, instead of on the validation scenes.
     """
 
-    epochs: int = 14
+    epochs: int = 12
     batch: int = 256
     learning_rate: float = 1e-3
     weight_decay: float = 0.05

@@ -24,7 +24,7 @@ def smooth():
 
 def test_the_length_is_that_of_the_parts(smooth):
     found = window_statistics(smooth)
-    assert found.shape == (STATISTICS,) == (11161,)
+    assert found.shape == (STATISTICS,) == (11689,)
     assert found.dtype == np.float32
 
 
@@ -110,6 +110,19 @@ def test_gray_says_nothing_between_channels():
     matrix, right = equations(0.5, np.ones(3), np.zeros(3))
     np.testing.assert_allclose(matrix, 0, atol=0.01)
     np.testing.assert_allclose(right, 0, atol=0.01)
+
+
+def test_blocks_are_compared_whatever_colour_their_samples_have_around_their_means():
+    """As in a JPEG, of which a block of 2 x 2 samples has one colour but for the rounding of its samples."""
+    rng = np.random.default_rng(0)
+    blocks = rng.integers(20, 230, (114, 114, 3))
+    plain = blocks.repeat(2, axis=0).repeat(2, axis=1)[:227, :227]
+    chequered = plain + 12 * (-1) ** np.add.outer(np.arange(227), np.arange(227))[:, :, None] * np.array([1, -1, 1])
+    first, second = (parts((codes / 255).astype(np.float32)) for codes in (plain, chequered))
+    assert (first[-1][:, 0].sum(axis=1) > 1000).all()
+    for which in (-2, -1):
+        np.testing.assert_array_equal(first[which], second[which])
+    assert not np.array_equal(first[6], second[6])
 
 
 def test_turning_a_window_by_half_a_turn_keeps_short_strides(smooth):
