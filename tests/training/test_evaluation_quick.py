@@ -24,7 +24,7 @@ from training.scenes import LUMINANCE
 #: Mean figures of `python -m training.evaluate --quick --protocol p0 --photographs 10`, by the head of the packaged
 #: model's hash. A new model, or another pipeline: measure, look whether it got better, and write them down here.
 EXPECTED = {
-    "d80fe96da4e8": {"E_est mean": 1.9522, "E_lin mean": 4.686, "E_est ratio": 0.8908},
+    "e9616d175b37": {"E_est mean": 1.5931, "E_lin mean": 3.9224, "E_est ratio": 0.727},
 }
 
 #: What rounding on other processors may change: a few windows of a few photographs.
