@@ -185,7 +185,7 @@ def _add_pair(equations: NDArray[np.float64], first: list[NDArray[Any]], second:
 
 
 def _lines(planes: Codes, stride: int, places: tuple[int, ...]) -> list[tuple[Codes, ...]]:
-    """Return samples in a row, `stride` apart, of planes (..., 227, 227), along rows and along columns, as (..., M).
+    """Return samples in a row, `stride` apart, of square planes, along rows and along columns, as (..., M).
 
     Neighbours on adjacent lines say nearly the same, so not every line is looked at.
     """
