@@ -109,12 +109,13 @@ def window_statistics(window: Floats) -> Floats:
     colors = np.stack([_color_equations(planes, stride) for stride in COLOR_STRIDES])
     mixtures = [Mixtures.among(_both_ways(planes, stride, 5)) for stride in MIXING_STRIDES]
     blocks = _blocks(planes)
+    block_mixtures = [Mixtures.among(_both_ways(blocks, stride, 5)) for stride in BLOCK_STRIDES]
     pairs = {stride: _both_ways(planes, stride, 2) for stride in {stride for stride, _ in SHADING}}
     by_candidate = (
         map(share_sums, mixtures),
         map(disagreement_sums, mixtures),
         (shading_sums(pairs[stride], change) for stride, change in SHADING),
-        (disagreement_sums(Mixtures.among(_both_ways(blocks, stride, 5))) for stride in BLOCK_STRIDES),
+        map(disagreement_sums, block_mixtures),
     )
     candidates = [np.stack(part) for sums in by_candidate for part in zip(*sums, strict=True)]
     parts = (histogram @ levels, neighbours @ levels, cells.T @ edges @ cells, colors, *candidates)
@@ -185,7 +186,7 @@ def _add_pair(equations: NDArray[np.float64], first: list[NDArray[Any]], second:
 
 
 def _lines(planes: Codes, stride: int, places: tuple[int, ...]) -> list[tuple[Codes, ...]]:
-    """Return samples in a row, `stride` apart, of square planes, along rows and along columns, as (..., M).
+    """Return samples in a row, `stride` apart, of planes (..., N, N), along rows and along columns, as (..., M).
 
     Neighbours on adjacent lines say nearly the same, so not every line is looked at.
     """
@@ -204,9 +205,8 @@ def _both_ways(planes: Codes, stride: int, count: int) -> tuple[Codes, ...]:
 
 def _blocks(planes: Codes) -> Codes:
     """Return the means of 2 x 2 samples, rounded, of planes (3, 227, 227), shape (3, 113, 113)."""
-    even = planes[:, : planes.shape[1] // 2 * 2, : planes.shape[2] // 2 * 2].astype(np.uint16)
-    rows = even[:, ::2] + even[:, 1::2]
-    means: Codes = ((rows[:, :, ::2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8)
+    rows = planes[:, :-1:2].astype(np.uint16) + planes[:, 1::2]
+    means: Codes = ((rows[:, :, :-1:2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8)
     return means
 
 
