@@ -55,13 +55,13 @@ format: $(DEV)/ready  ## let ruff format and mend what it can
 
 model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER
 	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
-	$(TRAIN)/bin/python -m training.basis --data $(DATA)
-	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/photos
-	$(TRAIN)/bin/python -m training.dataset --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
-	$(TRAIN)/bin/python -m training.train --shards $(RUN)/photos --run $(RUN)
-	$(TRAIN)/bin/python -m training.export --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
-	$(TRAIN)/bin/python -m training.evaluate --data $(DATA) --out $(RUN)/evaluation
-	$(TRAIN)/bin/python -m training.card --model $(MODEL) --report $(RUN)/evaluation/report.json
+	$(TRAIN)/bin/python -m training.data.emor_basis --data $(DATA)
+	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos
+	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
+	$(TRAIN)/bin/python -m training.network.train --shards $(RUN)/photos --run $(RUN)
+	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
+	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --out $(RUN)/evaluation
+	$(TRAIN)/bin/python -m training.export.model_card --model $(MODEL) --report $(RUN)/evaluation/report.json
 
 bench: $(PLOT)/ready  ## time and memory of `crfnet estimate` beside oiiotool, 24 megapixels
 	$(PLOT)/bin/python tests/bench.py

@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 import bpy
 
-from ocio.frames import find_frames
+from ocio.plates.frames import find_frames
 
 from . import color_management, compositor, nodes, storage
 from .outcomes import Baked

@@ -13,8 +13,8 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core import ResponseCurve
 from crfnet_core.errors import ConfigError
-from ocio.config import LINEAR_REC709
-from ocio.lut import DEFAULT_LENGTH, inverse_response_lut
+from ocio.configs.plate_color_space import LINEAR_REC709
+from ocio.luts.lut1d import DEFAULT_LENGTH, inverse_response_lut
 
 from .color_management import color_spaces, running_config
 from .config_files import role_name

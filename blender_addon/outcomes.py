@@ -10,13 +10,13 @@ from pathlib import Path
 
 from crfnet_core import CRFNetError
 from crfnet_core.files import check_target
-from ocio.config import PlateColorSpace, write_config
-from ocio.formats import write_lut
-from ocio.frames import FramePattern, find_frames
-from ocio.lut import Lut1D
-from ocio.outputs import OutputFiles, check_folder, output_folder, plain_stem
-from ocio.plates import linearize_plates
-from ocio.portable import portable_config
+from ocio.configs.plate_color_space import PlateColorSpace, write_config
+from ocio.configs.portable import portable_config
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import Lut1D
+from ocio.output_files import OutputFiles, check_folder, output_folder, plain_stem
+from ocio.plates.frames import FramePattern, find_frames
+from ocio.plates.linear import linearize_plates
 
 from .config_files import Installed, install
 from .errors import AddonError, CancelledError

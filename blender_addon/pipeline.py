@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core import CRFNetError, ResponseCurve, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
-from ocio import describe
-from ocio.frames import find_frames, sample_frames
-from ocio.lut import inverse_response_lut
+from ocio import report as describe
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.plates.frames import find_frames, sample_frames
 
 from . import footage, outcomes
 from .request import Request

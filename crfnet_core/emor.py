@@ -25,9 +25,9 @@ class EmorBasis:
     """A mean response and orthonormal components: f = mean + weights @ components.
 
     `data/emor.npz` was computed from the 201 curves of DoRF (Grossberg & Nayar) by
-    ``python -m training.basis``: the curves at 1024 uniform irradiances; their mean; the singular vectors of what is
-    left, the 11 of largest singular value, each with unit L2 norm over the 1024 samples and a positive sum. So a
-    distance between two weight vectors is the estimation error between the two reconstructions.
+    ``python -m training.data.emor_basis``: the curves at 1024 uniform irradiances; their mean; the singular vectors of
+    what is left, the 11 of largest singular value, each with unit L2 norm over the 1024 samples and a positive sum. So
+    a distance between two weight vectors is the estimation error between the two reconstructions.
 
     Source: Grossberg & Nayar, "Modeling the space of camera response functions", TPAMI 2004.
 

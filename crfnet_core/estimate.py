@@ -2,29 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import Calibration, Pooled, ResponseNetwork
+from crfnet_core.network import ResponseNetwork, Verdict, pooling
 from crfnet_core.photo import Photo
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float32Array, Float64Array, Progress
 from crfnet_core.windows import FULL_COVERAGE, Window, cut_windows, select_windows
-
-#: A window is an outlier when its estimate lies farther than this many median distances from the median estimate.
-OUTLIER_FACTOR = 2.0
-
-#: Uncertainties in E_est below which an estimate is good, and usable; gamma 2.2 is off by 3.1 on average.
-GOOD, USABLE = 1.0, 2.0
 
 #: Share of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -47,7 +39,7 @@ class WindowEstimate:
 
     photo: int
     window: Window
-    weights: Floats
+    weights: Float64Array
     expected_error: float
     kept: bool
 
@@ -79,21 +71,19 @@ class ResponseEstimate:
     """
 
     curve: ResponseCurve
-    weights: Floats
+    weights: Float64Array
     windows: tuple[WindowEstimate, ...]
     spread: float
     uncertainty: float
-    band: Floats
+    band: Float64Array
     warnings: tuple[str, ...]
     model: str
     photos: tuple[str, ...]
 
     @property
-    def verdict(self) -> str:
-        """The uncertainty in words: "good", "usable" or "do not trust"."""
-        if self.uncertainty < GOOD:
-            return "good"
-        return "usable" if self.uncertainty < USABLE else "do not trust"
+    def verdict(self) -> Verdict:
+        """The uncertainty in words."""
+        return Verdict.of(self.uncertainty)
 
 
 def estimate_response(
@@ -103,7 +93,7 @@ def estimate_response(
     windows: int = 10,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
-    progress: Callable[[int, int], None] | None = None,
+    progress: Progress | None = None,
 ) -> ResponseEstimate:
     """Estimate the response of the camera that took one or several photographs.
 
@@ -136,46 +126,27 @@ def estimate_response(
         raise PhotoError("there is no photograph to analyse; give at least one")
     chosen = [(i, window) for i, part in enumerate(evidence) for window in part.windows]
     samples = np.concatenate([part.samples for part in evidence])
-    predictions = network.predict(samples, progress=progress)
-    kept = inliers(predictions.weights)
-    average = Pooled(predictions.weights[kept].mean(axis=0), float(predictions.expected_errors[kept].mean()))
-    pooled = predictions.pooled or average
-    spread = float(np.sqrt(np.mean(np.sum((predictions.weights[kept] - average.weights) ** 2, axis=1))))
-    calibration = network.config.calibration
-    uncertainty = calibration.uncertainty(pooled.expected_error, spread)
-    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(pooled.weights))
+    inputs = network.inputs(samples, progress=progress)
+    predictions = network.predict(inputs, progress=progress)
+    kept = pooling.inliers(predictions.weights)
+    answer = predictions.pooled or pooling.robust_mean(predictions, kept)
+    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(answer.weights))
+    spread = pooling.spread(predictions.weights[kept])
+    uncertainty = network.config.uncertainty_model.uncertainty(answer.expected_error, spread)
     return ResponseEstimate(
         curve=curve,
-        weights=pooled.weights,
+        weights=answer.weights,
         windows=tuple(
             WindowEstimate(i, window, predictions.weights[n], float(predictions.expected_errors[n]), bool(kept[n]))
             for n, (i, window) in enumerate(chosen)
         ),
         spread=spread,
         uncertainty=uncertainty,
-        band=band_around(curve, uncertainty, calibration),
+        band=network.config.uncertainty_model.band(curve, uncertainty),
         warnings=_warnings(evidence, samples),
         model=network.config.label,
         photos=tuple(part.name for part in evidence),
     )
-
-
-def inliers(weights: Floats) -> NDArray[np.bool_]:
-    """Return which window estimates enter the average, shape (N,), from weights of shape (N, 11).
-
-    The distance of each estimate from the component-wise median is an E_est between two curves, since the basis is
-    orthonormal. Those up to `OUTLIER_FACTOR` times the median distance stay: always at least half of them.
-    """
-    distances = np.linalg.norm(weights - np.median(weights, axis=0), axis=1)
-    return np.asarray(distances <= OUTLIER_FACTOR * np.median(distances))
-
-
-def band_around(curve: ResponseCurve, uncertainty: float, calibration: Calibration) -> Floats:
-    """Return the lower and upper end, shape (2, 1024), of the 90 % band of a response with this uncertainty."""
-    profile = np.array(calibration.band_profile)
-    half = uncertainty * np.interp(np.linspace(0, 1, SAMPLES), np.linspace(0, 1, len(profile)), profile)
-    band: Floats = np.clip(np.stack([curve.brightness - half, curve.brightness + half]), 0, 1)
-    return band
 
 
 @dataclass(frozen=True)
@@ -185,7 +156,7 @@ class _Evidence:
     name: str
     is_gray: bool
     windows: tuple[Window, ...]
-    samples: NDArray[np.float32]
+    samples: Float32Array
 
 
 def _evidence(photo: Photo, count: int, seed: int, coverage: int) -> _Evidence:
@@ -197,7 +168,7 @@ def _evidence(photo: Photo, count: int, seed: int, coverage: int) -> _Evidence:
     return _Evidence(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))
 
 
-def _warnings(evidence: Sequence[_Evidence], samples: NDArray[np.float32]) -> tuple[str, ...]:
+def _warnings(evidence: Sequence[_Evidence], samples: Float32Array) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     warnings = []
     if not any(window.covers_range for part in evidence for window in part.windows):

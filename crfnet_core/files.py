@@ -44,7 +44,7 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
 
 
 @contextmanager
-def written_whole(
+def atomic_write(
     path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> Iterator[Path]:
     """Yield a temporary file beside `path` that takes its name only if the block succeeds.
@@ -82,11 +82,11 @@ def written_whole(
         temporary.unlink(missing_ok=True)
 
 
-def write_text_whole(
+def atomic_write_text(
     path: str | Path, text: str, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> None:
-    """Write `text` as UTF-8, its line ends as they are; options and errors are those of `written_whole`."""
-    with written_whole(path, overwrite=overwrite, error=error) as temporary:
+    """Write `text` as UTF-8, its line ends as they are; options and errors are those of `atomic_write`."""
+    with atomic_write(path, overwrite=overwrite, error=error) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 

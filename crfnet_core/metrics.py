@@ -13,7 +13,7 @@ def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     return float(np.linalg.norm(true.brightness - estimated.brightness))
 
 
-def linearisation_error(
+def linearization_error(
     brightness: ArrayLike, true: ResponseCurve, estimated: ResponseCurve, *, counts: ArrayLike | None = None
 ) -> float:
     """Return E_lin, the RMSE between a photograph linearised by the true and by the estimated inverse response.

@@ -125,12 +125,6 @@ class ResponseCurve:
         return ResponseCurve.from_samples(self.forward(upper * self._irradiance))
 
 
-def srgb_encoded(linear: ArrayLike) -> Floats:
-    """Return sRGB's encoding (IEC 61966-2-1) of linear values in [0, 1], of the same shape."""
-    linear = np.asarray(linear, dtype=np.float64)
-    return np.where(linear <= 0.0031308, 12.92 * linear, 1.055 * linear ** (1 / 2.4) - 0.055)
-
-
 def nearest_increasing(samples: ArrayLike) -> Floats:
     """Return the non-decreasing sequence nearest to `samples` in L2 (pool adjacent violators), shape (N,).
 

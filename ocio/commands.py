@@ -20,17 +20,18 @@ from tqdm import tqdm
 
 from crfnet_core.errors import ModelError, PlateError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.files import write_text_whole
+from crfnet_core.files import atomic_write_text
+from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork, model_folder
-from crfnet_core.photo import Photo, read_photo
-from ocio import describe
-from ocio.config import write_config
-from ocio.formats import READERS, read_lut, write_lut
-from ocio.frames import FrameSequence, find_frames, sample_frames
-from ocio.lut import DEFAULT_LENGTH, Lut1D, inverse_response_lut
-from ocio.outputs import OutputFiles, check_folder, check_outputs, output_folder
-from ocio.plates import linearize_plates
-from ocio.portable import portable_config
+from crfnet_core.photo import Photo
+from ocio import report as describe
+from ocio.configs.plate_color_space import write_config
+from ocio.configs.portable import portable_config
+from ocio.luts.files import READERS, read_lut, write_lut
+from ocio.luts.lut1d import DEFAULT_LENGTH, Lut1D, inverse_response_lut
+from ocio.output_files import OutputFiles, check_folder, check_outputs, output_folder
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.linear import linearize_plates
 
 #: Frames of a sequence from which its one response is estimated.
 FRAMES_ANALYSED = 8
@@ -214,7 +215,7 @@ def _write_sheet(finding: Finding, path: Path, *, overwrite: bool) -> None:
 
 def _write_json(path: Path, document: dict[str, Any], *, overwrite: bool) -> None:
     """Write a JSON document."""
-    write_text_whole(path, _json(document), overwrite=overwrite, error=PlateError)
+    atomic_write_text(path, _json(document), overwrite=overwrite, error=PlateError)
 
 
 def _json(document: dict[str, Any]) -> str:

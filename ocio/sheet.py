@@ -17,10 +17,11 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.files import written_whole
-from crfnet_core.response import SAMPLES, ResponseCurve, srgb_encoded
+from crfnet_core.files import atomic_write
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.windows import Window
-from ocio.describe import agreeing, brightness_percent
+from ocio.report import agreeing, brightness_percent
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -83,7 +84,7 @@ def draw_sheet(
         before, after = _picture_axes(figure, portrait=preview.shape[0] > preview.shape[1])
         _draw_photograph(before, preview, estimate, stride)
         _draw_linear(after, preview, estimate.curve)
-        with written_whole(path, overwrite=overwrite, error=PlateError) as temporary:
+        with atomic_write(path, overwrite=overwrite, error=PlateError) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
 
 
@@ -158,7 +159,7 @@ def _outline(window: Window, *, kept: bool, width: float, color: str) -> Rectang
 
 def _draw_linear(axes: Axes, preview: Pixels, curve: ResponseCurve) -> None:
     """Show the linear plate as a viewer with an sRGB display shows it."""
-    _show(axes, srgb_encoded(curve.inverse(preview)).astype(np.float32), 1, "Linear plate, in an sRGB view")
+    _show(axes, srgb_encode(curve.inverse(preview)).astype(np.float32), 1, "Linear plate, in an sRGB view")
 
 
 def _show(axes: Axes, pixels: Pixels, stride: int, title: str) -> None:

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.metrics import estimation_error, linearisation_error
-from crfnet_core.photo import read_photo
+from crfnet_core.image_io import read_photo
+from crfnet_core.metrics import estimation_error, linearization_error
 from crfnet_core.response import ResponseCurve
 
 ASSETS = Path(__file__).parent / "data"
@@ -23,7 +23,7 @@ def main(folder: Path) -> None:
     print("Teien, CC0), put through a formula like a camera's, noise and JPEG; tests/data/README.md says how.\n")
     print(f"  {'':<22}{'response (E_est)':>18}{'plate (E_lin x 100)':>22}")
     for name, curve in (("this estimate", estimated), ("gamma 2.2", ResponseCurve.gamma())):
-        plate = 100 * linearisation_error(pixels, true, curve)
+        plate = 100 * linearization_error(pixels, true, curve)
         print(f"  {name:<22}{estimation_error(true, curve):>18.2f}{plate:>22.2f}")
     print(f"  {'expected beforehand':<22}{report['uncertainty']:>18.2f}\n")
     for path in sorted(folder.iterdir()):

@@ -34,9 +34,9 @@ def test_the_command_starts_light(root):
     assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
 
 
-def test_only_photo_reads_images(root):
+def test_only_image_io_reads_images(root):
     modules = (root / "crfnet_core").rglob("*.py")
-    assert [path.name for path in modules if "OpenImageIO as" in path.read_text(encoding="utf-8")] == ["photo.py"]
+    assert [path.name for path in modules if "OpenImageIO as" in path.read_text(encoding="utf-8")] == ["image_io.py"]
 
 
 def test_the_import_contracts_are_kept(root, monkeypatch, capsys):

@@ -267,7 +267,7 @@ def test_blenders_own_libraries_are_used():
 
 
 def test_the_preferences_agree_with_the_estimator(addon):
-    from ocio.lut import DEFAULT_LENGTH
+    from ocio.luts.lut1d import DEFAULT_LENGTH
 
     assert addon.lut_length == DEFAULT_LENGTH
     assert addon.apply == "NODES"

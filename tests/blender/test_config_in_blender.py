@@ -11,10 +11,10 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.response import ResponseCurve
-from ocio.config import PlateColorSpace, write_config
-from ocio.lut import inverse_response_lut
-from ocio.portable import portable_config
-from ocio.spi1d import write_spi1d
+from ocio.configs.plate_color_space import PlateColorSpace, write_config
+from ocio.configs.portable import portable_config
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.spi1d import write_spi1d
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 

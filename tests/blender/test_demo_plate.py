@@ -1,4 +1,4 @@
-"""The bundled photograph is what training/demo_plate.py makes of the studio light in this Blender."""
+"""The bundled photograph is what training/synthesis/demo_plate.py makes of the studio light in this Blender."""
 
 import importlib.util
 from pathlib import Path
@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet_core.photo import read_photo
-from training.demo_plate import camera_response, photograph, read_scene, write_photograph
+from crfnet_core.image_io import read_photo
+from training.synthesis.demo_plate import camera_response, photograph, read_scene, write_photograph
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 

@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseNetwork, estimate_response, read_photo
-from ocio.spi1d import read_spi1d
+from ocio.luts.spi1d import read_spi1d
 
 needs_blender = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 

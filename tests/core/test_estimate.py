@@ -6,13 +6,15 @@ import pytest
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.estimate import band_around, estimate_response, inliers
+from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
 from crfnet_core.metrics import estimation_error
-from crfnet_core.network import Calibration, Pooled, ResponseNetwork, WindowPredictions
-from crfnet_core.photo import Photo, read_photo
+from crfnet_core.network import Answer, Predictions, ResponseNetwork, UncertaintyModel
+from crfnet_core.network.pooling import inliers
+from crfnet_core.photo import Photo
 from crfnet_core.response import ResponseCurve
 
-CALIBRATION = Calibration(base=0.1, of_predicted=0.5, of_spread=2.0, band_profile=(0.0, 0.1, 0.0))
+UNCERTAINTY_MODEL = UncertaintyModel(base=0.1, of_predicted=0.5, of_spread=2.0, band_profile=(0.0, 0.1, 0.0))
 
 
 class FakeNetwork:
@@ -22,11 +24,14 @@ class FakeNetwork:
         self.pooled = pooled
         self.rows = np.asarray(rows, dtype=np.float64)
         self.errors = np.ones(len(self.rows)) if errors is None else np.asarray(errors, dtype=np.float64)
-        self.config = SimpleNamespace(calibration=CALIBRATION, label="fake 000000000000")
+        self.config = SimpleNamespace(uncertainty_model=UNCERTAINTY_MODEL, label="fake 000000000000")
+
+    def inputs(self, windows, *, progress=None):
+        return windows
 
     def predict(self, windows, *, progress=None):
         assert windows.shape == (len(self.rows), 227, 227, 3)
-        return WindowPredictions(self.rows, self.errors, self.pooled)
+        return Predictions(self.rows, self.errors, self.pooled)
 
 
 def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg"):
@@ -64,7 +69,7 @@ def test_the_average_leaves_outliers_out():
 
 def test_a_network_that_pools_has_the_last_word():
     """Its windows only tell the spread; its own expected error enters the uncertainty."""
-    pooled = Pooled(CENTRE + 1, 0.3)
+    pooled = Answer(CENTRE + 1, 0.3)
     rows = rows_around(CENTRE, [-0.1, 0.1, 7.0, -0.1, 0.1])
     estimate = estimate_response(photo(), network=FakeNetwork(rows, pooled=pooled), windows=5)
     np.testing.assert_array_equal(estimate.weights, CENTRE + 1)
@@ -97,7 +102,7 @@ def test_the_verdict_follows_the_uncertainty(error, verdict):
 
 def test_the_band_has_the_calibrated_width():
     curve = ResponseCurve.from_samples([0.0, 1.0])
-    lower, upper = band_around(curve, 2.0, CALIBRATION)
+    lower, upper = UNCERTAINTY_MODEL.band(curve, 2.0)
     assert (lower[0], upper[0], lower[-1], upper[-1]) == (0, 0, 1, 1)
     np.testing.assert_allclose((upper - lower)[[256, 512, 768]], [0.2, 0.4, 0.2], atol=1e-3)
     assert (lower >= 0).all()

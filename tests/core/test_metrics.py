@@ -3,7 +3,7 @@ import pytest
 
 from crfnet_core.metrics import (
     estimation_error,
-    linearisation_error,
+    linearization_error,
     peak_signal_to_noise,
     ratio_to_gamma,
     win_rate,
@@ -23,17 +23,17 @@ def test_estimation_error_of_two_known_curves():
 
 def test_linearisation_error_of_known_pixels():
     """By hand: B = 0.25 is E = 0.25 on the straight line, and 0.5 on the square."""
-    assert linearisation_error([0.25, 1.0], STRAIGHT, SQUARE) == pytest.approx(0.25 / np.sqrt(2), abs=1e-3)
+    assert linearization_error([0.25, 1.0], STRAIGHT, SQUARE) == pytest.approx(0.25 / np.sqrt(2), abs=1e-3)
 
 
 def test_linearisation_error_is_relative_to_the_peak():
-    assert linearisation_error([0.25], STRAIGHT, SQUARE) == pytest.approx(1.0, abs=5e-3)
+    assert linearization_error([0.25], STRAIGHT, SQUARE) == pytest.approx(1.0, abs=5e-3)
 
 
 def test_counts_stand_for_repeated_pixels():
     pixels = np.array([0.1, 0.1, 0.1, 0.6, 0.9, 0.9])
-    counted = linearisation_error([0.1, 0.6, 0.9, 1.0], STRAIGHT, SQUARE, counts=[3, 1, 2, 0])
-    assert counted == pytest.approx(linearisation_error(pixels, STRAIGHT, SQUARE), rel=1e-12)
+    counted = linearization_error([0.1, 0.6, 0.9, 1.0], STRAIGHT, SQUARE, counts=[3, 1, 2, 0])
+    assert counted == pytest.approx(linearization_error(pixels, STRAIGHT, SQUARE), rel=1e-12)
 
 
 def test_psnr():

@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network import DEFAULT_MODEL, MODELS, Calibration, ModelConfig, ResponseNetwork, model_folder
+from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, UncertaintyModel, model_folder
 from crfnet_core.statistics import window_statistics
 
 
@@ -26,13 +26,17 @@ def copied(tmp_path):
     return shutil.copytree(DEFAULT_MODEL, tmp_path / "model")
 
 
+def predictions(network, windows, *, progress=None):
+    return network.predict(network.inputs(windows, progress=progress), progress=progress)
+
+
 def edit(folder, **entries):
     path = folder / "model.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | entries))
 
 
 def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
-    found = network.predict(golden["windows"] / np.float32(255))
+    found = predictions(network, golden["windows"] / np.float32(255))
     np.testing.assert_allclose(found.weights, golden["weights"], atol=tolerance.parity)
     np.testing.assert_allclose(np.log(found.expected_errors), golden["log_errors"], atol=tolerance.parity)
     np.testing.assert_allclose(found.pooled.weights, golden["pooled_weights"][0], atol=tolerance.parity)
@@ -44,26 +48,26 @@ def test_threads_do_not_change_the_result(golden, fixed_model):
     """The packaged network reads statistics, the fixed one windows."""
     windows = golden["windows"] / np.float32(255)
     for model in (DEFAULT_MODEL, fixed_model):
-        first, second = (ResponseNetwork.load(model, threads=threads).predict(windows) for threads in (1, 3))
+        first, second = (predictions(ResponseNetwork.load(model, threads=threads), windows) for threads in (1, 3))
         np.testing.assert_array_equal(first.weights, second.weights)
 
 
 def test_windows_are_independent_of_each_other(network, golden, tolerance):
     windows = golden["windows"] / np.float32(255)
-    together = network.predict(windows).weights
-    np.testing.assert_allclose(network.predict(windows[1:2]).weights, together[1:2], atol=tolerance.parity)
+    together = predictions(network, windows).weights
+    np.testing.assert_allclose(predictions(network, windows[1:2]).weights, together[1:2], atol=tolerance.parity)
 
 
 def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, golden, tolerance):
     windows = golden["windows"] / np.float32(255)
-    pooled = network.predict(windows).pooled.weights
-    np.testing.assert_allclose(network.predict(windows[::-1]).pooled.weights, pooled, atol=tolerance.parity)
-    assert np.linalg.norm(network.predict(windows[:2]).pooled.weights - pooled) > 1e-3
+    pooled = predictions(network, windows).pooled.weights
+    np.testing.assert_allclose(predictions(network, windows[::-1]).pooled.weights, pooled, atol=tolerance.parity)
+    assert np.linalg.norm(predictions(network, windows[:2]).pooled.weights - pooled) > 1e-3
 
 
 @pytest.mark.parametrize("level", [0.0, 0.5, 1.0])
 def test_a_flat_window_has_a_finite_answer(network, level):
-    found = network.predict(np.full((2, 227, 227, 3), level, np.float32))
+    found = predictions(network, np.full((2, 227, 227, 3), level, np.float32))
     assert np.isfinite(found.pooled.weights).all()
     assert np.isfinite(found.weights).all()
 
@@ -77,7 +81,7 @@ def test_a_model_is_found_by_its_name_or_its_folder(copied):
 
 def test_the_paper_s_network_runs_by_name(golden):
     network = ResponseNetwork.load("crfnet2017")
-    found = network.predict(golden["windows"] / np.float32(255))
+    found = predictions(network, golden["windows"] / np.float32(255))
     assert network.config.name == "crfnet2017"
     assert found.weights.shape == (3, 11)
     assert found.pooled is None
@@ -86,26 +90,28 @@ def test_the_paper_s_network_runs_by_name(golden):
 
 def test_progress_counts_the_windows(network, golden):
     calls = []
-    network.predict(golden["windows"] / np.float32(255), progress=lambda done, total: calls.append((done, total)))
+    predictions(network, golden["windows"] / np.float32(255), progress=lambda done, total: calls.append((done, total)))
     assert calls == [(1, 3), (2, 3), (3, 3)]
 
 
 def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
     run = []
-    monkeypatch.setattr("crfnet_core.network.window_statistics", lambda w: run.append(1) or window_statistics(w))
+    monkeypatch.setattr(
+        "crfnet_core.network.inference.window_statistics", lambda w: run.append(1) or window_statistics(w)
+    )
 
     def stop(done, total):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        network.predict(np.repeat(golden["windows"], 20, axis=0) / np.float32(255), progress=stop)
+        predictions(network, np.repeat(golden["windows"], 20, axis=0) / np.float32(255), progress=stop)
     assert len(run) < 60
 
 
 def test_the_windows_are_not_changed(network, golden):
     windows = golden["windows"] / np.float32(255)
     before = windows.copy()
-    network.predict(windows)
+    predictions(network, windows)
     np.testing.assert_array_equal(windows, before)
 
 
@@ -113,7 +119,7 @@ def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, golde
     """Another curve on the same windows gives another estimate: the network looks at its input."""
     windows = golden["windows"] / np.float32(255)
     bent = np.rint(windows**0.6 * 255) / np.float32(255)
-    assert np.linalg.norm(network.predict(bent).weights - network.predict(windows).weights) > 0.5
+    assert np.linalg.norm(predictions(network, bent).weights - predictions(network, windows).weights) > 0.5
 
 
 def test_config_is_complete():
@@ -121,8 +127,8 @@ def test_config_is_complete():
     assert config.name == DEFAULT_MODEL.name
     assert (config.basis, config.components, config.window_size, config.opset) == ("emor", 11, 227, 18)
     assert len(config.training_commit) == 40
-    assert isinstance(config.calibration, Calibration)
-    assert len(config.calibration.band_profile) == 33
+    assert isinstance(config.uncertainty_model, UncertaintyModel)
+    assert len(config.uncertainty_model.band_profile) == 33
     assert config.accuracy["P0"]["E_est mean"] < config.accuracy["P0"]["E_est gamma 2.2"]
     assert config.label == f"{config.name} {config.sha256[:12]}"
 
@@ -161,8 +167,8 @@ def test_a_spoiled_config_is_refused(copied, text, said):
     [
         ({"components": 25}, "25 weights of emor"),
         ({"basis": "pca"}, "11 weights of pca"),
-        ({"calibration": {"base": 1}}, "calibration"),
-        ({"calibration": None}, "calibration"),
+        ({"uncertainty_model": {"base": 1}}, "uncertainty_model"),
+        ({"uncertainty_model": None}, "uncertainty_model"),
     ],
 )
 def test_a_model_of_another_kind_is_refused(copied, entries, said):

@@ -13,7 +13,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photo import MAX_PIXELS, read_codes, read_photo
+from crfnet_core.image_io import MAX_PIXELS, read_codes, read_photo
 
 ROOT = Path(__file__).parents[2]
 CODES8 = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
@@ -458,7 +458,7 @@ def test_bombs_take_little_memory(tmp_path):
         made.rename(name)
     code = (
         "import resource, sys\n"
-        "from crfnet_core.photo import read_photo\n"
+        "from crfnet_core.image_io import read_photo\n"
         "from crfnet_core.errors import PhotoError\n"
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "for name in sys.argv[1:]:\n"
@@ -476,7 +476,7 @@ def test_memory_is_the_codes_and_the_floats(tmp_path):
     path = write(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
     code = (
         "import resource, sys\n"
-        "from crfnet_core.photo import read_photo\n"
+        "from crfnet_core.image_io import read_photo\n"
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "read_photo(sys.argv[1])\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"

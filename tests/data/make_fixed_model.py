@@ -66,11 +66,16 @@ def main() -> None:
         "window_size": WINDOW_SIZE,
         "input_name": "windows",
         "output_names": ["weights", "log_error"],
-        "normalisation": "code value / largest code, in [0, 1]",
+        "normalization": "code value / largest code, in [0, 1]",
         "opset": OPSET,
         "training_commit": "none",
         "training": {},
-        "calibration": {"base": 0.1, "of_predicted": 0.9, "of_spread": 0.5, "band_profile": [0, 0.05, 0.07, 0.05, 0]},
+        "uncertainty_model": {
+            "base": 0.1,
+            "of_predicted": 0.9,
+            "of_spread": 0.5,
+            "band_profile": [0, 0.05, 0.07, 0.05, 0],
+        },
         "accuracy": {},
     }
     (folder / "model.onnx").write_bytes(graph)

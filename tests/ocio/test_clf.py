@@ -5,8 +5,8 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import LutError
-from ocio.clf import read_clf, write_clf
-from ocio.lut import Lut1D
+from ocio.luts.clf import read_clf, write_clf
+from ocio.luts.lut1d import Lut1D
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: <a> & b.jpg", "model: crf é"))
 TEXT = """\

@@ -16,8 +16,8 @@ import pytest
 
 from ocio import commands
 from ocio.cli import BAD_INPUT, INTERRUPTED
-from ocio.lut import inverse_response_lut
-from ocio.spi1d import read_spi1d, write_spi1d
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.spi1d import read_spi1d, write_spi1d
 
 FILES = {
     "plate.spi1d",

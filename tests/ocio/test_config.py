@@ -13,10 +13,10 @@ import pytest
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
-from ocio.config import FAMILY, PlateColorSpace, add_plate_color_space, write_config
-from ocio.formats import write_lut
-from ocio.lut import Lut1D, inverse_response_lut
-from ocio.portable import portable_config
+from ocio.configs.plate_color_space import FAMILY, PlateColorSpace, add_plate_color_space, write_config
+from ocio.configs.portable import portable_config
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import Lut1D, inverse_response_lut
 
 SPACE = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",), description="from a.jpg")
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))

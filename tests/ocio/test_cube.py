@@ -3,8 +3,8 @@
 import pytest
 
 from crfnet_core.errors import LutError
-from ocio.cube import read_cube, write_cube
-from ocio.lut import Lut1D
+from ocio.luts.cube import read_cube, write_cube
+from ocio.luts.lut1d import Lut1D
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: a.jpg", "model: crf é"))
 TEXT = """\

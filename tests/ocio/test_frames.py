@@ -5,7 +5,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PhotoError, PlateError
-from ocio.frames import (
+from ocio.plates.frames import (
     MAX_FRAMES,
     FramePattern,
     FrameSequence,

@@ -8,8 +8,9 @@ import pytest
 
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo, read_photo
+from crfnet_core.photo import Photo
 
 sheet = pytest.importorskip("ocio.sheet", reason="needs matplotlib, of the plot extra")
 

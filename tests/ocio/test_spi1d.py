@@ -3,8 +3,8 @@
 import pytest
 
 from crfnet_core.errors import LutError
-from ocio.lut import Lut1D
-from ocio.spi1d import read_spi1d, write_spi1d
+from ocio.luts.lut1d import Lut1D
+from ocio.luts.spi1d import read_spi1d, write_spi1d
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: a.jpg", "model: crf é"))
 TEXT = """\

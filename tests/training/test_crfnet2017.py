@@ -24,7 +24,7 @@ from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rat
 from training.crfnet2017.stages import StageTask
 from training.crfnet2017.train import Place, Trainer, train
 from training.crfnet2017.windows import LinearWindows, WindowStream, code_table, draw_windows, photographed
-from training.export import (
+from training.export.model_folder import (
     PARITY,
     UNCALIBRATED,
     WINDOWED,

@@ -3,8 +3,8 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.response import srgb_encoded
-from training.curves import CurveSource, camera_response, read_base_curves
+from crfnet_core.transfer_functions import srgb_encode
+from training.data.curves import CurveSource, camera_response, read_base_curves
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -18,7 +18,7 @@ def bases(tmp_path):
 
 
 def test_srgb_has_its_published_values():
-    np.testing.assert_allclose(srgb_encoded(np.array([0, 0.0031308, 0.214041, 1])), [0, 0.04045, 0.5, 1], atol=1e-5)
+    np.testing.assert_allclose(srgb_encode(np.array([0, 0.0031308, 0.214041, 1])), [0, 0.04045, 0.5, 1], atol=1e-5)
 
 
 def test_base_curves_go_through_their_nodes(bases):
@@ -28,13 +28,13 @@ def test_base_curves_go_through_their_nodes(bases):
 
 
 def test_a_straight_base_curve_is_srgb(bases):
-    np.testing.assert_allclose(camera_response(bases["two"], 1.0), srgb_encoded(UNIFORM), atol=1e-6)
+    np.testing.assert_allclose(camera_response(bases["two"], 1.0), srgb_encode(UNIFORM), atol=1e-6)
 
 
 def test_headroom_below_1_uses_the_lower_part_of_the_curve(bases):
     part = camera_response(bases["one"], 0.5)
     assert part[-1] == 1
-    expected = srgb_encoded(bases["one"](0.5 * UNIFORM)) / srgb_encoded(bases["one"](np.array([0.5])))
+    expected = srgb_encode(bases["one"](0.5 * UNIFORM)) / srgb_encode(bases["one"](np.array([0.5])))
     np.testing.assert_allclose(part, expected, atol=1e-12)
 
 

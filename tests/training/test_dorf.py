@@ -4,8 +4,8 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CurveError
-from training.curves import read_dorf
-from training.dorf import convert, main, mat_bytes, parse_dorf
+from training.data.curves import read_dorf
+from training.data.dorf import convert, main, mat_bytes, parse_dorf
 
 UNIFORM = np.linspace(0, 1, 1024)
 

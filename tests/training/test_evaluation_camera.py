@@ -4,9 +4,9 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from training.evaluation.camera import balanced_gains, code_counts, enlarged, light_under, synthetic_photo, taken
+from training.data.scenes import LUMINANCE, Scene
 from training.evaluation.plan import CLEAN, COOL, Condition
-from training.scenes import LUMINANCE, Scene
+from training.synthesis.capture import balanced_gains, code_counts, enlarged, light_under, synthetic_photo, taken
 
 UNIFORM = np.linspace(0, 1, 1024)
 CURVE = UNIFORM ** (1 / 2.2)

@@ -11,9 +11,9 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import ModelConfig
-from training import card
 from training.evaluation.material import bundled_material
 from training.evaluation.protocols import Evaluation, Model, Settings
+from training.export.model_folder import model_card as card
 
 
 @pytest.fixture(scope="module")

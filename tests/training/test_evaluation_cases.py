@@ -7,7 +7,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.metrics import estimation_error, linearisation_error
+from crfnet_core.metrics import estimation_error, linearization_error
 from crfnet_core.response import ResponseCurve
 from training.evaluation.cases import CaseFile, code_digest, errors
 
@@ -56,7 +56,7 @@ def test_errors_are_those_of_the_metrics():
     found = errors(true, guess, counts)
     codes = np.arange(256) / 255
     assert found["estimation"] == pytest.approx(estimation_error(true, guess), abs=1e-6)
-    assert found["linearisation"] == pytest.approx(linearisation_error(codes, true, guess, counts=counts), abs=1e-6)
+    assert found["linearisation"] == pytest.approx(linearization_error(codes, true, guess, counts=counts), abs=1e-6)
     lower = np.linspace(0, 1, 1024) <= 0.8 + 1e-3
     gap = true.brightness - guess.brightness
     assert found["partial"] == pytest.approx(np.linalg.norm(gap[lower]), abs=1e-3)

@@ -13,15 +13,15 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from crfnet_core.response import LEAST_SLOPE
-from training.evaluate import main, parsed
+from training.data.scenes import LUMINANCE
+from training.data.studio_lights import BAND, LIGHTS, LIGHTS_FOLDER, copy_lights, read_light
+from training.evaluation import main, parsed
 from training.evaluation.material import bundled_material
 from training.evaluation.measure import Job
 from training.evaluation.plan import CLEAN, Condition, Trial
 from training.evaluation.protocols import Evaluation, Model, Settings
-from training.lights import BAND, LIGHTS, LIGHTS_FOLDER, copy_lights, read_light
-from training.scenes import LUMINANCE
 
-#: Mean figures of `python -m training.evaluate --quick --protocol p0 --photographs 10`, by the head of the packaged
+#: Mean figures of `python -m training.evaluation --quick --protocol p0 --photographs 10`, by the head of the packaged
 #: model's hash. A new model, or another pipeline: measure, look whether it got better, and write them down here.
 EXPECTED = {
     "e9616d175b37": {"E_est mean": 1.5931, "E_lin mean": 3.9224, "E_est ratio": 0.727},

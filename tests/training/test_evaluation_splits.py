@@ -6,8 +6,8 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from training import splits
-from training.splits import SPLITS_FILE, curve_groups, held_out_curves, splits_text
+from training.data import splits
+from training.data.splits import SPLITS_FILE, curve_groups, held_out_curves, splits_text
 
 UNIFORM = np.linspace(0, 1, 1024)
 

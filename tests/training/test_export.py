@@ -9,7 +9,7 @@ onnx = pytest.importorskip("onnx", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ResponseNetwork
-from training.export import (
+from training.export.model_folder import (
     PARITY,
     POOLING,
     UNCALIBRATED,
@@ -19,7 +19,7 @@ from training.export import (
     write_config,
     write_golden,
 )
-from training.model import NetworkConfig, PhotographNet
+from training.network.model import NetworkConfig, PhotographNet
 
 CONFIG = NetworkConfig(width=64)
 

@@ -4,7 +4,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics import window_statistics
-from training.model import (
+from training.network.model import (
     CANDIDATE_FEATURES,
     COLOR_FEATURES,
     EDGE_FEATURES,

@@ -4,10 +4,10 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from training.curves import CurveSource
-from training.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource, augmented, pieced, relit
-from training.scenes import Scene
-from training.synthesis import reference_luminance
+from training.data.curves import CurveSource
+from training.data.scenes import Scene
+from training.synthesis.camera import reference_luminance
+from training.synthesis.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource, augmented, pieced, relit
 
 UNIFORM = np.linspace(0, 1, 1024)
 

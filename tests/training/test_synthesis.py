@@ -7,8 +7,8 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from training.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
-from training.synthesis import (
+from training.data.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
+from training.synthesis.camera import (
     TARGET_BRIGHTNESS,
     Capture,
     automatic_exposure,

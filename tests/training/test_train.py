@@ -8,11 +8,11 @@ torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.statistics import LEVELS, PARTS, STATISTICS
-from training import train as training_run
-from training.dataset import HELD_OUT, TARGET_STRIDE, read_shards
-from training.model import NetworkConfig
-from training.photographs import FOLDS
-from training.train import CurveLoss, TrainingConfig, train
+from training.network import train as training_run
+from training.network.model import NetworkConfig
+from training.network.shards import HELD_OUT, TARGET_STRIDE, read_shards
+from training.network.train import CurveLoss, TrainingConfig, train
+from training.synthesis.photographs import FOLDS
 
 SIZES = NetworkConfig(width=32, dropout=0.1)
 RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3)

@@ -10,10 +10,10 @@ import torch
 from onnx import numpy_helper
 from torch import Tensor, nn
 
-from crfnet_core.files import written_whole
+from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
 
-#: What the graph of an exported network puts around its parameters' names (see `training.export.halve`).
+#: What the graph of an exported network puts around its parameters' names (see `training.export.model_folder.halve`).
 GRAPH_PREFIX, HALF_SUFFIX = "network.", "_half"
 
 
@@ -166,5 +166,5 @@ def _sequences(network: CRFNet) -> list[nn.Sequential]:
 
 def _save(state: dict[str, object], path: Path) -> None:
     """Write a file of torch."""
-    with written_whole(path, overwrite=True) as temporary:
+    with atomic_write(path, overwrite=True) as temporary:
         torch.save(state, temporary)

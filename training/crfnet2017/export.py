@@ -1,6 +1,6 @@
 """Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
 
-The folder is like those of `training.export`. The paper's network expects no error: its log error is a constant, that
+The folder is like those of `training.export.model_folder`. The paper's network expects no error: its log error is a constant, that
 of the best mean E_est on the validation windows, and the calibration goes by the spread of the windows' estimates.
 """
 
@@ -12,11 +12,11 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.photo import read_photo
+from crfnet_core.image_io import read_photo
 from crfnet_core.windows import cut_windows, select_windows
 from training.crfnet2017.checkpoints import fold_normalisation
 from training.crfnet2017.network import CRFNet
-from training.export import WINDOWED, export_options, rounded, write_model
+from training.export.model_folder import WINDOWED, export_options, rounded, write_model
 
 
 class ShippedCRFNet(nn.Module):

@@ -1,7 +1,7 @@
 """Keep linear scenes ready to be photographed: memory-mapped, with the responses and their exposures.
 
 A pack holds, per split, shards of float16 samples (npy, below 64 MiB each) and an index; beside them the 201 responses
-of DoRF with s_crf of each. s_crf is that of `training.synthesis`: the exposure at which evenly spread samples of the
+of DoRF with s_crf of each. s_crf is that of `training.synthesis.camera`: the exposure at which evenly spread samples of the
 training scenes, each scene scaled to a geometric mean luminance of 1, have the mean brightness `TARGET_BRIGHTNESS`
 under the response. It belongs to the curve, not to the photograph, as in the paper (Sec. 3.3), and is the same for
 every split.
@@ -16,10 +16,10 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from crfnet_core.files import write_text_whole, written_whole
-from training.curves import read_dorf
-from training.scenes import Scene, area_averaged, dithered, read_scenes
-from training.synthesis import automatic_exposure, reference_luminance
+from crfnet_core.files import atomic_write, atomic_write_text
+from training.data.curves import read_dorf
+from training.data.scenes import Scene, area_averaged, dithered, read_scenes
+from training.synthesis.camera import automatic_exposure, reference_luminance
 
 #: Samples of a shard at most: 60 MiB of float16.
 SHARD_SAMPLES = 30 * 2**20
@@ -70,7 +70,7 @@ def write_pack(data: Path, out: Path, split: str) -> Path:
     curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
     exposures = [automatic_exposure(curve, luminance) for curve in tqdm(curves, desc="s_crf", disable=None)]
     out.mkdir(parents=True, exist_ok=True)
-    with written_whole(out / "curves.npz", overwrite=True) as temporary:
+    with atomic_write(out / "curves.npz", overwrite=True) as temporary:
         np.savez(temporary, curves=curves.astype(np.float32), exposures=np.array(exposures, dtype=np.float32))
     return write_scenes([(scene.name, packed_scene(scene, n)) for n, scene in enumerate(scenes)], out, split)
 
@@ -87,7 +87,7 @@ def write_scenes(scenes: list[tuple[str, np.ndarray]], out: Path, split: str) ->
         used += pixels.size
     _write_shard(out, split, number, shard)
     path = out / f"{split}.json"
-    write_text_whole(path, json.dumps(index, indent=1) + "\n", overwrite=True)
+    atomic_write_text(path, json.dumps(index, indent=1) + "\n", overwrite=True)
     return path
 
 
@@ -118,5 +118,5 @@ def _shard(folder: Path, split: str, number: int) -> Path:
 
 def _write_shard(folder: Path, split: str, number: int, parts: list[np.ndarray]) -> None:
     """Write one shard."""
-    with written_whole(_shard(folder, split, number), overwrite=True) as temporary:
+    with atomic_write(_shard(folder, split, number), overwrite=True) as temporary:
         np.save(temporary, np.concatenate(parts))

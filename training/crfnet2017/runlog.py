@@ -13,7 +13,7 @@ import torch
 from matplotlib.figure import Figure
 from torch import Tensor
 
-from crfnet_core.files import write_text_whole, written_whole
+from crfnet_core.files import atomic_write, atomic_write_text
 
 #: Columns of log.csv.
 LOG_COLUMNS = ("step", "train_loss", "validation", "windows_per_s", "share_waiting")
@@ -77,7 +77,7 @@ def write_log(path: Path, rows: list[list[float]]) -> None:
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(LOG_COLUMNS)
     writer.writerows([int(step), *(f"{figure:.4f}" for figure in figures)] for step, *figures in rows)
-    write_text_whole(path, text.getvalue(), overwrite=True)
+    atomic_write_text(path, text.getvalue(), overwrite=True)
 
 
 def draw_log(path: Path, rows: list[list[float]], *, classifies: bool) -> None:
@@ -89,5 +89,5 @@ def draw_log(path: Path, rows: list[list[float]], *, classifies: bool) -> None:
         axes.plot(steps, values, marker=".")
         axes.set(title=name, xlabel="step")
         axes.grid(alpha=0.3)
-    with written_whole(path, overwrite=True) as temporary:
+    with atomic_write(path, overwrite=True) as temporary:
         figure.savefig(temporary, dpi=DOTS_PER_INCH, metadata={"Software": None})

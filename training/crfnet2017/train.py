@@ -22,7 +22,7 @@ from torch.nn.parallel import DistributedDataParallel
 from torch.utils.data import DataLoader
 from tqdm import tqdm
 
-from crfnet_core.files import write_text_whole
+from crfnet_core.files import atomic_write_text
 from training.crfnet2017.checkpoints import Progress, start_from
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.pack import ScenePack, read_pack
@@ -235,7 +235,7 @@ def _claim(run: Path, config: RunConfig, place: Place) -> None:
             raise SystemExit(f"{run}: holds a run of another {', '.join(differing)}; take another folder")
     elif place.leads:
         run.mkdir(parents=True, exist_ok=True)
-        write_text_whole(path, json.dumps(entries, indent=2) + "\n")
+        atomic_write_text(path, json.dumps(entries, indent=2) + "\n")
 
 
 def _start(config: RunConfig, task: StageTask, scenes: ScenePack, place: Place, last: Path) -> Progress:

@@ -19,7 +19,7 @@ from torch.utils.data import IterableDataset, get_worker_info
 
 from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
 from training.crfnet2017.pack import ScenePack, write_pack
-from training.synthesis import EXPOSURE_FACTORS, responded
+from training.synthesis.camera import EXPOSURE_FACTORS, responded
 
 #: Finite float16 that are not negative.
 FLOAT16_CODES = 31744

@@ -6,9 +6,9 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.response import ResponseCurve, srgb_encoded
-from training.curves import IRRADIANCE
-from training.evaluation.material import rec709_encoded
+from crfnet_core.response import ResponseCurve
+from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from training.data.curves import IRRADIANCE
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
@@ -29,8 +29,8 @@ def constant_curves(known: np.ndarray) -> dict[str, ResponseCurve]:
         The responses whose geometric median is taken; the mean curve is that of EMoR, the mean of DoRF.
     """
     samples = {
-        "sRGB": srgb_encoded(IRRADIANCE),
-        "Rec.709": rec709_encoded(IRRADIANCE),
+        "sRGB": srgb_encode(IRRADIANCE),
+        "Rec.709": rec709_encode(IRRADIANCE),
         "mean curve": EmorBasis.load().mean,
         "geometric median curve": geometric_median(known),
     }

@@ -11,8 +11,8 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import write_text_whole
-from crfnet_core.metrics import estimation_error, linearisation_error
+from crfnet_core.files import atomic_write_text
+from crfnet_core.metrics import estimation_error, linearization_error
 from crfnet_core.response import ResponseCurve
 
 #: Share of the irradiance that a partial response covers (CRF-net paper, Fig. 9).
@@ -24,10 +24,10 @@ DECIMALS = 6
 #: The code whose change makes kept cases doubtful, from the project's root.
 MEASURING_CODE = (
     "crfnet_core/*.py",
-    "training/scenes.py",
-    "training/synthesis.py",
-    "training/lights.py",
-    "training/evaluation/camera.py",
+    "training/data/scenes.py",
+    "training/synthesis/camera.py",
+    "training/data/studio_lights.py",
+    "training/synthesis/capture.py",
     "training/evaluation/measure.py",
     "training/evaluation/cases.py",
 )
@@ -57,7 +57,7 @@ def errors(true: ResponseCurve, estimated: ResponseCurve, counts: np.ndarray) ->
     return {
         "estimation": round(estimation_error(true, estimated), DECIMALS),
         "partial": round(float(np.linalg.norm((true.brightness - estimated.brightness)[:lower])), DECIMALS),
-        "linearisation": round(linearisation_error(CODES, true, estimated, counts=counts), DECIMALS),
+        "linearisation": round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS),
     }
 
 
@@ -119,7 +119,7 @@ class CaseFile:
         code = "mixed" if self.is_of_other_code else self.code
         document = {"settings": self.settings, "code": code, "photographs": labels, "estimators": estimators}
         self.path.parent.mkdir(parents=True, exist_ok=True)
-        write_text_whole(self.path, json.dumps(document) + "\n", overwrite=True)
+        atomic_write_text(self.path, json.dumps(document) + "\n", overwrite=True)
 
     def columns(self, labels: list[str]) -> dict[str, dict[str, np.ndarray]]:
         """Return estimator -> figure -> array (N,) for the photographs of these labels, in their order.

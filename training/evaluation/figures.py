@@ -11,7 +11,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from PIL import Image, ImageOps
 
-from crfnet_core.files import written_whole
+from crfnet_core.files import atomic_write
 from crfnet_core.response import ResponseCurve
 from training.evaluation import paper
 from training.evaluation.baselines import GAMMA, ORACLE_GAMMA
@@ -34,7 +34,7 @@ def colour(number: int) -> str:
 
 def save(figure: Figure, path: Path) -> None:
     """Write a PNG that is the same for the same figures."""
-    with written_whole(path, overwrite=True) as temporary:
+    with atomic_write(path, overwrite=True) as temporary:
         figure.savefig(temporary, format="png", dpi=DPI, metadata={"Software": None})
 
 

@@ -13,13 +13,13 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.metrics import linearisation_error
+from crfnet_core.metrics import linearization_error
 from crfnet_core.response import ResponseCurve
 from training.evaluation import paper
 from training.evaluation.cases import CODES
 from training.evaluation.markdown_tables import rows_of
 from training.evaluation.material import Material, bundled_material, dorf_material
-from training.synthesis import responded
+from training.synthesis.camera import responded
 
 #: Factors on s_crf; every how many-th row and column is looked at.
 FACTORS, STRIDE = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4), 8
@@ -70,7 +70,7 @@ def _figures(light: np.ndarray, exposure: float, curve: ResponseCurve) -> tuple[
     brightness = responded(light * np.float32(exposure), curve.brightness)
     counts = np.bincount(np.rint(255 * brightness).astype(int), minlength=256)
     shares, irradiance = counts / counts.sum(), curve.inverse(CODES)
-    error = linearisation_error(CODES, curve, GAMMA, counts=counts)
+    error = linearization_error(CODES, curve, GAMMA, counts=counts)
     peak = irradiance[counts > 0].max()
     return error, error * peak, float(shares @ CODES), float(shares @ irradiance), float(shares[255])
 

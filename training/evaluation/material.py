@@ -10,12 +10,13 @@ import numpy as np
 from scipy.stats import norm
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.response import ResponseCurve, srgb_encoded
-from training.curves import IRRADIANCE, read_dorf
-from training.lights import LIGHTS, LIGHTS_FOLDER, read_light
-from training.scenes import Scene, read_scene, split_scenes
-from training.splits import checked_splits
-from training.synthesis import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
+from crfnet_core.response import ResponseCurve
+from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from training.data.curves import IRRADIANCE, read_dorf
+from training.data.scenes import Scene, read_scene, split_scenes
+from training.data.splits import checked_splits
+from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, read_light
+from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
 #: Spread of the log-normal luminance, in stops, that sets the exposures where there are no training scenes: about that
 #: of the training scenes, each scaled to a geometric mean of 1.
@@ -78,7 +79,7 @@ def dorf_material(data: Path) -> Material:
     Raises
     ------
     CRFNetError
-        If the data is split otherwise than training/splits.json says.
+        If the data is split otherwise than training/data/splits.json says.
     """
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
@@ -99,19 +100,14 @@ def bundled_material(lights: Path = LIGHTS_FOLDER) -> Material:
 
 def formula_curves() -> dict[str, np.ndarray]:
     """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
-    basis, encoded = EmorBasis.load(), srgb_encoded(IRRADIANCE)
+    basis, encoded = EmorBasis.load(), srgb_encode(IRRADIANCE)
     steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
     samples = {f"gamma {power:g}": IRRADIANCE ** (1 / power) for power in (1.4, 1.8, 2.6)}
     samples |= {f"log {a:g}": np.log1p(a * IRRADIANCE) for a in (8, 60)}
-    samples |= {"sRGB": encoded, "Rec.709": rec709_encoded(IRRADIANCE), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
+    samples |= {"sRGB": encoded, "Rec.709": rec709_encode(IRRADIANCE), "sRGB, S-curve": encoded**2 * (3 - 2 * encoded)}
     for name, weights in steps.items():
         samples[f"EMoR {name}"] = basis.reconstruct(np.pad(np.array(weights, dtype=float), (0, 11 - len(weights))))
     return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}
-
-
-def rec709_encoded(linear: np.ndarray) -> np.ndarray:
-    """Return the transfer function of ITU-R BT.709 of linear values in [0, 1], of the same shape."""
-    return np.where(linear < 0.018, 4.5 * linear, 1.099 * linear**0.45 - 0.099)
 
 
 def training_luminance(data: Path) -> np.ndarray:

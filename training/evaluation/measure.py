@@ -21,10 +21,10 @@ from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.response import ResponseCurve
 from training.evaluation.baselines import constant_curves, oracle_curves
-from training.evaluation.camera import code_counts, light_under, taken
 from training.evaluation.cases import CaseFile, Row, errors
 from training.evaluation.material import Material, SceneFile
 from training.evaluation.plan import PLAIN, Condition, Shot, Trial
+from training.synthesis.capture import code_counts, light_under, taken
 
 #: Photographs of a job: small enough to spread and to keep often.
 JOB_SIZE = 20

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
-from training.synthesis import EXPOSURE_FACTORS
+from training.synthesis.camera import EXPOSURE_FACTORS
 
 #: Photographs of P3, each under every condition.
 STRESS_PHOTOGRAPHS = 200
 
 #: Gains in linear light, red to blue, of a camera whose white balance is off by about a stop and a half from red to
-#: blue; scaled by `training.evaluation.camera` so that a neutral keeps its luminance.
+#: blue; scaled by `training.synthesis.capture` so that a neutral keeps its luminance.
 COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 
 

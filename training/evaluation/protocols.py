@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import write_text_whole
+from crfnet_core.files import atomic_write_text
 from crfnet_core.network import MODELS, ModelConfig, model_folder
 from training.evaluation.calibration import calibration
 from training.evaluation.cameras import real_table
@@ -72,7 +72,7 @@ class Model:
             names = ", ".join(sorted(entry.parent.name for entry in MODELS.glob("*/model.json")))
             raise CRFNetError(f"{wanted}: is no model folder; give its path, or one of {names}")
         config = ModelConfig.read(folder / "model.json")
-        calibration = hashlib.sha256(repr(config.calibration).encode()).hexdigest()[:16]
+        calibration = hashlib.sha256(repr(config.uncertainty_model).encode()).hexdigest()[:16]
         return cls(folder.resolve().name, folder, config.sha256, calibration, config.training)
 
     def lacks(self, held_out: Sequence[int]) -> bool:
@@ -180,7 +180,7 @@ class Evaluation:
             if not self.material.held_out or not model.lacks(self.material.held_out):
                 raise CRFNetError(
                     f"{model.name}: model.json does not say that it was trained without the held-out curves of"
-                    " training/splits.json, so P2 would measure known curves; train one without them, or leave p2 out"
+                    " training/data/splits.json, so P2 would measure known curves; train one without them, or leave p2 out"
                 )
 
     def _head(self) -> Table:
@@ -294,5 +294,5 @@ class Evaluation:
 
     def _write(self) -> None:
         """Write report.json and report.md."""
-        write_text_whole(self._path("report.json"), json.dumps(self.report, indent=1) + "\n", overwrite=True)
-        write_text_whole(self._path("report.md"), report_text(self.report), overwrite=True)
+        atomic_write_text(self._path("report.json"), json.dumps(self.report, indent=1) + "\n", overwrite=True)
+        atomic_write_text(self._path("report.md"), report_text(self.report), overwrite=True)

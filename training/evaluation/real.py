@@ -10,14 +10,14 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import read_photo
 from crfnet_core.response import SAMPLES, ResponseCurve
 from training.evaluation.baselines import GAMMA, OTHER_CAMERAS, constant_curves
-from training.evaluation.camera import code_counts
 from training.evaluation.cases import CaseFile, Row
 from training.evaluation.measure import BASELINE_PARTY, baseline_rows, model_row
 from training.evaluation.plan import PLAIN
+from training.synthesis.capture import code_counts
 
 #: Grades of the measured responses that count; the others are shown.
 TRUSTED_GRADES = ("A", "B")

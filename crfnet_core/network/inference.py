@@ -1,0 +1,168 @@
+"""Run a trained network on the CPU: windows to its inputs, inputs to predictions."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.errors import ModelError, one_line
+from crfnet_core.network.model import ModelConfig, model_folder, read_model_file
+from crfnet_core.network.runtime import onnxruntime
+from crfnet_core.statistics import window_statistics
+from crfnet_core.types import Float32Array, Float64Array, Progress
+
+_PROBLEMS = onnxruntime.capi.onnxruntime_pybind11_state
+
+#: What onnxruntime raises for a graph that it cannot load.
+_UNLOADABLE = (
+    _PROBLEMS.Fail,
+    _PROBLEMS.InvalidArgument,
+    _PROBLEMS.InvalidGraph,
+    _PROBLEMS.InvalidProtobuf,
+    _PROBLEMS.NotImplemented,
+)
+
+
+@dataclass(frozen=True)
+class Answer:
+    """One answer for all windows together: EMoR weights (11,) and the E_est that the network expects of them."""
+
+    weights: Float64Array
+    expected_error: float
+
+
+@dataclass(frozen=True)
+class Predictions:
+    """What the network says of N windows: EMoR weights (N, 11) and the expected E_est (N,) of each window.
+
+    `pooled` is its answer for all of them together, if the network pools its windows by itself.
+    """
+
+    weights: Float64Array
+    expected_errors: Float64Array
+    pooled: Answer | None = None
+
+
+class ResponseNetwork:
+    """An onnxruntime session, made once, and the configuration beside it."""
+
+    def __init__(self, config: ModelConfig, session: onnxruntime.InferenceSession, threads: int) -> None:
+        self.config = config
+        self._session = session
+        self._threads = threads
+
+    @classmethod
+    def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
+        """Return the network in `folder`, by default the packaged one, on the CPU.
+
+        Parameters
+        ----------
+        folder : str or Path, optional
+            Holds model.onnx and model.json; or the name of a packaged model, such as "crfnet2017".
+        threads : int
+            Windows that run at the same time, in a network that reads windows; 0 takes the processor's number of cores.
+
+        Raises
+        ------
+        ModelError
+            If a file is absent or does not match the other, or the number of threads is negative.
+        """
+        if threads < 0:
+            raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
+        folder = model_folder(folder)
+        config = ModelConfig.read(folder / "model.json")
+        graph = read_model_file(folder / "model.onnx")
+        if hashlib.sha256(graph).hexdigest() != config.sha256:
+            raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
+        return cls(config, _session(folder, graph, config), threads or os.cpu_count() or 1)
+
+    def inputs(self, windows: Float32Array, *, progress: Progress | None = None) -> Float32Array:
+        """Return what the network reads of `windows`: their statistics, or the windows themselves.
+
+        Statistics are counted in one thread, since numpy's small steps wait for each other's interpreter lock: two
+        threads take a quarter longer. One window at a time keeps the working set in a core's cache.
+
+        Parameters
+        ----------
+        windows : ndarray, float32, shape (N, 227, 227, 3)
+            At least one window, code values in [0, 1]; not changed.
+        progress : callable, optional
+            Called with (done, total) after every window, if there is anything to count.
+
+        Returns
+        -------
+        ndarray, float32, shape (N, LENGTH) or (N, 227, 227, 3)
+            Rows for `predict`.
+        """
+        if not self.config.reads_statistics:
+            return windows
+        rows = []
+        for number, window in enumerate(windows, start=1):
+            rows.append(window_statistics(window))
+            if progress is not None:
+                progress(number, len(windows))
+        return np.stack(rows)
+
+    def predict(self, inputs: Float32Array, *, progress: Progress | None = None) -> Predictions:
+        """Return what the network says of its `inputs`, one row a window.
+
+        Rows of statistics are small and go through the network at once. Windows go one by one, several at the same
+        time in as many threads.
+
+        Parameters
+        ----------
+        inputs : ndarray, float32, shape (N, ...)
+            See `inputs`; not changed.
+        progress : callable, optional
+            Called with (done, total) after every window that goes through the network by itself.
+        """
+        if self.config.reads_statistics:
+            outputs = self._run(inputs)
+        else:
+            rows = self._run_each(inputs, progress)
+            outputs = [np.concatenate(column) for column in zip(*rows, strict=True)]
+        weights, log_errors, *pooled = (output.astype(np.float64) for output in outputs)
+        answer = Answer(pooled[0][0], float(np.exp(pooled[1][0]))) if pooled else None
+        return Predictions(weights, np.exp(log_errors), answer)
+
+    def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
+        """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
+        rows = []
+        pool = ThreadPoolExecutor(self._threads)
+        try:
+            for number, row in enumerate(pool.map(self._run, windows[:, None]), start=1):
+                rows.append(row)
+                if progress is not None:
+                    progress(number, len(windows))
+        finally:
+            pool.shutdown(cancel_futures=True)
+        return rows
+
+    def _run(self, inputs: Float32Array) -> list[Float32Array]:
+        """Return the network's outputs for some rows."""
+        outputs: list[Float32Array] = self._session.run(
+            list(self.config.output_names), {self.config.input_name: inputs}
+        )
+        return outputs
+
+
+def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:
+    """Return the session of a graph on one thread of the CPU, or say why there is none."""
+    options = onnxruntime.SessionOptions()
+    options.intra_op_num_threads = 1
+    try:
+        session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+    except _UNLOADABLE as problem:
+        raise ModelError(
+            f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"
+        ) from None
+    found = {node.name for node in (*session.get_inputs(), *session.get_outputs())}
+    absent = {config.input_name, *config.output_names} - found
+    if absent:
+        raise ModelError(f"{folder}: model.onnx has no {', '.join(sorted(absent))}; export the model again")
+    return session

@@ -1,0 +1,141 @@
+"""A model folder: model.onnx, model.json, the model card, and run.json of the training run that it came from."""
+
+from __future__ import annotations
+
+import json
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.emor import COMPONENTS
+from crfnet_core.errors import ModelError
+from crfnet_core.files import atomic_write_text
+from crfnet_core.network.uncertainty import UncertaintyModel
+from crfnet_core.windows import WINDOW_SIZE
+
+#: The packaged models, and the one that is used unless another is asked for.
+MODELS = Path(__file__).parents[1] / "models"
+DEFAULT_MODEL = MODELS / "photograph-statistics"
+
+
+@dataclass(frozen=True)
+class ModelConfig:
+    """What model.json says of the network beside it.
+
+    Parameters
+    ----------
+    name : str
+        The model's name, that of its folder.
+    sha256 : str
+        Of model.onnx; checked at load.
+    basis : str
+        The response model of the outputs: "emor".
+    components : int
+        Weights per window.
+    window_size : int
+        Side of a window in samples.
+    input_name : str
+        "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, LENGTH): see
+        `crfnet_core.statistics`.
+    output_names : tuple of str
+        Of each window, EMoR weights (N, 11) and the logarithm of the expected E_est (N,); of a network that pools its
+        windows, then the same of all of them together, (1, 11) and (1,).
+    normalization : str
+        What the input holds, in words.
+    opset : int
+        Of the ONNX graph.
+    training_commit : str
+        The commit of this project that trained it.
+    training : dict
+        What it has seen: "scene_kinds", and "held_out_curves", the DoRF curves that it has not.
+    uncertainty_model : UncertaintyModel
+        From what the network expects to an uncertainty.
+    accuracy : dict
+        Figures of the model card.
+    """
+
+    name: str
+    sha256: str
+    basis: str
+    components: int
+    window_size: int
+    input_name: str
+    output_names: tuple[str, ...]
+    normalization: str
+    opset: int
+    training_commit: str
+    training: dict[str, Any]
+    uncertainty_model: UncertaintyModel
+    accuracy: dict[str, Any]
+
+    @classmethod
+    def read(cls, path: Path) -> ModelConfig:
+        """Return the configuration in a model.json.
+
+        Raises
+        ------
+        ModelError
+            If the file is absent, is no JSON, lacks an entry, or describes a network of another kind.
+        """
+        entries = _read_json(path)
+        missing = [field.name for field in fields(cls) if field.name not in entries]
+        if missing:
+            raise ModelError(f"{path}: lacks {', '.join(missing)}; export the model again")
+        entries["output_names"] = tuple(entries["output_names"])
+        entries["uncertainty_model"] = _read_uncertainty_model(path, entries["uncertainty_model"])
+        config = cls(**{field.name: entries[field.name] for field in fields(cls)})
+        if (config.basis, config.components, config.window_size) != ("emor", COMPONENTS, WINDOW_SIZE):
+            raise ModelError(
+                f"{path}: is for {config.components} weights of {config.basis} and windows of {config.window_size};"
+                f" this version needs {COMPONENTS} of emor and {WINDOW_SIZE}"
+            )
+        return config
+
+    def write(self, path: Path) -> None:
+        """Write a model.json that `read` returns again; an existing one is replaced."""
+        atomic_write_text(path, json.dumps(asdict(self), indent=2) + "\n", overwrite=True, error=ModelError)
+
+    @property
+    def reads_statistics(self) -> bool:
+        """Whether the network reads the statistics of windows rather than their samples."""
+        return self.input_name == "statistics"
+
+    @property
+    def label(self) -> str:
+        """The model's name and the head of its hash, for provenance."""
+        return f"{self.name} {self.sha256[:12]}"
+
+
+def model_folder(wanted: str | Path | None = None) -> Path:
+    """Return the folder of a model: that of a path where there is one, else of the packaged model of this name."""
+    if wanted is None:
+        return DEFAULT_MODEL
+    is_packaged = not Path(wanted).is_dir() and (MODELS / wanted / "model.json").is_file()
+    return MODELS / wanted if is_packaged else Path(wanted)
+
+
+def _read_uncertainty_model(path: Path, entries: object) -> UncertaintyModel:
+    """Return the uncertainty model in a model.json, or say what it lacks."""
+    names = [field.name for field in fields(UncertaintyModel)]
+    if not isinstance(entries, dict) or set(entries) != set(names):
+        raise ModelError(f"{path}: the uncertainty_model needs {', '.join(names)}; export the model again")
+    return UncertaintyModel(**{**entries, "band_profile": tuple(entries["band_profile"])})
+
+
+def read_model_file(path: Path) -> bytes:
+    """Return a model file's bytes, or say which file is absent."""
+    try:
+        return path.read_bytes()
+    except OSError as problem:
+        raise ModelError(f"{path}: cannot be read ({problem.strerror}); a model is a folder with both files") from None
+
+
+def _read_json(path: Path) -> dict[str, Any]:
+    """Return the object in a JSON file."""
+    try:
+        entries = json.loads(read_model_file(path))
+    except ValueError:
+        raise ModelError(f"{path}: is not JSON; restore it") from None
+    if not isinstance(entries, dict):
+        raise ModelError(f"{path}: holds no JSON object; restore it")
+    return entries

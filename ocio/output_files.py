@@ -1,0 +1,158 @@
+"""Which files an estimate writes, and whether they may be written: asked before any work is done."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass
+from pathlib import Path
+
+from crfnet_core.errors import PlateError
+from ocio.configs.plate_color_space import PlateColorSpace
+
+CONFIG_NAME = "config.ocio"
+
+
+@dataclass(frozen=True)
+class OutputFiles:
+    """The files of one estimate, all in one folder and named after its first photograph.
+
+    Parameters
+    ----------
+    spi1d, cube, clf : Path
+        The inverse response in three formats.
+    config : Path
+        The OpenColorIO config; several estimates may share it.
+    linear : tuple of Path
+        One linear EXR per photograph.
+    sheet : Path or None
+        The picture, if there is to be one.
+    report : Path
+        The JSON document.
+    color_space : str
+        The name of the photograph's colour space in the config.
+    """
+
+    spi1d: Path
+    cube: Path
+    clf: Path
+    config: Path
+    linear: tuple[Path, ...]
+    sheet: Path | None
+    report: Path
+    color_space: str
+
+    @classmethod
+    def named(cls, folder: Path, photos: Sequence[Path], *, has_sheet: bool = True) -> OutputFiles:
+        """Return the files for `photos`, whose response is one."""
+        stem = plain_stem(photos[0])
+        return cls(
+            spi1d=folder / f"{stem}.spi1d",
+            cube=folder / f"{stem}.cube",
+            clf=folder / f"{stem}.clf",
+            config=folder / CONFIG_NAME,
+            linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos),
+            sheet=folder / f"{stem}_sheet.png" if has_sheet else None,
+            report=folder / f"{stem}.json",
+            color_space=f"CRF {stem}",
+        )
+
+    @property
+    def own(self) -> tuple[Path, ...]:
+        """Every file but the config."""
+        sheet = () if self.sheet is None else (self.sheet,)
+        return (self.spi1d, self.cube, self.clf, *self.linear, *sheet, self.report)
+
+    def plate_color_space(self, photo: Path, exposure: float = 0.0) -> PlateColorSpace:
+        """Return the colour space of `photo`, for a config beside the LUTs; `exposure` in stops.
+
+        Its file rule is for the photograph's own name; a frame number at its end (shot.0001.jpg) stands for any.
+
+        Raises
+        ------
+        ConfigError
+            If no colour space can have the name.
+        """
+        return PlateColorSpace(
+            name=self.color_space,
+            lut_file=self.spi1d.name,
+            aliases=(re.sub(r"\W+", "_", self.color_space).lower(),),
+            description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
+            file_pattern=re.sub(r"\.\d{2,}$", ".*", photo.stem) + photo.suffix,
+            exposure=exposure,
+        )
+
+
+def plain_stem(photo: Path) -> str:
+    """Return a file's name without its suffix, and with `_` for what means more than itself in configs and patterns."""
+    return re.sub(r"[$%#*?]", "_", photo.stem)
+
+
+def check_outputs(
+    folder: Path, outputs: Iterable[OutputFiles], *, photos: Iterable[Path] = (), overwrite: bool = False
+) -> None:
+    """Check that everything can be written before anything is; nothing is created.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder to write to; it need not exist yet.
+    outputs : iterable of OutputFiles
+        What will be written there.
+    photos : iterable of Path
+        The photographs, none of which may be replaced.
+    overwrite : bool
+        Whether existing files may be replaced.
+
+    Raises
+    ------
+    PlateError
+        If the folder cannot be made or written to, two estimates or photographs would share a file, a file exists and
+        may not be replaced, or a photograph itself would be replaced.
+    """
+    check_folder(folder)
+    outputs = tuple(outputs)
+    targets = [path for files in outputs for path in files.own]
+    if twice := sorted({path.name for path in targets if targets.count(path) > 1}):
+        raise PlateError(f"two photographs would both be written as {twice[0]}; rename one or use two folders")
+    originals = {photo.resolve() for photo in photos}
+    targets += [files.config for files in outputs[:1]]
+    for path in targets:
+        if path.resolve() in originals:
+            raise PlateError(f"{path}: is one of the photographs and would be replaced; choose another folder")
+        if path.is_dir():
+            raise PlateError(f"{path}: is a folder, and a file of that name is to be written; choose another folder")
+    if not overwrite and (existing := [path.name for path in targets if path.exists()]):
+        what = f"{existing[0]} and {len(existing) - 1} more exist" if len(existing) > 1 else f"{existing[0]} exists"
+        raise PlateError(f"{folder}: {what} already; add --overwrite or choose another folder")
+
+
+def check_folder(folder: Path) -> None:
+    """Check that `folder` is one that can be written to, or can be made.
+
+    Raises
+    ------
+    PlateError
+        Otherwise.
+    """
+    existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
+    if not existing.is_dir():
+        raise PlateError(f"{existing}: is not a folder; choose another for the output")
+    if not os.access(existing, os.W_OK | os.X_OK):
+        raise PlateError(f"{existing}: is not writable; choose another folder for the output")
+
+
+@contextmanager
+def output_folder(folder: Path) -> Iterator[None]:
+    """Make `folder` for the length of a block; if the block fails, folders made for it and still empty go again."""
+    made = [place for place in (folder, *folder.parents) if not place.exists()]
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        yield
+    except BaseException:
+        for place in made:
+            with suppress(OSError):
+                place.rmdir()
+        raise

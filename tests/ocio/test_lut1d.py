@@ -1,0 +1,216 @@
+"""The lookup table's arithmetic, and the inverse response as one."""
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from crfnet_core.errors import LutError
+from crfnet_core.response import ResponseCurve
+from ocio.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
+
+EXTENDED = (-0.125, 1.125)
+
+curves = arrays(np.float64, st.integers(2, 40), elements=st.floats(0, 1)).map(
+    lambda steps: ResponseCurve.from_samples(np.cumsum(steps**6 + 1e-9))
+)
+
+
+def codes(bits):
+    return (np.arange(2**bits) / (2**bits - 1)).astype(np.float32)
+
+
+def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
+    """Values through OpenColorIO's own 1D LUT.
+
+    Each in a config of its own, because configs mix up LUTs in their cache; not optimized, because OpenColorIO takes
+    a LUT that is within 1e-5 of the identity for the identity.
+    """
+    table = OCIO.Lut1DTransform(length=lut.values.size, inputHalfDomain=False)
+    table.setData(np.repeat(lut.values, 3).astype(np.float32))
+    low, high = lut.domain
+    group = OCIO.GroupTransform([OCIO.RangeTransform(low, high, 0, 1), table])
+    processor = OCIO.Config.CreateRaw().getProcessor(group, direction)
+    pixels = np.repeat(np.asarray(values, dtype=np.float32), 3)
+    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
+    return pixels[::3]
+
+
+@pytest.mark.parametrize("kind", [np.float32, np.float64])
+def test_apply_interpolates_clamps_and_takes_nan_for_the_first_entry(kind):
+    lut = Lut1D([0.0, 0.25, 1.0])
+    given = np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind)
+    found = lut.apply(given)
+    assert found.dtype == kind
+    assert found.tolist() == [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0]
+
+
+def test_apply_over_a_domain():
+    lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
+    assert lut.apply([-2, -1, -0.5, 0, 0.5, 1, 2]).tolist() == [-1, -1, -0.5, 0, 2, 4, 4]
+
+
+def test_apply_inverse_interpolates_clamps_and_takes_nan_for_the_first_input():
+    lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
+    assert lut.apply_inverse([-2, -0.5, 0, 2, 4, 9, np.nan]).tolist() == [-1, -0.5, 0, 0.5, 1, 1, -1]
+
+
+def test_pixels_keep_their_shape_and_are_not_written():
+    lut = Lut1D([0.0, 0.25, 1.0])
+    pixels = np.full((2, 3, 3), 2.0, dtype=np.float32)
+    assert lut.apply(pixels).shape == lut.apply_inverse(pixels).shape == (2, 3, 3)
+    assert (pixels == 2).all()
+    assert lut.apply(0.5).shape == ()
+    assert lut.apply(np.zeros((0, 3))).shape == (0, 3)
+    assert lut.apply(np.float16([0.5])).dtype == np.float32
+    assert lut.apply([1]).dtype == np.float64
+
+
+@pytest.mark.parametrize(
+    ("values", "domain", "message"),
+    [
+        ([0, 0.5, 0.4, 1], (0, 1), "entry 2 of the LUT, 0.4"),
+        ([0, 0.5, 0.5, 1], (0, 1), "entry 2 of the LUT, 0.5"),
+        ([0, np.nan, 1], (0, 1), "entry 1 of the LUT, nan"),
+        ([0, 1, np.inf], (0, 1), "entry 2 of the LUT, inf"),
+        ([-np.inf, 0, 1], (0, 1), "entry 0 of the LUT, -inf"),
+        ([0, 1e39], (0, 1), "entry 1 of the LUT, inf"),
+        ([0, 1, 1 + 1e-9], (0, 1), "entry 2 of the LUT, 1"),
+        ([0], (0, 1), r"2 to 65536 values, found shape \(1,\)"),
+        ([[0, 0, 0], [1, 1, 1]], (0, 1), r"found shape \(2, 3\)"),
+        (np.arange(65537), (0, 1), r"found shape \(65537,\)"),
+        ([0, 1], (1, 0), "finite domain from low to high, found 1 to 0"),
+        ([0, 1], (0, np.inf), "finite domain"),
+        ([0, 1], (0, np.nan), "finite domain"),
+    ],
+)
+def test_tables_that_are_none_are_refused(values, domain, message):
+    with pytest.raises(LutError, match=message):
+        Lut1D(values, domain)
+
+
+def test_a_table_is_its_own_and_single_precision():
+    values = np.array([0, 0.1, 1])
+    lut = Lut1D(values)
+    values[1] = 0.5
+    assert lut.values[1] == np.float32(0.1)
+    with pytest.raises(ValueError, match="read-only"):
+        lut.values[0] = 1
+    assert lut == Lut1D([0, 0.1, 1])
+    assert lut != Lut1D([0, 0.1, 1], comments=("other",))
+    assert lut != Lut1D([0, 0.1, 1], domain=(0, 2))
+    assert lut != Lut1D([0, 0.2, 1])
+    assert lut != "a LUT"
+    assert Lut1D([-1, 1e-40, 1]).values.tolist() == [-1, 0, 1]
+
+
+def test_comments_become_lines_that_every_format_holds():
+    lut = Lut1D([0, 1], comments=("photo:\ta\nb\x00\u2028c.jpg ", "", "é" * 9000, "\udcff"))
+    assert lut.comments == ("photo: a b c.jpg", "é" * MAX_COMMENT)
+
+
+def test_strictly_increasing_raises_by_units_in_the_last_place_and_keeps_the_end():
+    below = [np.nextafter(np.float32(1), np.float32(0)), 1]
+    assert strictly_increasing([0, 1, 1]).tolist() == [0, *below]
+    assert strictly_increasing([-1, 0, 0, 5]).tolist() == [-1, 0, 2.0**-126, 5]
+    assert strictly_increasing([-0.5, 0.25, 3]).tolist() == [-0.5, 0.25, 3]
+
+
+@given(arrays(np.float64, st.integers(2, 200), elements=st.floats(-2, 2, width=32)))
+def test_strictly_increasing_moves_values_by_no_more_than_their_number_of_units(values):
+    ordered = np.sort(values)
+    found = strictly_increasing(ordered)
+    assert (np.diff(found.astype(np.float32)) > 0).all()
+    assert np.abs(found - ordered).max() <= values.size * np.spacing(np.float32(4))
+
+
+@pytest.mark.parametrize(
+    ("length", "domain", "bits"),
+    [
+        (256, (0, 1), 8),
+        (4081, (0, 1), 8),
+        (16321, (0, 1), 8),
+        (1024, (0, 1), 10),
+        (4093, (0, 1), 10),
+        (4096, (0, 1), 12),
+        (65536, (0, 1), 8),
+        (65536, (0, 1), 16),
+        (2551, EXTENDED, 8),
+        (5101, EXTENDED, 8),
+        (10231, EXTENDED, 10),
+    ],
+)
+def test_the_documented_lengths_are_exact_on_codes(length, domain, bits, tolerance):
+    curve = ResponseCurve.gamma(2.2)
+    lut = inverse_response_lut(curve, length=length, domain=domain)
+    wanted = curve.inverse(np.arange(2**bits) / (2**bits - 1))
+    assert np.abs(lut.apply(np.arange(2**bits) / (2**bits - 1)) - wanted).max() < tolerance.lut / 2
+    assert np.abs(lut.apply(codes(bits)) - wanted).max() < tolerance.lut
+
+
+def test_other_lengths_are_not_exact_on_codes(tolerance):
+    curve = ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 8)
+    exact = curve.inverse(codes(8))
+    assert np.abs(inverse_response_lut(curve, length=4096).apply(codes(8)) - exact).max() > 5 * tolerance.lut
+    assert np.abs(inverse_response_lut(curve, length=4081).apply(codes(8)) - exact).max() < tolerance.lut
+
+
+def test_the_inverse_of_a_power_law_has_known_values():
+    lut = inverse_response_lut(ResponseCurve.gamma(2.2), comments=("photo: a.jpg",))
+    assert lut.values.size == 4081
+    assert lut.domain == (0, 1)
+    assert lut.comments == ("photo: a.jpg",)
+    assert lut.values[[0, -1]].tolist() == [0, 1]
+    np.testing.assert_allclose(lut.apply([0.25, 0.5, 0.75]), [0.04736614, 0.21763764, 0.53104900], atol=2e-4)
+
+
+def test_super_whites_continue_with_the_slope_of_the_last_code():
+    curve = ResponseCurve.gamma(2.2)
+    lut = inverse_response_lut(curve, length=5101, domain=EXTENDED)
+    toe, shoulder = curve.inverse(1 / 255) * 255, (1 - curve.inverse(254 / 255)) * 255
+    assert shoulder == pytest.approx(2.2, abs=0.02)
+    np.testing.assert_allclose(lut.apply([1, 1.0625, 1.125, 2]), 1 + shoulder * np.array([0, 1, 2, 2]) / 16, atol=1e-6)
+    np.testing.assert_allclose(lut.apply([0, -0.0625, -0.125, -1]), toe * np.array([0, -1, -2, -2]) / 16, atol=1e-6)
+
+
+def test_the_slope_beyond_a_clipped_end_is_bounded():
+    clipped = ResponseCurve.from_samples(np.clip(np.linspace(-0.5, 2, 1024), 0, 1))
+    lut = inverse_response_lut(clipped, length=5101, domain=EXTENDED)
+    assert MAX_END_SLOPE == 8
+    np.testing.assert_allclose(lut.apply([-0.125, 1.125]), [-1, 2], atol=1e-6)
+
+
+@pytest.mark.parametrize("domain", [(0.1, 1), (0, 0.9), (-np.inf, 1), (0, np.inf), (np.nan, 1)])
+def test_domains_that_do_not_hold_the_response_are_refused(domain):
+    with pytest.raises(LutError, match="must hold 0 to 1"):
+        inverse_response_lut(ResponseCurve.gamma(), domain=domain)
+
+
+@pytest.mark.parametrize("length", [-1, 0, 1, 65537])
+def test_lengths_out_of_range_are_refused(length):
+    with pytest.raises(LutError, match=f"found a length of {length}"):
+        inverse_response_lut(ResponseCurve.gamma(), length=length)
+
+
+@settings(max_examples=100, deadline=None)
+@given(curves, st.sampled_from([(4081, (0.0, 1.0)), (5101, EXTENDED), (65536, (0.0, 1.0))]))
+def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(curve, grid):
+    lut = inverse_response_lut(curve, length=grid[0], domain=grid[1])
+    inputs = np.random.default_rng(0).uniform(-0.3, 1.3, 2000).astype(np.float32)
+    assert np.abs(lut.apply(inputs) - ocio_applied(lut, inputs)).max() < 1e-6
+    outputs = np.linspace(-0.3, 1.3, 2000, dtype=np.float32)
+    backwards = ocio_applied(lut, outputs, OCIO.TRANSFORM_DIR_INVERSE)
+    assert np.abs(lut.apply_inverse(outputs) - backwards).max() < 1e-6
+    back = ocio_applied(lut, ocio_applied(lut, codes(8)), OCIO.TRANSFORM_DIR_INVERSE)
+    assert np.rint(back * 255).tolist() == list(range(256))
+    assert np.rint(lut.apply_inverse(lut.apply(codes(8))) * 255).tolist() == list(range(256))
+
+
+@settings(max_examples=50, deadline=None)
+@given(curves)
+def test_any_response_gives_back_all_10_bit_codes(curve):
+    lut = inverse_response_lut(curve, length=4093)
+    back = ocio_applied(lut, ocio_applied(lut, codes(10)), OCIO.TRANSFORM_DIR_INVERSE)
+    assert np.rint(back * 1023).tolist() == list(range(1024))

@@ -1,0 +1,197 @@
+"""What holds for every LUT format: round trips, independent readers, bad files, locales."""
+
+import os
+import subprocess
+import sys
+
+import colour
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+from hypothesis import HealthCheck, given, settings
+from hypothesis import strategies as st
+from hypothesis.extra.numpy import arrays
+
+from crfnet_core.errors import LutError
+from crfnet_core.response import ResponseCurve
+from ocio.luts.files import READERS, WRITERS, read_lut, write_lut
+from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+
+SUFFIXES = (".spi1d", ".cube", ".clf")
+EXTENDED = (-0.125, 1.125)
+UNIFORM = np.linspace(0, 1, 1024)
+CURVES = {
+    "gamma": ResponseCurve.gamma(2.2),
+    "identity": ResponseCurve.gamma(1),
+    "clipped early": ResponseCurve.from_samples(np.clip(20 * UNIFORM, 0, 1)),
+    "crushed blacks": ResponseCurve.from_samples(UNIFORM**8),
+    "jump": ResponseCurve.from_samples(UNIFORM > 0.5),
+}
+
+
+def codes(bits):
+    return (np.arange(2**bits) / (2**bits - 1)).astype(np.float32)
+
+
+def ocio_applied(path, values, direction=OCIO.TRANSFORM_DIR_FORWARD, optimization=OCIO.OPTIMIZATION_LOSSLESS):
+    """Values through OpenColorIO's reader and CPU processor."""
+    OCIO.ClearAllCaches()
+    transform = OCIO.FileTransform(src=str(path), direction=direction)
+    pixels = np.repeat(np.asarray(values, dtype=np.float32), 3)
+    OCIO.Config.CreateRaw().getProcessor(transform).getOptimizedCPUProcessor(optimization).applyRGB(pixels)
+    return pixels[::3]
+
+
+def test_every_format_has_a_reader_and_a_writer():
+    assert tuple(READERS) == tuple(WRITERS) == SUFFIXES
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize("suffix", SUFFIXES)
+class TestRoundTrip:
+    @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (4093, (0, 1)), (5101, EXTENDED)])
+    def test_what_is_written_is_read_back_bit_for_bit(self, tmp_path, suffix, name, length, domain):
+        lut = inverse_response_lut(CURVES[name], length=length, domain=domain, comments=("photo: a <b> & c.jpg",))
+        write_lut(tmp_path / f"a{suffix}", lut)
+        assert read_lut(tmp_path / f"a{suffix}") == lut
+
+    @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (5101, EXTENDED)])
+    def test_opencolorio_agrees_with_numpy_in_both_directions(self, tmp_path, suffix, name, length, domain, tolerance):
+        path = tmp_path / f"a{suffix}"
+        lut = inverse_response_lut(CURVES[name], length=length, domain=domain)
+        write_lut(path, lut)
+        values = np.append(np.linspace(-0.5, 2, 5000, dtype=np.float32), np.float32([np.inf, -np.inf]))
+        assert np.abs(ocio_applied(path, values) - lut.apply(values)).max() < tolerance.lut
+        assert ocio_applied(path, [np.nan]) == lut.apply(np.float32([np.nan])) == np.float32(lut.values[0])
+        backwards = ocio_applied(path, values, OCIO.TRANSFORM_DIR_INVERSE)
+        assert np.abs(backwards - lut.apply_inverse(values)).max() < tolerance.lut
+
+    @pytest.mark.parametrize(("length", "bits"), [(4081, 8), (4093, 10)])
+    def test_opencolorio_gives_all_codes_back(self, tmp_path, suffix, name, length, bits):
+        path = tmp_path / f"a{suffix}"
+        write_lut(path, inverse_response_lut(CURVES[name], length=length))
+        linear = ocio_applied(path, codes(bits))
+        # Hosts take the default, whose inverse is an approximation; it must still hit every code.
+        for optimization in (OCIO.OPTIMIZATION_LOSSLESS, OCIO.OPTIMIZATION_DEFAULT):
+            back = ocio_applied(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)
+            assert np.rint(back * (2**bits - 1)).tolist() == list(range(2**bits))
+
+
+@pytest.mark.parametrize("name", CURVES)
+@pytest.mark.parametrize(
+    ("suffix", "reader"), [(".spi1d", colour.io.read_LUT_SonySPI1D), (".cube", colour.io.read_LUT_IridasCube)]
+)
+def test_colour_science_agrees_with_numpy(tmp_path, suffix, reader, name, tolerance):
+    path = tmp_path / f"a{suffix}"
+    lut = inverse_response_lut(CURVES[name], length=5101, domain=EXTENDED, comments=("photo: a.jpg",))
+    write_lut(path, lut)
+    values = np.linspace(*EXTENDED, 3000)
+    found = reader(str(path)).apply(np.repeat(values[:, np.newaxis], 3, axis=1))
+    slope = np.diff(lut.values).max() * (lut.values.size - 1) / 1.25
+    assert np.abs(found - lut.apply(values)[:, np.newaxis]).max() < max(tolerance.lut, slope * 1e-9)
+
+
+@settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(arrays(np.float32, st.integers(2, 60), elements=st.floats(-1e6, 1e6, width=32)), st.sampled_from(SUFFIXES))
+def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, values, suffix):
+    lut = Lut1D(strictly_increasing(np.sort(values)), domain=(-0.1, 1.3))
+    path = tmp_path / f"any{suffix}"
+    write_lut(path, lut, overwrite=True)
+    assert read_lut(path) == lut
+    OCIO.ClearAllCaches()
+    steps = OCIO.Config.CreateRaw().getProcessor(OCIO.FileTransform(src=str(path))).createGroupTransform()
+    assert np.array_equal(steps[1].getData()[::3], lut.values.astype(np.float32))
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+def test_neighbours_one_unit_apart_stay_apart(tmp_path, suffix):
+    lut = Lut1D(strictly_increasing(np.full(200, 0.7)))
+    write_lut(tmp_path / f"a{suffix}", lut)
+    assert read_lut(tmp_path / f"a{suffix}") == lut
+
+
+@pytest.mark.parametrize("suffix", SUFFIXES)
+class TestFiles:
+    def test_the_same_lut_gives_the_same_bytes(self, tmp_path, suffix):
+        for name in ("a", "b"):
+            write_lut(tmp_path / f"{name}{suffix}", inverse_response_lut(CURVES["gamma"], comments=("photo: a.jpg",)))
+        assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
+
+    def test_a_file_is_replaced_only_when_asked(self, tmp_path, suffix):
+        path = tmp_path / f"a{suffix}"
+        path.write_text("mine")
+        with pytest.raises(LutError, match="exists already"):
+            write_lut(path, Lut1D([0, 1]))
+        assert path.read_text() == "mine"
+        write_lut(path, Lut1D([0, 1]), overwrite=True)
+        assert read_lut(path) == Lut1D([0, 1])
+
+    def test_a_folder_that_is_absent_is_named(self, tmp_path, suffix):
+        with pytest.raises(LutError, match=r"folder .* does not exist"):
+            write_lut(tmp_path / "none" / f"a{suffix}", Lut1D([0, 1]))
+
+    def test_capital_suffixes_are_known(self, tmp_path, suffix):
+        path = tmp_path / f"A{suffix.upper()}"
+        write_lut(path, Lut1D([0, 1]))
+        assert read_lut(str(path)) == Lut1D([0, 1])
+
+    @pytest.mark.parametrize(
+        ("content", "message"),
+        [
+            (b"", "is empty"),
+            (b"\xff\xd8\xff\xe0\x00\x10JFIF", "is no text file"),
+            (b"Version 1\x00\n", "is no text file"),
+            (b"0 " * (33 * 2**20), "has 66 MiB, more than any 1D LUT"),
+        ],
+    )
+    def test_what_is_no_text_is_refused(self, tmp_path, suffix, content, message):
+        path = tmp_path / f"a{suffix}"
+        path.write_bytes(content)
+        with pytest.raises(LutError, match=message):
+            read_lut(path)
+
+    def test_absent_files_and_folders_are_refused(self, tmp_path, suffix):
+        with pytest.raises(LutError, match=r"cannot be read \(No such file or directory\); check the name"):
+            read_lut(tmp_path / f"none{suffix}")
+        (tmp_path / f"folder{suffix}").mkdir()
+        with pytest.raises(LutError, match="cannot be read"):
+            read_lut(tmp_path / f"folder{suffix}")
+
+
+@pytest.mark.parametrize("name", ["a.3dl", "a", "a.spi3d"])
+def test_other_suffixes_are_refused(tmp_path, name):
+    with pytest.raises(LutError, match=r"LUT files end in \.spi1d, \.cube, \.clf, found"):
+        read_lut(tmp_path / name)
+    with pytest.raises(LutError, match=r"LUT files end in"):
+        write_lut(tmp_path / name, Lut1D([0, 1]))
+
+
+def comma_locale(folder):
+    """An environment whose locale has decimal commas; a skip where it cannot be made."""
+    command = ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")]
+    try:
+        made = subprocess.run(command, capture_output=True, check=False).returncode == 0
+    except FileNotFoundError:
+        made = False
+    if not made:
+        pytest.skip("needs localedef and the source of the locale de_DE")
+    return {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8"}
+
+
+def test_numbers_have_points_under_a_locale_with_commas(tmp_path, root):
+    environment = comma_locale(tmp_path)
+    lut = Lut1D([-0.1, 0.25, 1.5], domain=(-0.125, 1.125), comments=("photo: a.jpg",))
+    for suffix in SUFFIXES:
+        write_lut(tmp_path / f"plain{suffix}", lut)
+    script = (
+        "import locale, sys\n"
+        "locale.setlocale(locale.LC_ALL, '')\n"
+        "assert locale.str(0.5) == '0,5'\n"
+        "from ocio.luts.files import read_lut, write_lut\n"
+        "for suffix in sys.argv[1:]:\n"
+        "    write_lut(f'comma{suffix}', read_lut(f'plain{suffix}'))\n"
+    )
+    environment["PYTHONPATH"] = str(root)
+    subprocess.run([sys.executable, "-c", script, *SUFFIXES], cwd=tmp_path, env=environment, check=True)
+    for suffix in SUFFIXES:
+        assert (tmp_path / f"comma{suffix}").read_bytes() == (tmp_path / f"plain{suffix}").read_bytes()

@@ -1,0 +1,44 @@
+"""Compute crfnet_core/data/emor.npz from the DoRF curves: ``python -m training.data.emor_basis --data DIR``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.emor import BASIS_FILE, EmorBasis
+from crfnet_core.files import atomic_write
+from crfnet_core.response import SAMPLES
+from training.data.curves import read_dorf
+
+#: Agreement of the first five components with the published ones.
+LEAST_COSINE = 0.999
+
+
+def main() -> None:
+    """Compute the basis, compare it with the published one, and write it."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf/201_CRF_data.mat and dorf/emor.txt")
+    folder = parser.parse_args().data / "dorf"
+    basis = EmorBasis.from_curves(read_dorf(folder / "201_CRF_data.mat"))
+    published = read_published(folder / "emor.txt")
+    cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
+    print("|cosine| with the published components:", np.round(cosines, 5))
+    print(f"mean differs by at most {np.abs(basis.mean - published[0]).max():.4f}")
+    if cosines[:5].min() < LEAST_COSINE:
+        raise SystemExit(f"the first five components must agree with the published ones to {LEAST_COSINE}")
+    with atomic_write(BASIS_FILE, overwrite=True) as temporary:
+        np.savez(temporary, mean=basis.mean, components=basis.components)
+    print(f"wrote {BASIS_FILE.name}")
+
+
+def read_published(path: Path) -> np.ndarray:
+    """Return f0 and the unit components of emor.txt, shape (26, 1024)."""
+    blocks = path.read_text().split("=")[2:]
+    values = np.array([[float(word) for word in block.split()[:SAMPLES]] for block in blocks])
+    return np.vstack([values[:1], values[1:] / np.linalg.norm(values[1:], axis=1, keepdims=True)])
+
+
+if __name__ == "__main__":
+    main()

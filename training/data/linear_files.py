@@ -1,0 +1,210 @@
+"""Scene-linear pictures from camera raw, OpenEXR and Radiance HDR files, scaled down in linear light."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+import rawpy
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.image_io import LINEAR_SIGNATURES, MAX_PIXELS, RAW_SUFFIXES, first_line
+from crfnet_core.windows import WINDOW_SIZE
+from training.data.scenes import LUMINANCE, area_averaged
+
+#: The automatic scale leaves the shorter side at least this many samples: windows of step 1 and 2 fit into it.
+LEAST_SIDE = 2 * WINDOW_SIZE
+
+#: Fraction (numerator, denominator) of a panorama's rows that are kept, around the horizon: the poles are stretched.
+BAND = (4, 5)
+
+#: Where a power of two brings the median luminance of an HDR file, whose unit is anybody's, and what half floats hold.
+MEDIAN_LUMINANCE, LARGEST = 0.18, 65000.0
+
+#: How LibRaw develops: nothing that depends on the picture, so that double the light is double the value.
+DEVELOPMENT: dict[str, Any] = {
+    "gamma": (1, 1),
+    "output_bps": 16,
+    "output_color": rawpy.ColorSpace.sRGB,  # Rec.709 primaries
+    "use_camera_wb": True,
+    "no_auto_bright": True,
+    "adjust_maximum_thr": 0.0,  # else a picture's own maximum, where it is near the sensor's, is taken for white
+    "highlight_mode": rawpy.HighlightMode.Clip,
+    "user_flip": 0,
+}
+
+
+def linear_scene(
+    path: Path, *, is_panorama: bool = False, scale: int | None = None
+) -> tuple[NDArray[np.float16], list[str]]:
+    """Return the scene as it is written, float16 (H, W, 3) in [0, 65000], and what was done to it.
+
+    Camera raw: 0 is black and 1 the sensor's white, where every channel is clipped. Others: times a power of two that
+    brings the median luminance nearest to `MEDIAN_LUMINANCE`.
+
+    Parameters
+    ----------
+    path : Path
+        A camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file.
+    is_panorama : bool
+        Whether it is equirectangular, twice as wide as high; the middle `BAND` of its rows is kept.
+    scale : int or None
+        Samples whose mean becomes one, along each side; by default as `automatic_scale`.
+
+    Raises
+    ------
+    PhotoError
+        If the file is absent, damaged, not scene-linear, no panorama where one is promised, too small or black.
+    """
+    is_raw = path.suffix.lower() in RAW_SUFFIXES.split()
+    samples = read_raw(path) if is_raw else read_hdr(path)
+    band = panorama_band(samples, path) if is_panorama else samples
+    scale = automatic_scale(*band.shape[:2]) if scale is None else scale
+    _check_scale(path, band.shape, scale)
+    notes = [f"area-averaged {scale}x{scale} from {samples.shape[1]}x{samples.shape[0]}"] if scale > 1 else []
+    if not is_raw:
+        fitted, done = _fitted(band, scale, path)
+        return fitted, [done[0], *notes, *done[1:]]
+    pixels = area_averaged(band, scale) / np.float32(65535)
+    _lit(pixels, path)
+    return pixels.astype(np.float16), ["sensor white = 1", *notes]
+
+
+def read_raw(path: Path) -> NDArray[np.uint16]:
+    """Return a developed camera raw file, uint16 (H, W, 3), linear, Rec.709 primaries, the sensor's white at 65535.
+
+    White-balanced as the camera did it; rows and columns as stored, whatever the orientation; demosaiced
+    by AHD. Negative values, colours outside the primaries, become 0.
+
+    Raises
+    ------
+    PhotoError
+        If the file is absent, or LibRaw does not know it or finds it damaged.
+    """
+    _check_file(path)
+    try:
+        with rawpy.imread(str(path)) as raw:
+            _check_size(path, raw.sizes.width, raw.sizes.height)
+            pixels = raw.postprocess(**DEVELOPMENT)
+    except rawpy.LibRawError as problem:
+        raise PhotoError(f"{path}: LibRaw cannot develop it ({_reason(problem)}); check the file") from problem
+    return _three_channels(pixels)
+
+
+def read_hdr(path: Path) -> NDArray[np.float32]:
+    """Return the samples of an OpenEXR or Radiance HDR file, float32 (H, W, 3), as stored.
+
+    Raises
+    ------
+    PhotoError
+        If the file is absent, damaged, not of floats, has no RGB or gray, or is not scene-linear: JPEG, PNG, TIFF.
+    """
+    _check_file(path)
+    with path.open("rb") as file:
+        head = file.read(16)
+    if not any(head.startswith(signatures) for signatures in LINEAR_SIGNATURES.values()):
+        raise PhotoError(
+            f"{path}: is not scene-linear; give camera raw, OpenEXR or Radiance HDR, not a picture developed from it"
+        )
+    source = oiio.ImageInput.open(str(path))
+    problem = oiio.geterror()
+    if source is None:
+        raise PhotoError(f"{path}: cannot be read ({first_line(problem)}); check the file")
+    try:
+        header = source.spec()
+        _check_header(path, header)
+        values = source.read_image(0, 0, 0, header.nchannels, "float")
+        problem = source.geterror()
+    finally:
+        source.close()
+    if values is None or problem:
+        raise PhotoError(f"{path}: is damaged or cut short ({first_line(problem)}); copy it again")
+    places = [header.channelindex(name) for name in "RGB"]
+    return values[..., places] if min(places) >= 0 else _three_channels(values[..., :1])
+
+
+def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
+    """Return the middle `BAND` of the rows of an equirectangular panorama; a PhotoError if it is not 2:1."""
+    height, width, _ = samples.shape
+    if width != 2 * height:
+        raise PhotoError(f"{path}: {width} x {height} is no whole panorama, twice as wide as high; bring a photograph")
+    rows = height * BAND[0] // BAND[1]
+    top = (height - rows) // 2
+    return samples[top : top + rows]
+
+
+def automatic_scale(height: int, width: int) -> int:
+    """Return the largest whole factor, 1 or more, that leaves the shorter side at least `LEAST_SIDE` samples."""
+    return max(1, min(height, width) // LEAST_SIDE)
+
+
+def _check_file(path: Path) -> None:
+    """Refuse what is no file."""
+    if not path.is_file():
+        raise PhotoError(f"{path}: there is no such file; check the name")
+    if not os.access(path, os.R_OK):
+        raise PhotoError(f"{path}: cannot be opened; check its permissions")
+
+
+def _check_size(path: Path, width: int, height: int) -> None:
+    """Refuse more pixels than `MAX_PIXELS`."""
+    if width * height > MAX_PIXELS:
+        raise PhotoError(f"{path}: claims {width} x {height} pixels; at most {MAX_PIXELS} are read: crop it")
+
+
+def _check_header(path: Path, header: Any) -> None:
+    """Refuse an OpenEXR or HDR file that is not a flat scene-linear picture of floats."""
+    _check_size(path, header.width, header.height)
+    names, space = set(header.channelnames), header.get_string_attribute("colorInteropID")
+    if header.deep or header.depth != 1 or str(header.format) not in ("half", "float"):
+        raise PhotoError(f"{path}: holds no flat picture of half or float samples; convert it")
+    if not (names >= set("RGB") or len(names - {"A"}) == 1):
+        raise PhotoError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
+    if space and space != "unknown" and not space.startswith("lin_"):
+        raise PhotoError(f"{path}: calls itself {space}, which is not scene-linear; give the linear file")
+
+
+def _check_scale(path: Path, shape: tuple[int, ...], scale: int) -> None:
+    """Refuse a scale that is no scale or leaves no room for a window."""
+    side = min(shape[:2])
+    if scale < 1:
+        raise PhotoError(f"{path}: a scale of {scale} is none; give 1 or more")
+    if side // scale < WINDOW_SIZE:
+        raise PhotoError(f"{path}: {side} rows or columns at scale {scale} are too few; windows need {WINDOW_SIZE}")
+
+
+def _fitted(samples: NDArray[Any], scale: int, path: Path) -> tuple[NDArray[np.float16], list[str]]:
+    """Return an HDR picture without negative values, averaged and times a power of two, and what was done to it."""
+    negative = float((samples < 0).mean())
+    pixels = area_averaged(np.maximum(np.nan_to_num(samples, nan=0, posinf=np.inf, neginf=0), 0), scale)
+    exponent = round(float(np.log2(MEDIAN_LUMINANCE / np.median(_lit(pixels, path)))))
+    pixels = np.ldexp(pixels, exponent)
+    clipped = int((pixels > LARGEST).any(axis=2).sum())
+    done = [f"scale=2^{exponent}"]
+    done += [f"{negative:.2g} negative samples set to 0"] if negative else []
+    done += [f"{clipped} px clipped at {LARGEST:.0f} after scale"] if clipped else []
+    return np.minimum(pixels, np.float32(LARGEST)).astype(np.float16), done
+
+
+def _lit(pixels: NDArray[np.float32], path: Path) -> NDArray[np.float32]:
+    """Return the positive and finite luminances of a picture, and refuse one that has none."""
+    luminance = (pixels @ LUMINANCE).ravel()
+    lit: NDArray[np.float32] = luminance[(luminance > 0) & np.isfinite(luminance)]
+    if not lit.size:
+        raise PhotoError(f"{path}: is black, or without a finite value; give another photograph")
+    return lit
+
+
+def _three_channels(pixels: NDArray[Any]) -> NDArray[Any]:
+    """Return (H, W, 3) from one of (H, W), (H, W, 1) and (H, W, 3)."""
+    return np.broadcast_to(pixels.reshape(*pixels.shape[:2], -1), (*pixels.shape[:2], 3))
+
+
+def _reason(problem: rawpy.LibRawError) -> str:
+    """Return LibRaw's message, which comes as bytes."""
+    message = problem.args[0] if problem.args else type(problem).__name__
+    return message.decode(errors="replace") if isinstance(message, bytes) else str(message)

@@ -1,0 +1,124 @@
+"""Which scenes and which curves are held out: ``python -m training.data.splits --data DATA`` writes training/data/splits.json.
+
+Scenes are split in `training.data.scenes`; curves are held out by whole groups, because DoRF holds near-duplicates.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from scipy.cluster.hierarchy import fcluster, linkage
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.files import atomic_write_text
+from training.data.curves import read_dorf
+from training.data.scenes import SPLIT_SEED, split_scenes
+
+#: The splits that models are trained and measured by.
+SPLITS_FILE = Path(__file__).with_name("splits.json")
+
+#: No two curves of a group are farther apart than this, in units of E_est.
+GROUP_DIAMETER = 1.0
+
+#: Share of the curves that P2 holds out, rounded down to whole groups.
+HELD_OUT_SHARE = 0.2
+
+
+def curve_groups(dorf: np.ndarray) -> np.ndarray:
+    """Return the group of each curve, int (N,), numbered from 0 in order of first appearance.
+
+    Complete-link hierarchical clustering on the L2 distance, so that no two curves of one group are farther apart than
+    `GROUP_DIAMETER`: DoRF's 201 curves fall into 48 groups.
+
+    Parameters
+    ----------
+    dorf : ndarray, shape (N, 1024)
+        Responses at uniform irradiances.
+    """
+    labels = fcluster(linkage(dorf, method="complete"), GROUP_DIAMETER, criterion="distance")
+    _, first, groups = np.unique(labels, return_index=True, return_inverse=True)
+    return np.argsort(np.argsort(first))[groups]
+
+
+def held_out_curves(dorf: np.ndarray, *, seed: int = SPLIT_SEED) -> np.ndarray:
+    """Return the sorted indices of the curves that P2 holds out: whole groups, drawn at random, a fifth of the curves.
+
+    Groups are drawn in random order and taken where they still fit into `HELD_OUT_SHARE` of the curves.
+
+    Parameters
+    ----------
+    dorf : ndarray, shape (N, 1024)
+        Responses at uniform irradiances.
+    seed : int
+        The same seed holds out the same groups.
+    """
+    groups = curve_groups(dorf)
+    sizes, room = np.bincount(groups), round(HELD_OUT_SHARE * len(dorf))
+    taken = []
+    for group in np.random.default_rng(seed).permutation(len(sizes)):
+        if sizes[group] <= room:
+            taken.append(group)
+            room -= sizes[group]
+    return np.flatnonzero(np.isin(groups, taken))
+
+
+def found_splits(data: Path) -> dict[str, Any]:
+    """Return what splits.json must hold for the scenes and curves in the folder `data`."""
+    dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    scenes = split_scenes(data / "linear", brought=False)
+    return {
+        "seed": SPLIT_SEED,
+        "scenes": {split: [name for name, _ in members] for split, members in scenes.items()},
+        "curve_group_diameter": GROUP_DIAMETER,
+        "curve_groups": curve_groups(dorf).tolist(),
+        "held_out_curves": held_out_curves(dorf).tolist(),
+    }
+
+
+def checked_splits(data: Path) -> dict[str, Any]:
+    """Return the splits in training/data/splits.json.
+
+    Raises
+    ------
+    CRFNetError
+        If the scenes or curves in the folder `data` are split otherwise: figures would not be comparable.
+    """
+    splits: dict[str, Any] = json.loads(SPLITS_FILE.read_text())
+    found = found_splits(data)
+    differing = [name for name in splits if splits[name] != found[name]]
+    if differing:
+        raise CRFNetError(
+            f"{data}: {' and '.join(differing)} differ from {SPLITS_FILE.name}; restore the data, or write the splits"
+            " anew (python -m training.data.splits) and train every model again"
+        )
+    return splits
+
+
+def splits_text(splits: dict[str, Any]) -> str:
+    """Return the JSON text of splits, one entry a line."""
+    entries = []
+    for name, value in splits.items():
+        if isinstance(value, dict):
+            inner = ",\n".join(f"  {json.dumps(key)}: {json.dumps(item)}" for key, item in value.items())
+            entries.append(f" {json.dumps(name)}: {{\n{inner}\n }}")
+        else:
+            entries.append(f" {json.dumps(name)}: {json.dumps(value)}")
+    return "{\n" + ",\n".join(entries) + "\n}\n"
+
+
+def main() -> None:
+    """Write the splits."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
+    splits = found_splits(parser.parse_args().data)
+    atomic_write_text(SPLITS_FILE, splits_text(splits), overwrite=True)
+    groups, held_out = max(splits["curve_groups"]) + 1, len(splits["held_out_curves"])
+    print(f"wrote {SPLITS_FILE.name}: {groups} groups of curves, {held_out} curves held out")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,1 @@
+"""The photograph network: its shards of statistics, the network itself, the training."""

@@ -1,0 +1,115 @@
+"""Make the bundled photograph, tests/data/plate.jpg, whose true response is known.
+
+    python -m training.synthesis.demo_plate <site-packages>/bpy/4.5/datafiles/studiolights/world/forest.exr
+
+The scene is one of Blender's studio lights (CC0, Greg Zaal's "Ninomaru Teien" at Poly Haven), cropped but never
+resampled: averaging would mix irradiance before the camera. The camera is simulated: exposure, photon and read
+noise, an in-camera-like response written down below, 8 bits, JPEG. The same source gives the same bytes.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.files import atomic_write, atomic_write_text
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.transfer_functions import srgb_encode
+
+Floats = NDArray[np.float64]
+
+#: Rows and columns of the panorama (1024 x 512) that make the photograph, 672 x 378.
+ROWS, COLUMNS = range(84, 462), range(300, 972)
+#: Share of the values (in percent) below the sensor's clipping.
+EXPOSED = 95.0
+#: Noise variance at irradiance E is SHOT * E + READ**2, with 1 at clipping: about ISO 400 of a full-frame camera.
+SHOT, READ = 5e-5, 4e-4
+SEED = 2017
+JPEG_QUALITY = 95
+
+#: Highlight roll-off (1 is none) and strength of the S-curve (0 is none, 1 is smoothstep).
+ROLL_OFF, CONTRAST = 2.0, 0.4
+
+
+def camera_response(irradiance: Floats) -> Floats:
+    """Return brightness f(E) of the simulated camera: roll-off, sRGB encoding, S-curve.
+
+    With s = `ROLL_OFF`, k = `CONTRAST`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
+    f = (1 - k) v + k v^2 (3 - 2 v). It is nobody's measured curve, only of the kind that cameras have.
+
+    Parameters
+    ----------
+    irradiance : ndarray, float64
+        Relative irradiance E in [0, 1], any shape.
+    """
+    rolled = ROLL_OFF * irradiance / (1 + (ROLL_OFF - 1) * irradiance)
+    encoded = srgb_encode(rolled)
+    return (1 - CONTRAST) * encoded + CONTRAST * encoded**2 * (3 - 2 * encoded)
+
+
+def read_scene(studio_light: str | Path) -> Floats:
+    """Return the linear scene, float64 (H, W, 3), any scale.
+
+    Raises
+    ------
+    PhotoError
+        If the file cannot be read.
+    """
+    image = oiio.ImageBuf(str(studio_light))
+    if image.has_error or not image.initialized:
+        raise PhotoError(f"{studio_light}: cannot be read; give the forest.exr of Blender's studio lights")
+    panorama: Floats = np.asarray(image.get_pixels(oiio.FLOAT), dtype=np.float64)
+    return panorama[np.ix_(ROWS, COLUMNS, range(3))]
+
+
+def photograph(scene: Floats) -> NDArray[np.uint8]:
+    """Return what the simulated camera makes of a linear scene, uint8 (H, W, 3)."""
+    exposed = np.clip(scene / np.percentile(scene, EXPOSED), 0, 1)
+    noise = np.random.default_rng(SEED).standard_normal(scene.shape) * np.sqrt(SHOT * exposed + READ**2)
+    return np.rint(255 * camera_response(np.clip(exposed + noise, 0, 1))).astype(np.uint8)
+
+
+def write_photograph(path: Path, pixels: NDArray[np.uint8]) -> None:
+    """Write the JPEG, without chroma subsampling and without metadata that names the software.
+
+    Raises
+    ------
+    PhotoError
+        If the file cannot be written.
+    """
+    height, width, channels = pixels.shape
+    spec = oiio.ImageSpec(width, height, channels, oiio.UINT8)
+    spec["Compression"] = f"jpeg:{JPEG_QUALITY}"
+    spec["jpeg:subsampling"] = "4:4:4"
+    with atomic_write(path, overwrite=True, error=PhotoError) as temporary:
+        image = oiio.ImageBuf(spec)
+        image.set_pixels(image.roi, pixels)
+        if not image.write(str(temporary)):
+            raise PhotoError(f"{path}: {image.geterror()}")
+
+
+def write_response(path: Path, curve: ResponseCurve) -> None:
+    """Write irradiance and brightness as CSV, one row per sample."""
+    rows = zip(np.linspace(0, 1, SAMPLES), curve.brightness, strict=True)
+    lines = ["irradiance,brightness", *(f"{e:.9g},{b:.9g}" for e, b in rows), ""]
+    atomic_write_text(path, "\n".join(lines), overwrite=True, error=PhotoError)
+
+
+def main() -> None:
+    """Write plate.jpg and plate_response.csv."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("studio_light", type=Path, help="forest.exr of Blender's studio lights")
+    parser.add_argument("--out", type=Path, default=Path("tests/data"), help="folder to write to (tests/data)")
+    options = parser.parse_args()
+    write_photograph(options.out / "plate.jpg", photograph(read_scene(options.studio_light)))
+    curve = ResponseCurve.from_samples(camera_response(np.linspace(0, 1, SAMPLES)))
+    write_response(options.out / "plate_response.csv", curve)
+
+
+if __name__ == "__main__":
+    main()
