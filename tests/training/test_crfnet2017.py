@@ -23,7 +23,7 @@ from training.crfnet2017.pack import area_scaled, read_pack, write_scenes
 from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
 from training.crfnet2017.stages import StageTask
 from training.crfnet2017.train import Place, Trainer, train
-from training.crfnet2017.windows import LinearWindows, WindowStream, code_table, draw_windows, photographed
+from training.crfnet2017.windows import LinearWindows, WindowStream, code_table, draw_windows, render_windows
 from training.export.model_folder import (
     PARITY,
     UNCALIBRATED,
@@ -103,7 +103,7 @@ def head_gradient(pack, rank):
     torch.manual_seed(1)
     network, task = CRFNet(), StageTask("regress", pack.curves, squared=False, device=CPU)
     (batch,) = WindowStream(pack, batch=2, steps=range(1), seed=1, rank=rank)
-    task.loss(network(photographed(batch, torch.from_numpy(pack.curves))), batch.classes).backward()
+    task.loss(network(render_windows(batch, torch.from_numpy(pack.curves))), batch.classes).backward()
     return network.head.weight.grad
 
 
@@ -146,7 +146,7 @@ def test_an_absent_pack_is_named(tmp_path):
 
 
 def test_windows_meet_the_papers_rule(pack):
-    windows = photographed(draw_windows(pack, 6, np.random.default_rng(1)), torch.from_numpy(pack.curves))
+    windows = render_windows(draw_windows(pack, 6, np.random.default_rng(1)), torch.from_numpy(pack.curves))
     assert windows.shape == (6, 3, 227, 227)
     assert min(filled_bins(window.numpy()) for window in windows) >= 220
 
@@ -166,7 +166,7 @@ def test_a_photograph_gives_several_windows_if_asked(pack):
 
 def test_the_device_makes_the_codes_of_the_host(pack):
     batch = draw_windows(pack, 2, np.random.default_rng(2))
-    codes = (photographed(batch, torch.from_numpy(pack.curves)) * 255).permute(0, 2, 3, 1).round().byte().numpy()
+    codes = (render_windows(batch, torch.from_numpy(pack.curves)) * 255).permute(0, 2, 3, 1).round().byte().numpy()
     for n, curve in enumerate(batch.classes):
         table = code_table(pack.curves[curve], float(batch.exposures[n]))
         assert np.mean(codes[n] != table[batch.irradiance[n].numpy().view(np.uint16)]) < 1e-3
@@ -175,7 +175,7 @@ def test_the_device_makes_the_codes_of_the_host(pack):
 def test_a_known_irradiance_gets_a_known_code():
     irradiance = torch.full((1, 227, 227, 3), 0.5, dtype=torch.float16)
     square = torch.linspace(0, 1, 1024)[None] ** 2
-    windows = photographed(LinearWindows(irradiance, torch.tensor([0]), torch.tensor([1.2])), square)
+    windows = render_windows(LinearWindows(irradiance, torch.tensor([0]), torch.tensor([1.2])), square)
     assert windows.unique().tolist() == pytest.approx([92 / 255])
 
 

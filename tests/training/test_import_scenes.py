@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("rawpy", reason="bringing photographs needs the train extra")
 
 from crfnet_core.errors import PhotoError
-from training.data.import_scenes import COLUMNS, bring, main
+from training.data.import_scenes import COLUMNS, import_scene, main
 from training.data.linear_files import automatic_scale, linear_scene
 from training.data.scenes import area_averaged, read_scene, split_scenes
 
@@ -142,14 +142,14 @@ def out(tmp_path):
 @pytest.mark.parametrize(("camera", "pattern"), [("one", "RGGB"), ("two", "BGGR"), ("one", "GRBG")])
 def test_raw_grays_are_the_scene(tmp_path, out, camera, pattern):
     scene = patches(ramp(1.0))
-    bring(write_dng(tmp_path / "ramp.dng", scene, camera=camera, pattern=pattern), out)
+    import_scene(write_dng(tmp_path / "ramp.dng", scene, camera=camera, pattern=pattern), out)
     means = patch_means(pixels_of(out / "ramp.exr"), PATCH)
     np.testing.assert_allclose(means, patch_means(scene, PATCH), rtol=0.01)
 
 
 def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
     scene = patches(ramp(1.0))
-    bring(write_dng(tmp_path / "warm.dng", scene, light=(1.5, 1.0, 0.4)), out)
+    import_scene(write_dng(tmp_path / "warm.dng", scene, light=(1.5, 1.0, 0.4)), out)
     means = patch_means(pixels_of(out / "warm.exr"), PATCH)
     np.testing.assert_allclose(means, patch_means(scene, PATCH), rtol=0.01)
 
@@ -158,7 +158,7 @@ def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
 def test_raw_colours_are_the_scene_in_rec709(tmp_path, out, camera):
     colours = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
     scene = patches(colours)
-    bring(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
+    import_scene(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
     means = patch_means(pixels_of(out / "colours.exr"), PATCH)
     np.testing.assert_allclose(means, patch_means(scene, PATCH), rtol=0.01)
 
@@ -166,7 +166,7 @@ def test_raw_colours_are_the_scene_in_rec709(tmp_path, out, camera):
 def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out):
     values = []
     for top in (0.45, 0.9, 1.8):  # LibRaw would by itself take 0.9 for white
-        bring(write_dng(tmp_path / f"top{top}.dng", patches(ramp(top))), out)
+        import_scene(write_dng(tmp_path / f"top{top}.dng", patches(ramp(top))), out)
         values.append(patch_means(pixels_of(out / f"top{top}.exr"), PATCH))
     np.testing.assert_allclose(values[0][0, 0], 0.45, rtol=0.01)
     dark = 5 / 65535  # LibRaw rounds down a few times
@@ -176,7 +176,7 @@ def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out
 
 
 def test_a_saturated_colour_clips_channel_by_channel_below_or_at_1(tmp_path, out):
-    bring(write_dng(tmp_path / "red.dng", patches([[4.0, 0.4, 0.2]])), out)
+    import_scene(write_dng(tmp_path / "red.dng", patches([[4.0, 0.4, 0.2]])), out)
     means = patch_means(pixels_of(out / "red.exr"), PATCH)[0, 0]
     assert means[0] == 1
     assert (means[1:] < 1).all()
@@ -205,7 +205,7 @@ def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out,
 
 
 def test_raw_stays_as_stored_whatever_its_orientation(tmp_path, out):
-    row = bring(write_dng(tmp_path / "turned.dng", patches(ramp(1.0)), orientation=6), out)
+    row = import_scene(write_dng(tmp_path / "turned.dng", patches(ramp(1.0)), orientation=6), out)
     assert (row.width, row.height) == (320, 256)
 
 
@@ -213,7 +213,7 @@ def test_the_same_file_gives_the_same_bytes(tmp_path):
     path = write_dng(tmp_path / "ramp.dng", patches(ramp(1.0)))
     contents = []
     for folder in (tmp_path / "a", tmp_path / "b"):
-        bring(path, folder)
+        import_scene(path, folder)
         contents.append([(file.name, file.read_bytes()) for file in sorted(folder.iterdir())])
     assert contents[0] == contents[1]
     assert [name for name, _ in contents[0]] == ["manifest.csv", "ramp.exr"]
@@ -253,13 +253,13 @@ def test_hdr_is_averaged_in_linear_light(tmp_path):
 
 
 def test_gray_exr_has_three_equal_channels(tmp_path, out):
-    bring(write_float(tmp_path / "gray.exr", np.full((240, 240, 1), 0.18), names="Y"), out)
+    import_scene(write_float(tmp_path / "gray.exr", np.full((240, 240, 1), 0.18), names="Y"), out)
     np.testing.assert_array_equal(pixels_of(out / "gray.exr"), np.full((240, 240, 3), np.float16(0.18), np.float32))
 
 
 def test_a_panorama_keeps_the_rows_around_its_horizon(tmp_path, out):
     light = np.ones((300, 600, 3)) * np.arange(1, 301)[:, None, None]
-    row = bring(write_float(tmp_path / "sky.hdr", light), out, kind="panorama")
+    row = import_scene(write_float(tmp_path / "sky.hdr", light), out, kind="panorama")
     assert (row.kind, row.width, row.height) == ("panorama band", 600, 240)
     assert pixels_of(out / "sky.exr")[0, 0, 0] == pytest.approx(31 / 1024, rel=0.01)
 
@@ -272,7 +272,7 @@ def test_a_photograph_is_no_panorama(tmp_path):
 
 def test_training_reads_the_new_folder(tmp_path, out):
     for name, top in (("a", 0.5), ("b", 1.0), ("c", 2.0)):
-        bring(write_dng(tmp_path / f"{name}.dng", patches(ramp(top))), out)
+        import_scene(write_dng(tmp_path / f"{name}.dng", patches(ramp(top))), out)
     scene = read_scene(out / "b.exr", False)
     assert scene.pixels.shape == (256, 320, 3)
     luminance = scene.pixels @ [0.2126, 0.7152, 0.0722]
@@ -295,23 +295,23 @@ def test_a_name_is_only_replaced_when_asked(tmp_path, out, capsys):
 
 def test_a_name_of_the_manifest_is_taken_though_its_file_is_away(tmp_path, out):
     path = write_dng(tmp_path / "ramp.dng", patches(ramp(1.0)))
-    bring(path, out)
+    import_scene(path, out)
     (out / "ramp.exr").unlink()
     with pytest.raises(PhotoError, match="is there already"):
-        bring(path, out)
+        import_scene(path, out)
 
 
 def test_a_file_of_the_folder_itself_is_refused(tmp_path, out):
-    bring(write_dng(tmp_path / "ramp.dng", patches(ramp(1.0))), out)
+    import_scene(write_dng(tmp_path / "ramp.dng", patches(ramp(1.0))), out)
     with pytest.raises(PhotoError, match="is a file of the folder"):
-        bring(out / "ramp.exr", out, overwrite=True)
+        import_scene(out / "ramp.exr", out, overwrite=True)
 
 
 def test_the_manifest_keeps_what_it_holds(tmp_path, out):
     out.mkdir(parents=True)
     text = ",".join(COLUMNS) + '\nold.exr,photograph,600,400,elsewhere,CC0,"one, two"\n'
     (out / "manifest.csv").write_text(text)
-    bring(write_dng(tmp_path / "new.dng", patches(ramp(1.0))), out)
+    import_scene(write_dng(tmp_path / "new.dng", patches(ramp(1.0))), out)
     expected = text + "new.exr,photograph,320,256,brought: new.dng,not stated,sensor white = 1\n"
     assert (out / "manifest.csv").read_text() == expected
 
@@ -320,7 +320,7 @@ def test_another_manifest_is_refused(tmp_path, out):
     out.mkdir(parents=True)
     (out / "manifest.csv").write_text("name,split\na.exr,train\n")
     with pytest.raises(PhotoError, match=r"needs the columns file, kind, width, .*, and no more; found name, split"):
-        bring(write_dng(tmp_path / "new.dng", patches(ramp(1.0))), out)
+        import_scene(write_dng(tmp_path / "new.dng", patches(ramp(1.0))), out)
     assert [path.name for path in out.iterdir()] == ["manifest.csv"]
 
 
@@ -340,7 +340,7 @@ def test_two_files_of_one_name_are_refused(tmp_path, out, capsys):
 
 
 def bad_files(folder):
-    """Write files that cannot be brought; return name -> what is said of each."""
+    """Write files that cannot be imported; return name -> what is said of each."""
     whole = write_dng(folder / "whole.dng", patches(ramp(1.0))).read_bytes()
     exr = write_float(folder / "whole.exr", np.full((240, 240, 3), 0.5)).read_bytes()
     encoded = oiio.ImageBuf(oiio.ImageSpec(240, 240, 3, oiio.UINT8))
@@ -385,7 +385,7 @@ def test_bad_files_are_one_line_each_and_stop_no_others(tmp_path, out, capsys):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == len(said)
     for line, (name, text) in zip(lines, said.items(), strict=True):
-        assert line.startswith(f"bring: error: {tmp_path / name}: ")
+        assert line.startswith(f"import_scenes: error: {tmp_path / name}: ")
         assert text in line
     assert sorted(path.name for path in out.iterdir()) == ["good.exr", "manifest.csv"]
     assert [row["file"] for row in manifest(out)] == ["good.exr"]

@@ -29,7 +29,7 @@ from training.crfnet2017.pack import ScenePack, read_pack
 from training.crfnet2017.recipes import RECIPES, RunConfig, learning_rate, make_optimizer
 from training.crfnet2017.runlog import Clock, draw_log, write_log
 from training.crfnet2017.stages import STAGES, StageTask
-from training.crfnet2017.windows import LinearWindows, WindowStream, draw_windows, photographed
+from training.crfnet2017.windows import LinearWindows, WindowStream, draw_windows, render_windows
 
 #: Validation windows, the same for every run on a pack, and how many go through the network at once.
 VALIDATION_WINDOWS, VALIDATION_BATCH = 400, 25
@@ -189,7 +189,7 @@ class Trainer:
 
     def _outputs(self, network: nn.Module, batch: LinearWindows) -> Tensor:
         """Return the network's outputs for a batch on its device."""
-        windows = photographed(batch, self.curves)
+        windows = render_windows(batch, self.curves)
         order = torch.channels_last if self.config.recipe.channels_last else torch.contiguous_format
         with torch.autocast(self.place.device.type, torch.bfloat16, enabled=self.config.recipe.mixed):
             outputs: Tensor = network(windows.contiguous(memory_format=order))
@@ -244,7 +244,7 @@ def _start(config: RunConfig, task: StageTask, scenes: ScenePack, place: Place, 
     network = CRFNet(task.outputs)
     if config.init != "none" and not last.exists():
         windows = draw_windows(scenes, STATISTICS_WINDOWS, np.random.default_rng([config.seed, 2017]))
-        start_from(network, Path(config.init), photographed(windows, torch.from_numpy(scenes.curves)))
+        start_from(network, Path(config.init), render_windows(windows, torch.from_numpy(scenes.curves)))
     order = torch.channels_last if config.recipe.channels_last else torch.contiguous_format
     network = network.to(place.device, memory_format=order)
     progress = Progress(network, make_optimizer(network, config.recipe))

@@ -2,7 +2,7 @@
 
 A photograph is a scene, a curve drawn evenly from the 201, and an exposure of s_crf times 0.6, 0.8, 1, 1.2 or 1.4. Its
 windows are those with at least 220 of the 256 code values over all channels (CRF-net paper, Sec. 3.2, 3.3). The host
-only cuts float16 irradiance; `photographed` does tone curve and 8-bit rounding on the device that trains.
+only cuts float16 irradiance; `render_windows` does tone curve and 8-bit rounding on the device that trains.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ from torch.utils.data import IterableDataset, get_worker_info
 
 from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
 from training.crfnet2017.pack import ScenePack, write_pack
-from training.synthesis.camera import EXPOSURE_FACTORS, responded
+from training.synthesis.camera import EXPOSURE_FACTORS, apply_response
 
 #: Finite float16 that are not negative.
 FLOAT16_CODES = 31744
@@ -126,7 +126,7 @@ class WindowStream(IterableDataset[LinearWindows]):
             yield draw_windows(self.pack, self.batch, rng, per_photograph=self.per_photograph)
 
 
-def photographed(windows: LinearWindows, curves: Tensor) -> Tensor:
+def render_windows(windows: LinearWindows, curves: Tensor) -> Tensor:
     """Return 8-bit windows in [0, 1], float32 (N, 3, 227, 227), on the device of `windows` and `curves` (201, 1024).
 
     As `code_table`, for every window its own: float16 has fewer values than a window has samples, so each value goes
@@ -146,7 +146,7 @@ def photographed(windows: LinearWindows, curves: Tensor) -> Tensor:
 
 def code_table(curve: np.ndarray, exposure: float) -> np.ndarray:
     """Return the 8-bit code, uint8 (31744,), of every float16 irradiance that is not negative, by its bits."""
-    return np.rint(responded(_float16_values() * np.float32(exposure), curve) * 255).astype(np.uint8)
+    return np.rint(apply_response(_float16_values() * np.float32(exposure), curve) * 255).astype(np.uint8)
 
 
 def _float16_values() -> np.ndarray:

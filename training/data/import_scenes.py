@@ -23,7 +23,7 @@ from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text, check_target
 from crfnet_core.image_io import first_line
 from training.data.linear_files import LEAST_SIDE, linear_scene
-from training.data.scenes import BROUGHT
+from training.data.scenes import IMPORTED
 
 #: What the manifest calls each kind.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
@@ -45,7 +45,7 @@ class ManifestRow:
 COLUMNS = tuple(field.name for field in fields(ManifestRow))
 
 
-def bring(
+def import_scene(
     path: str | Path,
     folder: str | Path,
     *,
@@ -85,7 +85,7 @@ def bring(
         raise PhotoError(f"{path}: is a file of the folder {folder} itself; give files from elsewhere")
     pixels, notes = linear_scene(path, is_panorama=kind == "panorama", scale=scale)
     height, width, _ = pixels.shape
-    row = ManifestRow(target.name, KINDS[kind], width, height, f"{BROUGHT} {path.name}", licence, "; ".join(notes))
+    row = ManifestRow(target.name, KINDS[kind], width, height, f"{IMPORTED} {path.name}", licence, "; ".join(notes))
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
@@ -157,11 +157,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             if names[path.stem] > 1:
                 raise PhotoError(f"{path}: {names[path.stem]} of these files would become {path.stem}.exr; rename them")
-            row = bring(path, options.out, overwrite=options.overwrite, **settings)
+            row = import_scene(path, options.out, overwrite=options.overwrite, **settings)
             print(f"{options.out / row.file}: {row.kind}, {row.width} x {row.height}, {row.notes}")
         except CRFNetError as problem:
             failed += 1
-            print(f"bring: error: {problem}", file=sys.stderr)
+            print(f"import_scenes: error: {problem}", file=sys.stderr)
     return 2 if failed else 0
 
 

@@ -18,7 +18,7 @@ SPLIT_SEED = 2017
 TEST_SCENES, VALIDATION_SCENES = 20, 12
 
 #: How the source of a scene begins in manifest.csv that `training.data.import_scenes` added.
-BROUGHT = "brought:"
+IMPORTED = "brought:"
 
 #: Luminance weights of linear Rec. 709.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
@@ -39,7 +39,7 @@ class Scene:
         return cls(name, pixels / np.exp(np.log(luminance[luminance > 0]).mean()), is_panorama)
 
 
-def split_scenes(folder: Path, *, brought: bool = True) -> dict[str, list[tuple[str, bool]]]:
+def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[tuple[str, bool]]]:
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
 
     A quarter of the perspective photographs is tested, none validates; the rest of each split are panoramas. What
@@ -48,10 +48,10 @@ def split_scenes(folder: Path, *, brought: bool = True) -> dict[str, list[tuple[
     """
     with (folder / "manifest.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    own = [row.get("source", "").startswith(BROUGHT) for row in rows]
+    own = [row.get("source", "").startswith(IMPORTED) for row in rows]
     listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
     scenes = sorted(scene for scene, is_own in zip(listed, own, strict=True) if not is_own)
-    more = sorted(scene for scene, is_own in zip(listed, own, strict=True) if is_own and brought)
+    more = sorted(scene for scene, is_own in zip(listed, own, strict=True) if is_own and with_imported)
     rng = np.random.default_rng(SPLIT_SEED)
     panoramas = [scenes[i] for i in rng.permutation(len(scenes)) if scenes[i][1]]
     photographs = [scene for scene in scenes if not scene[1]]

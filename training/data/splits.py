@@ -66,10 +66,10 @@ def held_out_curves(dorf: np.ndarray, *, seed: int = SPLIT_SEED) -> np.ndarray:
     return np.flatnonzero(np.isin(groups, taken))
 
 
-def found_splits(data: Path) -> dict[str, Any]:
+def compute_splits(data: Path) -> dict[str, Any]:
     """Return what splits.json must hold for the scenes and curves in the folder `data`."""
     dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
-    scenes = split_scenes(data / "linear", brought=False)
+    scenes = split_scenes(data / "linear", with_imported=False)
     return {
         "seed": SPLIT_SEED,
         "scenes": {split: [name for name, _ in members] for split, members in scenes.items()},
@@ -88,7 +88,7 @@ def checked_splits(data: Path) -> dict[str, Any]:
         If the scenes or curves in the folder `data` are split otherwise: figures would not be comparable.
     """
     splits: dict[str, Any] = json.loads(SPLITS_FILE.read_text())
-    found = found_splits(data)
+    found = compute_splits(data)
     differing = [name for name in splits if splits[name] != found[name]]
     if differing:
         raise CRFNetError(
@@ -114,7 +114,7 @@ def main() -> None:
     """Write the splits."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
-    splits = found_splits(parser.parse_args().data)
+    splits = compute_splits(parser.parse_args().data)
     atomic_write_text(SPLITS_FILE, splits_text(splits), overwrite=True)
     groups, held_out = max(splits["curve_groups"]) + 1, len(splits["held_out_curves"])
     print(f"wrote {SPLITS_FILE.name}: {groups} groups of curves, {held_out} curves held out")

@@ -31,8 +31,7 @@ from crfnet_core.windows import WINDOW_SIZE, cut_windows, select_windows
 from training.data.splits import SPLITS_FILE
 from training.network.model import NetworkConfig, PhotographNet, ShippedNetwork
 from training.network.shards import photograph_source
-from training.synthesis.camera import Capture, automatic_exposure
-from training.synthesis.capture import synthetic_photo
+from training.synthesis.camera import Capture, automatic_exposure, render_photo, sensor_light
 
 OPSET = 18
 
@@ -172,7 +171,8 @@ def calibration_rows(data: Path, folder: Path, number: int) -> np.ndarray:
     for _ in range(CALIBRATION_PHOTOS):
         curve, _ = source.draw_curve(rng)
         exposure = automatic_exposure(curve, source.luminance) * rng.uniform(0.5, 1.6)
-        photo = synthetic_photo(source.scenes[number], curve, exposure, rng, Capture.draw(rng))
+        scene, capture = source.scenes[number], Capture.draw(rng)
+        photo = render_photo(sensor_light(scene, rng), curve, exposure, rng, name=scene.name, capture=capture)
         estimate = estimate_response(photo, network=network)
         true = ResponseCurve.from_samples(curve)
         residual = np.abs(true.brightness - estimate.curve.brightness)
