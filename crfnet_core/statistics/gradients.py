@@ -24,7 +24,7 @@ SHAPES = {"histogram": (3, LEVELS), "gradients": (len(STRIDES), 3, GRADIENT_SUMS
 def level_histogram(planes: Uint8Array) -> Float64Array:
     """Return the number of samples at each level, shape (3, LEVELS), of planes of codes (3, N, N)."""
     counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in planes])  # (3, 256)
-    histogram: Float64Array = counts @ interpolation_weights(CODES, LEVELS).astype(np.float64)
+    histogram: Float64Array = np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64)
     return histogram
 
 
