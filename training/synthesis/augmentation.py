@@ -19,7 +19,7 @@ def recolor(light: Float32Array, rng: np.random.Generator) -> Float32Array:
 
     A fraction `GRAY` of them loses all colour instead.
     """
-    turned = np.rot90(light, rng.integers(4), axes=(1, 2))
+    turned = np.rot90(light, int(rng.integers(4)), axes=(1, 2))
     turned = turned[:, :, ::-1] if rng.random() < 0.5 else turned
     if rng.random() < GRAY:
         return np.repeat((turned @ LUMINANCE)[..., None], 3, axis=-1)

@@ -173,7 +173,8 @@ def render_photo(
     rows = ROWS_AT_A_TIME if capture.splits_into_rows else len(light)
     scale = np.float32(exposure)
     parts = [simulate_capture(light[y : y + rows] * scale, curve, capture, rng) for y in range(0, len(light), rows)]
-    return Photo(pixels=np.concatenate(parts) / np.float32(255), bit_depth=8, is_gray=is_gray, path=Path(name))
+    pixels = np.divide(np.concatenate(parts), np.float32(255), dtype=np.float32)
+    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(name))
 
 
 def simulate_capture(
