@@ -1,9 +1,15 @@
 """The documents name functions and equations that there are."""
 
 import ast
+import math
 import re
 
 import pytest
+
+from crfnet_core import emor, response, windows
+from crfnet_core.network import pooling, uncertainty
+from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
+from ocio.luts import lut1d
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md")
 
@@ -104,6 +110,39 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
     equations = {int(number): body for body, number in re.findall(r"```math\n(.*?)\\tag\{(\d+)\}", text, re.DOTALL)}
     parts = {1: "f_0(E)", 2: "(1 - \\alpha) \\, g(a)", 3: "h \\, k(m)", 4: "\\log p(b)", 5: "\\rho(d)", 6: "\\log g(a)"}
     assert not [number for number, part in parts.items() if part not in equations[number]]
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        f"\\sum_{{k=1}}^{{{emor.COMPONENTS}}}",
+        f"squares of {windows.WINDOW_SIZE} x {windows.WINDOW_SIZE} samples",
+        f"at least {windows.FULL_COVERAGE} of the 256 bins",
+        f"After {windows.POSITIONS_TRIED} draws",
+        f"{windows.WINDOWS_PER_PHOTOGRAPH} in a photograph",
+        f"\\min(H, W) / {windows.WINDOWS_ACROSS * windows.WINDOW_SIZE}",
+        f"Of each channel at {gradients.LEVELS} levels",
+        f"{edges.GRID} x {edges.GRID} cells",
+        f"at two of {channel_equations.EQUATION_LEVELS} levels",
+        f"asked of {candidates.CANDIDATE_COUNT} candidates, {len(candidates.FIRST_WEIGHTS)} values",
+        f"times {len(candidates.SECOND_WEIGHTS)} of $c_2$",
+        f"{candidates.IDENTITY_FRACTION:.0%}".replace("%", " % of the identity"),
+        f"$s = {mixing.RATIO_NOISE}$",
+        f"by more than {mixing.LEAST_DIFFERENCE} codes",
+        f"1/{mixing.INNER} of the edge's height",
+        f"({shading.LITTLE[0]} to {shading.LITTLE[1]} codes)",
+        f"({shading.MUCH[0]} to {shading.MUCH[1]})",
+        f"s = {shading.OTHER_CHANGE} ",
+        f"The factor {pooling.OUTLIER_FACTOR:g} is ours",
+        f"\\varepsilon = 10^{{{math.log10(response.LEAST_SLOPE):.0f}}}",
+        f"$u < {uncertainty.GOOD:g}$, *usable* below {uncertainty.USABLE:g}",
+        f"at {lut1d.DEFAULT_LENGTH} uniform brightnesses",
+        f"at most {lut1d.MAX_END_SLOPE:g}",
+    ],
+)
+def test_the_numbers_of_the_method_are_those_of_the_code(root, sentence):
+    text = " ".join((root / "docs" / "METHOD.md").read_text(encoding="utf-8").split())
+    assert sentence in text
 
 
 def test_no_module_of_the_method_is_left_out(root):
