@@ -3,13 +3,14 @@
 import ast
 import math
 import re
+from inspect import signature
 
 import pytest
 
 from crfnet_core import emor, response, windows
 from crfnet_core.network import pooling, uncertainty
 from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
-from ocio.luts import lut1d
+from ocio.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md")
 
@@ -136,8 +137,8 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"The factor {pooling.OUTLIER_FACTOR:g} is ours",
         f"\\varepsilon = 10^{{{math.log10(response.LEAST_SLOPE):.0f}}}",
         f"$u < {uncertainty.GOOD:g}$, *usable* below {uncertainty.USABLE:g}",
-        f"at {lut1d.DEFAULT_LENGTH} uniform brightnesses",
-        f"at most {lut1d.MAX_END_SLOPE:g}",
+        f"at {signature(inverse_response_lut).parameters['length'].default} uniform brightnesses",
+        f"at most {MAX_END_SLOPE:g}",
     ],
 )
 def test_the_numbers_of_the_method_are_those_of_the_code(root, sentence):
