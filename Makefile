@@ -16,7 +16,7 @@ PHOTO := tests/data/plate.jpg
 DEMO := demo_out
 DATA ?=
 RUN ?= runs/model
-MODEL := crfnet_core/models/photograph-statistics
+MODEL := crfnet_core/models/photograph-statistics-1.0
 
 comma := ,
 

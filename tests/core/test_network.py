@@ -74,7 +74,7 @@ def test_a_flat_window_has_a_finite_answer(network, level):
 
 def test_a_model_is_found_by_its_name_or_its_folder(copied):
     assert model_folder() == DEFAULT_MODEL
-    assert model_folder("crfnet2017") == MODELS / "crfnet2017"
+    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.0") == MODELS / "crfnet2017-1.0"
     assert model_folder(copied) == copied
     assert model_folder("nonesuch").name == "nonesuch"
 
@@ -82,7 +82,7 @@ def test_a_model_is_found_by_its_name_or_its_folder(copied):
 def test_the_paper_s_network_runs_by_name(golden):
     network = ResponseNetwork.load("crfnet2017")
     found = predictions(network, golden["windows"] / np.float32(255))
-    assert network.config.name == "crfnet2017"
+    assert network.config.name == "crfnet2017-1.0"
     assert found.weights.shape == (3, 11)
     assert found.pooled is None
     assert len(set(found.expected_errors)) == 1
