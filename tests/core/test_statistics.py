@@ -30,6 +30,13 @@ def test_the_length_is_that_of_the_parts(smooth):
     assert found.dtype == np.float32
 
 
+def test_the_statistics_of_known_windows_have_not_changed(root):
+    """If they are meant to change: ``python -m tests.data.make_golden_statistics``, and train the network anew."""
+    with np.load(root / "tests" / "data" / "golden_statistics.npz") as golden:
+        for window, expected in zip(golden["windows"] / np.float32(255), golden["statistics"], strict=True):
+            np.testing.assert_allclose(window_statistics(window), expected, rtol=1e-4, atol=1e-3)
+
+
 def test_unpack_gives_back_what_was_packed():
     rng = np.random.default_rng(0)
     several = [{name: rng.random(shape, np.float32) for name, shape in SHAPES.items()} for _ in range(3)]

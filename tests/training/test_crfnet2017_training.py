@@ -56,14 +56,14 @@ def run(work_folder):
 
 
 @pytest.fixture(scope="module")
-def model(work_folder, run, root):
+def model(work_folder, run):
     """The model folder of the run, its uncertainty not fitted, with its golden file beside it."""
     model = work_folder / "crfnet2017"
     model.mkdir()
     network = rounded(load_network(run))
     export_onnx(network, WINDOWED, model / "model.onnx")
     write_config(model, WINDOWED, NOT_FITTED, read_run(run))
-    write_golden(network, WINDOWED, root / "tests" / "data" / "plate.jpg", work_folder / "golden.npz")
+    write_golden(network, WINDOWED, work_folder / "golden.npz")
     return model
 
 

@@ -19,7 +19,7 @@ CONFIG = NetworkConfig(width=64)
 
 
 @pytest.fixture(scope="module")
-def exported(tmp_path_factory, root):
+def exported(tmp_path_factory):
     """A run with random weights, its model folder and golden file."""
     folder = tmp_path_factory.mktemp("export")
     (folder / "run").mkdir()
@@ -31,7 +31,7 @@ def exported(tmp_path_factory, root):
     network = load_network(folder / "run")
     export_onnx(network, POOLING, folder / "model" / "model.onnx")
     write_config(folder / "model", POOLING, NOT_FITTED, record)
-    write_golden(network, POOLING, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
+    write_golden(network, POOLING, folder / "golden.npz")
     return folder
 
 

@@ -13,10 +13,9 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.windows import cut_windows, select_windows
 from training.crfnet2017.checkpoints import fold_normalisation
 from training.crfnet2017.network import CRFNet
+from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
 from training.export.onnx_graph import WINDOWED, rounded
 
@@ -58,13 +57,12 @@ def load_network(run: Path) -> ShippedCRFNet:
     return ShippedCRFNet(fold_normalisation(network), min(row[2] for row in state["rows"])).eval()
 
 
-def cost_of_rounding(network: ShippedCRFNet, plate: Path) -> float:
-    """Return the largest change of a weight (units of E_est) on the plate's windows when the network is `rounded`.
+def cost_of_rounding(network: ShippedCRFNet) -> float:
+    """Return the largest change of a weight (units of E_est) on the golden windows when the network is `rounded`.
 
     The network stays rounded.
     """
-    pixels = read_photo(plate).pixels
-    windows = torch.from_numpy(cut_windows(pixels, select_windows(pixels, count=3)))
+    windows = torch.from_numpy(golden_windows())
     with torch.inference_mode():
         before = network(windows)[0]
         return float((rounded(network)(windows)[0] - before).abs().max())
@@ -74,7 +72,7 @@ def main() -> None:
     """Export the best network of a run."""
     options = export_options((__doc__ or "").splitlines()[0]).parse_args()
     network = load_network(options.run)
-    print(f"half precision moves the weights by at most {cost_of_rounding(network, options.plate):.1e}")
+    print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
     write_model(network, WINDOWED, options)
 
 

@@ -9,26 +9,33 @@ import torch
 from torch import nn
 
 from crfnet_core.files import atomic_write
-from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.statistics import window_statistics
-from crfnet_core.windows import cut_windows, select_windows
+from crfnet_core.types import Float32Array
 from training.export.onnx_graph import POOLING, Signature
+
+#: Windows of the bundled plate and their statistics; written by tests/data/make_golden_statistics.py.
+GOLDEN_STATISTICS = Path(__file__).parents[2] / "tests" / "data" / "golden_statistics.npz"
 
 #: Largest difference allowed between PyTorch and onnxruntime, in weights (units of E_est) and log errors.
 PARITY = 2e-4
 
 
-def write_golden(network: nn.Module, signature: Signature, plate: Path, path: Path) -> None:
-    """Write three windows of a photograph, as uint8 codes, with the network's outputs for them, as NPZ."""
-    pixels = read_photo(plate).pixels
-    windows = cut_windows(pixels, select_windows(pixels, count=3))
+def golden_windows() -> Float32Array:
+    """Return three windows of the bundled plate, float32 (3, 227, 227, 3)."""
+    with np.load(GOLDEN_STATISTICS) as arrays:
+        windows: Float32Array = arrays["windows"] / np.float32(255)
+    return windows
+
+
+def write_golden(network: nn.Module, signature: Signature, path: Path) -> None:
+    """Write the outputs of a network for the golden windows, as NPZ."""
+    windows = golden_windows()
     inputs = np.stack([window_statistics(window) for window in windows]) if signature is POOLING else windows
     with torch.inference_mode():
         outputs = [output.numpy() for output in network(torch.from_numpy(inputs))]
     with atomic_write(path, overwrite=True) as temporary:
-        codes = np.rint(windows * 255).astype(np.uint8)
-        np.savez_compressed(temporary, windows=codes, **dict(zip(signature.output_names, outputs, strict=True)))
+        np.savez_compressed(temporary, **dict(zip(signature.output_names, outputs, strict=True)))
 
 
 def assert_parity(folder: Path, golden: Path) -> float:
@@ -41,7 +48,7 @@ def assert_parity(folder: Path, golden: Path) -> float:
     """
     with np.load(golden) as expected:
         network = ResponseNetwork.load(folder)
-        predicted = network.predict(network.inputs(expected["windows"] / np.float32(255)))
+        predicted = network.predict(network.inputs(golden_windows()))
         differences = [
             np.abs(predicted.weights - expected["weights"]).max(),
             np.abs(np.log(predicted.expected_errors) - expected["log_errors"]).max(),

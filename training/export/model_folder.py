@@ -86,7 +86,7 @@ def write_model(network: nn.Module, signature: Signature, options: argparse.Name
     options.out.mkdir(parents=True, exist_ok=True)
     export_onnx(network, signature, options.out / "model.onnx")
     write_config(options.out, signature, NOT_FITTED, record)
-    write_golden(network, signature, options.plate, options.golden)
+    write_golden(network, signature, options.golden)
     print(f"torch and onnxruntime differ by at most {assert_parity(options.out, options.golden):.1e}")
     uncertainty_model = fit_uncertainty_model(options.data, options.out, workers=options.workers)
     write_config(options.out, signature, uncertainty_model, record)
@@ -100,8 +100,7 @@ def export_options(description: str | None) -> argparse.ArgumentParser:
     parser.add_argument("--run", type=Path, required=True, help="folder written by the training")
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="the model's folder, named as the model")
-    parser.add_argument("--plate", type=Path, default=Path("tests/data/plate.jpg"))
-    parser.add_argument("--golden", type=Path, required=True)
+    parser.add_argument("--golden", type=Path, required=True, help="file of the golden predictions")
     parser.add_argument("--workers", type=int, default=2)
     return parser
 
