@@ -3,4 +3,5 @@
 images         write and read image files with OpenImageIO
 crafted_files  PNG, TIFF and JPEG files made by hand, whose headers say what no image writer would
 processes      start a process that Control-C can interrupt
+plates         plates to linearise, and what became of them
 """
