@@ -32,7 +32,7 @@ def load_config(path: str | Path) -> OCIO.Config:
     """
     try:
         return OCIO.Config.CreateFromFile(str(path))
-    except OCIO.Exception as problem:
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError(
             f"{path}: OpenColorIO refuses this config ({one_line(problem)}); mend it or choose a folder"
         ) from None

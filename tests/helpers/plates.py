@@ -60,13 +60,3 @@ def read_exr(path: Path) -> tuple[NDArray[np.float32], Any]:
 def attributes(spec: Any) -> dict[str, Any]:
     """Return the metadata of a header by name."""
     return {attribute.name: attribute.value for attribute in spec.extra_attribs}
-
-
-def listed(folder: Path) -> list[str]:
-    """Return the names in a folder, sorted."""
-    return sorted(path.name for path in folder.iterdir())
-
-
-def contents(folder: Path) -> dict[str, bytes]:
-    """Return the bytes of every file in a folder, by name."""
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}

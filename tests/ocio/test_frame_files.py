@@ -6,18 +6,11 @@ import pytest
 
 from crfnet_core.errors import PhotoError, PlateError
 from ocio.plates.frame_files import read_frame
+from tests.helpers.images import write_image
 
 
 def write_exr(path, values, names, **attributes):
-    spec = oiio.ImageSpec(values.shape[1], values.shape[0], values.shape[2], "float")
-    spec.channelnames = names
-    for name, value in attributes.items():
-        spec.attribute(name, value)
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec), output.geterror()
-    assert output.write_image(values.astype(np.float32))
-    output.close()
-    return path
+    return write_image(path, values.astype(np.float32), names=names, **attributes)
 
 
 def test_encoded_exr_keeps_its_values(tmp_path):

@@ -9,8 +9,9 @@ import pytest
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
 from ocio.plates.linear import PlateReport
+from tests.helpers.folders import listed
 from tests.helpers.images import write_image
-from tests.helpers.plates import LUT, SMALL, attributes, linearize, listed, read_exr
+from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr
 
 WIDE = np.random.default_rng(1).integers(0, 65536, (70, 90, 3)).astype(np.uint16)
 

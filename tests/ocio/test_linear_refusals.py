@@ -9,8 +9,9 @@ import pytest
 from crfnet_core.errors import PhotoError, PlateError
 from crfnet_core.image_io import read_codes
 from ocio.plates import exr, linear
+from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
-from tests.helpers.plates import LUT, SMALL, contents, linearize, listed, write_sequence
+from tests.helpers.plates import LUT, SMALL, linearize, write_sequence
 
 
 def test_our_own_output_is_refused_as_a_plate(tmp_path, out):
@@ -26,7 +27,7 @@ def test_bad_single_plate_gives_its_own_message(tmp_path, out):
     (tmp_path / "a.png").touch()
     with pytest.raises(PlateError, match=r"a\.png: the file is empty; copy it again$"):
         linearize(tmp_path / "a.png", out / "a.exr", LUT)
-    assert contents(out) == {}
+    assert tree(out) == {}
 
 
 def test_scene_linear_float_plates_are_refused(tmp_path, out):
@@ -51,7 +52,7 @@ def test_output_names_that_cannot_be(tmp_path, out, target, message):
     with pytest.raises(PlateError, match=message) as caught:
         linearize(write_sequence(tmp_path, (1, 2)), tmp_path / target, LUT)
     assert "\n" not in str(caught.value)
-    assert contents(out) == {}
+    assert tree(out) == {}
 
 
 @pytest.mark.parametrize(
@@ -85,7 +86,7 @@ def test_options_out_of_range(tmp_path, out, options, message):
     plate = write_image(tmp_path / "a.png", SMALL[..., :3])
     with pytest.raises(PlateError, match=message):
         linearize(plate, out / "a.exr", LUT, **options)
-    assert contents(out) == {}
+    assert tree(out) == {}
 
 
 def test_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
@@ -96,7 +97,7 @@ def test_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
     monkeypatch.setattr(linear, "write_exr", fail)
     with pytest.raises(PlateError, match=r"out/a\.exr: cannot be written"):
         linearize(write_image(tmp_path / "a.png", SMALL), out / "a.exr", LUT)
-    assert contents(out) == {}
+    assert tree(out) == {}
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device that is always full")

@@ -17,8 +17,9 @@ from crfnet_core.image_io import read_photo
 from ocio.luts.lut1d import Lut1D
 from ocio.plates import linear
 from ocio.plates.linear import STALE_SECONDS
+from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
-from tests.helpers.plates import LUT, SMALL, contents, linearize, listed, read_exr, write_sequence
+from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
 
 ROOT = Path(__file__).parents[2]
@@ -63,13 +64,13 @@ def test_workers_change_nothing(tmp_path, out, workers):
     expected = tmp_path / "expected"
     expected.mkdir()
     linearize(pattern, expected / "a.%d.exr", LUT)
-    assert contents(out) == contents(expected)
+    assert tree(out) == tree(expected)
 
 
 def test_finished_frames_are_left_alone(tmp_path, out):
     pattern = write_sequence(tmp_path, range(4))
     linearize(pattern, out / "a.%d.exr", LUT)
-    complete = contents(out)
+    complete = tree(out)
     (out / "a.2.exr").unlink()
     (out / "a.3.exr").write_bytes(b"finished elsewhere")
     calls = []
@@ -77,7 +78,7 @@ def test_finished_frames_are_left_alone(tmp_path, out):
     assert report.written == (out / "a.2.exr",)
     assert report.skipped == (out / "a.0.exr", out / "a.1.exr", out / "a.3.exr")
     assert calls == [(3, 4), (4, 4)]
-    assert contents(out) == complete | {"a.3.exr": b"finished elsewhere"}
+    assert tree(out) == complete | {"a.3.exr": b"finished elsewhere"}
 
 
 def test_overwrite_writes_everything_again(tmp_path, out):
