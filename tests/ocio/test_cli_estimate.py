@@ -10,7 +10,7 @@ import pytest
 from ocio import commands
 from ocio.cli import BAD_INPUT
 from ocio.luts.spi1d import read_spi1d
-from tests.helpers.folders import tree
+from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 
 FILES = {
@@ -25,7 +25,7 @@ FILES = {
 
 
 def test_writes_what_it_says(look):
-    assert {path.name for path in look.iterdir()} == FILES
+    assert set(listed(look)) == FILES
 
 
 def test_says_what_it_read_found_and_wrote(crfnet, plate, fixed_model, tmp_path):
@@ -79,7 +79,7 @@ def test_writes_nothing_outside_the_output_folder(crfnet, plate, fixed_model, tm
 def test_several_photographs_make_one_response(estimate, plate, tmp_path):
     other = shutil.copy(plate, tmp_path / "other.jpg")
     out = estimate(plate, other).out
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    names = set(listed(tmp_path / "out"))
     assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
     assert "20 windows agree" in out
 
@@ -88,9 +88,9 @@ def test_each_photograph_makes_its_own(estimate, plate, tmp_path):
     other = shutil.copy(plate, tmp_path / "other.jpg")
     done = estimate(plate, other, "--each")
     assert done.code == 0
-    listed = [line for line in done.out.splitlines() if ": good, expected error 0." in line]
-    assert [line.partition(":")[0] for line in listed] == ["plate.jpg", other.name]
-    names = {path.name for path in (tmp_path / "out").iterdir()}
+    lines = [line for line in done.out.splitlines() if ": good, expected error 0." in line]
+    assert [line.partition(":")[0] for line in lines] == ["plate.jpg", other.name]
+    names = set(listed(tmp_path / "out"))
     own = FILES - {"plate_sheet.png"}
     assert names == own | {name.replace("plate", "other") for name in own}
     config = (tmp_path / "out" / "config.ocio").read_text(encoding="utf-8")
@@ -106,7 +106,7 @@ def test_any_file_name_works(estimate, plate, tmp_path, name):
     photo = shutil.copy(plate, tmp_path / name)
     done = estimate(photo)
     assert (done.code, done.err) == (0, "")
-    assert len(list((tmp_path / "out").iterdir())) == len(FILES) - 1
+    assert len(listed(tmp_path / "out")) == len(FILES) - 1
 
 
 def test_what_is_there_stays_there(estimate, plate, tmp_path):
@@ -164,16 +164,6 @@ def test_exposure_goes_into_the_plate_and_the_config(estimate, plate, tmp_path, 
     np.testing.assert_allclose(brighter, 4 * read_image(look / "plate_linear.exr"), rtol=1e-6)
     converted = tmp_path / "converted.exr"
     config = tmp_path / "out" / "config.ocio"
-    oiiotool(
-        "--colorconfig",
-        config,
-        plate,
-        "--colorconvert",
-        "CRF plate",
-        "scene_linear",
-        "-d",
-        "float",
-        "-o",
-        converted,
-    )
+    convert = ("--colorconvert", "CRF plate", "scene_linear")
+    oiiotool("--colorconfig", config, plate, *convert, "-d", "float", "-o", converted)
     np.testing.assert_allclose(read_image(converted), brighter, atol=4 * tolerance.plate)
