@@ -44,14 +44,14 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
         (("A",), {}, "needs channels R, G and B, or a gray one; found A"),
     ],
 )
-def test_exr_that_is_no_encoded_plate(tmp_path, channels, attributes, message):
+def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, message):
     path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
     with pytest.raises(PlateError, match=message) as caught:
         read_frame(path)
     assert str(caught.value).startswith(str(path))
 
 
-def test_cut_exr_is_refused(tmp_path):
+def test_a_cut_exr_is_refused(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.random.default_rng(0).random((64, 64, 3)), ("R", "G", "B"))
     whole = path.read_bytes()
     for size in (0, 100, len(whole) // 2):

@@ -16,7 +16,7 @@ from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr
 WIDE = np.random.default_rng(1).integers(0, 65536, (70, 90, 3)).astype(np.uint16)
 
 
-def test_8_bit_values(tmp_path, out):
+def test_8_bit_codes_become_the_entries_of_the_lut(tmp_path, out):
     codes = np.arange(256, dtype=np.uint8).reshape(16, 16, 1).repeat(3, axis=2)
     report = linearize(write_image(tmp_path / "a.png", codes), out / "a.exr", LUT, depth="float")
     assert report == PlateReport((out / "a.exr",), (), ())
@@ -35,7 +35,7 @@ def test_half_is_the_rounded_float_and_the_default(tmp_path, out):
 
 
 @pytest.mark.parametrize("stops", [-2, 1, 0.5])
-def test_exposure_in_stops(tmp_path, out, stops):
+def test_the_exposure_is_in_stops(tmp_path, out, stops):
     path = write_image(tmp_path / "a.png", SMALL[..., :3])
     linearize(path, out / "a.exr", LUT, depth="float", exposure=stops)
     np.testing.assert_allclose(read_exr(out / "a.exr")[0], LUT.apply(SMALL[..., :3] / 255) * 2**stops, rtol=1e-6)
@@ -46,7 +46,7 @@ def test_great_exposures_fit_into_floats(tmp_path, out):
     assert np.isfinite(read_exr(out / "a.exr")[0]).all()
 
 
-def test_gray_plate_becomes_rgb(tmp_path, out):
+def test_a_gray_plate_becomes_rgb(tmp_path, out):
     linearize(write_image(tmp_path / "a.png", SMALL[..., :1]), out / "a.exr", LUT, depth="float")
     np.testing.assert_array_equal(
         read_exr(out / "a.exr")[0], np.repeat(LUT.apply(SMALL[..., :1] / 255), 3, axis=2).astype("f")
@@ -69,7 +69,7 @@ def test_gray_plate_becomes_rgb(tmp_path, out):
         ("alpha.exr", np.sort(SMALL.astype(np.float32) + 1, axis=2) / 256, {}),
     ],
 )
-def test_equals_oiiotool(tmp_path, out, oiiotool, tolerance, name, codes, options):
+def test_every_format_gives_what_oiiotool_gives(tmp_path, out, oiiotool, tolerance, name, codes, options):
     plate = write_image(tmp_path / name, codes, **options)
     write_spi1d(tmp_path / "x.spi1d", LUT)
     linearize(plate, out / "a.exr", LUT, depth="float")
@@ -78,7 +78,7 @@ def test_equals_oiiotool(tmp_path, out, oiiotool, tolerance, name, codes, option
     expected = read_exr(tmp_path / "expected.exr")[0]
     if codes.shape[2] == 1:
         expected = np.repeat(expected, 3, axis=2)
-    # 10 and 12 bits reach oiiotool widened to 16 by repeating bits, up to a code of 16 bits from code / 1023
+    # OpenImageIO widens 10 and 12 bits to 16 by repeating bits, so oiiotool may differ by codes of 16 bits.
     atol = 3 / 65535 if "oiio__BitsPerSample" in options else tolerance.plate
     np.testing.assert_allclose(read_exr(out / "a.exr")[0], expected, rtol=0, atol=atol)
 

@@ -23,7 +23,7 @@ def test_our_own_output_is_refused_as_a_plate(tmp_path, out):
     assert not (out / "b.exr").exists()
 
 
-def test_bad_single_plate_gives_its_own_message(tmp_path, out):
+def test_a_bad_single_plate_gives_its_own_message(tmp_path, out):
     (tmp_path / "a.png").touch()
     with pytest.raises(PlateError, match=r"a\.png: the file is empty; copy it again$"):
         linearize(tmp_path / "a.png", out / "a.exr", LUT)
@@ -48,7 +48,7 @@ def test_scene_linear_float_plates_are_refused(tmp_path, out):
         ("out/a.##.##.exr", "holds 2 frame placeholders"),
     ],
 )
-def test_output_names_that_cannot_be(tmp_path, out, target, message):
+def test_output_names_that_cannot_be_are_refused(tmp_path, out, target, message):
     with pytest.raises(PlateError, match=message) as caught:
         linearize(write_sequence(tmp_path, (1, 2)), tmp_path / target, LUT)
     assert "\n" not in str(caught.value)
@@ -82,14 +82,14 @@ def test_plates_are_never_replaced(tmp_path, plate, target):
         ({"frames": "1-3"}, "is a single file, which has no frames"),
     ],
 )
-def test_options_out_of_range(tmp_path, out, options, message):
+def test_options_out_of_range_are_refused(tmp_path, out, options, message):
     plate = write_image(tmp_path / "a.png", SMALL[..., :3])
     with pytest.raises(PlateError, match=message):
         linearize(plate, out / "a.exr", LUT, **options)
     assert tree(out) == {}
 
 
-def test_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
+def test_a_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
     def fail(path, header, pixels, *, name):
         path.write_bytes(b"half an EXR")
         raise PlateError(f"{name}: cannot be written (disk full); check the disk")
@@ -101,7 +101,7 @@ def test_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs the device that is always full")
-def test_full_disk(tmp_path):
+def test_a_full_disk_is_named(tmp_path):
     (tmp_path / "full.exr").symlink_to("/dev/full")
     spec = oiio.ImageSpec(90, 70, 4, "half")
     with pytest.raises(PlateError, match=r"a\.exr: cannot be written \(.*\); check the disk") as caught:

@@ -37,7 +37,7 @@ linearize_plates(sequence, targets, lut, options, progress=lambda *_: print(flus
 """
 
 
-def test_sequence(tmp_path, out):
+def test_every_frame_of_a_sequence_is_written(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 4, 7))
     calls = []
     report = linearize(pattern, out / "lin_###.exr", LUT, progress=lambda *call: calls.append(call))
@@ -50,7 +50,7 @@ def test_sequence(tmp_path, out):
         np.testing.assert_array_equal(read_exr(path)[0], expected)
 
 
-def test_some_frames_of_a_sequence(tmp_path, out):
+def test_only_the_chosen_frames_are_written(tmp_path, out):
     pattern = write_sequence(tmp_path, range(1, 7))
     report = linearize(str(pattern), str(out / "a.%d.exr"), LUT, frames="2-8x2")
     assert [path.name for path in report.written] == ["a.2.exr", "a.4.exr", "a.6.exr"]
@@ -125,7 +125,7 @@ def test_old_leftovers_of_these_frames_are_removed(tmp_path, out):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 @pytest.mark.parametrize("stop", [signal.SIGKILL, signal.SIGINT])
-def test_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop):
+def test_an_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop):
     total = 24
     large = np.tile(SMALL[..., :3], (10, 8, 1))
     write_image(tmp_path / "plate.0000.png", large, png__compressionLevel=1)
@@ -152,7 +152,7 @@ def test_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop)
     np.testing.assert_array_equal(read_exr(report.written[-1])[0], expected)
 
 
-def test_failing_callback_stops_the_run_cleanly(tmp_path, out):
+def test_a_failing_callback_stops_the_run_cleanly(tmp_path, out):
     def stop(done, total):
         if done == 1:
             raise KeyboardInterrupt

@@ -52,7 +52,7 @@ def test_shows_the_curve_in_its_colour(photo, estimate, tmp_path):
 
 
 def test_the_windows_lie_where_they_were_whatever_the_preview(photo, estimate, tmp_path):
-    """A preview of every second pixel moves no window: the pictures differ in their grain only."""
+    """A preview of every second pixel moves no window: the two pictures differ in sharpness only."""
     sheet.draw_sheet(tmp_path / "all.png", photo.pixels, estimate)
     sheet.draw_sheet(tmp_path / "half.png", photo.pixels[::2, ::2], estimate, stride=2)
     difference = np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png"))
