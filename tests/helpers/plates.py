@@ -16,7 +16,7 @@ from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.options import PlateOptions
 from ocio.plates.frames import find_frames
 from ocio.plates.linear import PlateReport, linear_targets, linearize_plates
-from tests.helpers.images import write_image
+from tests.helpers.images import read_image, write_image
 
 #: The inverse of gamma 2.2, with provenance.
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2), comments=("photograph plate.jpg", "model test"))
@@ -48,13 +48,9 @@ def write_sequence(folder: Path, numbers: Iterable[int], name: str = "plate.{:04
     return folder / "plate.%04d.png"
 
 
-def read_exr(path: Path) -> tuple[NDArray[np.float32], Any]:
+def read_exr(path: Path) -> tuple[NDArray[Any], Any]:
     """Return the pixels of an EXR as float32, shape (H, W, C), and its header."""
-    image = oiio.ImageInput.open(str(path))
-    spec = image.spec()
-    pixels = image.read_image(0, 0, 0, spec.nchannels, "float")
-    image.close()
-    return pixels, spec
+    return read_image(path), oiio.ImageBuf(str(path)).nativespec()
 
 
 def attributes(spec: Any) -> dict[str, Any]:
