@@ -17,7 +17,7 @@ def image(addon, plate_file):
 
 
 def stored(datablock):
-    from blender_addon.storage import restored
+    from blender_addon.scene.stored_estimate import restored
 
     return restored(datablock)
 

@@ -24,7 +24,7 @@ job = json.loads(sys.argv[-1])
 assert addon_utils.enable("blender_addon", default_set=True)
 bpy.ops.wm.open_mainfile(filepath=job["blend"])
 image = bpy.data.images[job["image"]]
-from blender_addon.compositor import compositor_tree
+from blender_addon.scene.compositor import compositor_tree
 tree = compositor_tree(bpy.context.scene)
 output = next(node for node in tree.nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
 for node in list(tree.nodes):
@@ -125,7 +125,7 @@ def test_files_need_a_folder_that_can_be_written(image, tmp_path):
 
 
 def test_color_space_after_a_restart(image, plate_file, tmp_path, files, codes, estimate, root):
-    from blender_addon.color_management import user_folder
+    from blender_addon.scene.color_management import user_folder
 
     expected = estimate(plate_file).curve.inverse(codes / 255)
     try:
@@ -213,7 +213,7 @@ def test_the_environments_config_is_never_touched(image, tmp_path, monkeypatch):
 @pytest.mark.parametrize("is_users", [True, False])
 def test_an_environment_that_names_the_usual_config_demands_nothing(addon, monkeypatch, is_users):
     """Blender 5.2 sets OCIO to its own choice, and programs that it starts inherit it."""
-    from blender_addon import color_management
+    from blender_addon.scene import color_management
 
     usual = color_management.running_config()
     monkeypatch.setenv("OCIO", str(color_management.user_folder() / "config.ocio") if is_users else usual)

@@ -53,7 +53,7 @@ def interface(addon):
 @pytest.fixture
 def operator(addon):
     """An operator of the class that Blender registered, without Blender's part: properties and reports."""
-    from blender_addon.operators import PlateOperator
+    from blender_addon.ui.operators import PlateOperator
 
     class Driven(PlateOperator):
         def __init__(self, image, **choices):
@@ -84,7 +84,7 @@ def drive(operator, interface, seconds=60):
 
 
 def test_runs_to_its_end(operator, interface, image, plate_file, estimate):
-    from blender_addon.storage import restored
+    from blender_addon.scene.stored_estimate import restored
 
     run = operator(image.name, apply="NODES")
     assert run.invoke(interface, None) == {"RUNNING_MODAL"}
@@ -166,9 +166,9 @@ def test_closing_blender_stops_the_run(operator, interface, image):
 
 
 def test_the_network_is_loaded_once(addon, image, monkeypatch):
-    from blender_addon import libraries
+    from blender_addon import lazy_import
 
-    pipeline = libraries.load("pipeline")
+    pipeline = lazy_import.load(".work.run")
     loads, load = [], pipeline.ResponseNetwork.load
     monkeypatch.setattr(
         pipeline.ResponseNetwork, "load", lambda *args, **options: loads.append(1) or load(*args, **options)
@@ -180,8 +180,8 @@ def test_the_network_is_loaded_once(addon, image, monkeypatch):
 
 
 def test_task():
-    from blender_addon.errors import CancelledError
-    from blender_addon.task import Task
+    from blender_addon.work.background import Task
+    from blender_addon.work.errors import CancelledError
 
     task = Task(lambda progress: progress(1, 2) or "found")
     task.start()

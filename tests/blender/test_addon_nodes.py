@@ -75,7 +75,7 @@ def test_another_working_space(load, composited, plate_file, codes, estimate, sp
     """The EXR, which Blender writes as linear Rec.709 or says otherwise, holds the same light."""
     import PyOpenColorIO as OCIO
 
-    from blender_addon.color_management import running_config
+    from blender_addon.scene.color_management import running_config
 
     _, group = load(plate_file)
     bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=False)
@@ -135,7 +135,7 @@ def test_a_clip(addon, plate_file, composited, codes, estimate):
 
 def new_tree():
     """Return the scene's empty compositor tree."""
-    from blender_addon.compositor import compositor_tree
+    from blender_addon.scene.compositor import compositor_tree
 
     tree = compositor_tree(bpy.context.scene)
     tree.nodes.clear()

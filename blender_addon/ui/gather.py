@@ -8,11 +8,11 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from . import color_management
-from .plates import Datablock, Plate, plate_of
+from ..scene import color_management
+from ..scene.plates import Datablock, Plate, plate_of
+from ..scene.stored_estimate import restored
+from .plate_settings import CHOICES
 from .preferences import absolute, preferences
-from .settings import CHOICES
-from .storage import restored
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import bpy
 
-from . import libraries
-from .errors import AddonError
+from .. import lazy_import
+from ..work.errors import AddonError
 
 #: The editors with a panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
@@ -140,7 +140,7 @@ def plate_of(datablock: Datablock) -> Plate:
     if problem := obstacle(datablock):
         raise AddonError(problem)
     if isinstance(datablock, bpy.types.Image) and (datablock.packed_file or datablock.source == "GENERATED"):
-        return _plate(datablock, libraries.load("unpacked").written_temporarily(datablock), folder=None)
+        return _plate(datablock, lazy_import.load(".scene.packed_images").written_temporarily(datablock), folder=None)
     path = Path(bpy.path.abspath(datablock.filepath, library=datablock.library))
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
         raise AddonError(

@@ -5,7 +5,7 @@ from __future__ import annotations
 
 import bpy
 
-from . import color_management, storage
+from ..scene import color_management, stored_estimate
 
 
 @bpy.app.handlers.persistent
@@ -13,10 +13,11 @@ def set_pending_color_spaces(_path: str = "") -> None:
     """Set the colour space of every plate that waits for one which this session has."""
     known = color_management.color_spaces()
     for datablock in (*bpy.data.images, *bpy.data.movieclips):
-        name = storage.recall(datablock, storage.PENDING) if storage.is_stored(datablock) else None
+        is_stored = stored_estimate.is_stored(datablock)
+        name = stored_estimate.recall(datablock, stored_estimate.PENDING) if is_stored else None
         if name in known:
             datablock.colorspace_settings.name = name
-            storage.forget(datablock, storage.PENDING)
+            stored_estimate.forget(datablock, stored_estimate.PENDING)
 
 
 def register() -> None:

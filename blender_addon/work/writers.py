@@ -10,6 +10,7 @@ from pathlib import Path
 
 from crfnet_core import CRFNetError
 from crfnet_core.files import check_target
+from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace, write_config
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
@@ -18,11 +19,10 @@ from ocio.output_files import OutputFiles, check_folder, output_folder, plain_st
 from ocio.plates.frames import FramePattern, find_frames
 from ocio.plates.linear import linearize_plates
 
-from .config_files import Installed, install
+from ..scene.plates import Plate
+from ..ui.gather import Request
+from .background import Progress
 from .errors import AddonError, CancelledError
-from .plates import Plate
-from .request import Request
-from .task import Progress
 
 
 @dataclass(frozen=True)

@@ -9,11 +9,11 @@ import bpy
 
 from ocio.plates.frames import find_frames
 
-from . import color_management, compositor, nodes, storage
-from .outcomes import Baked
-from .pipeline import Outcome
+from ..ui.gather import Request
+from ..work.run import Outcome
+from ..work.writers import Baked
+from . import color_management, compositor, node_group, stored_estimate
 from .plates import Datablock, datablock_of
-from .request import Request
 
 
 def finish(context: bpy.types.Context, request: Request, outcome: Outcome) -> str:
@@ -26,9 +26,9 @@ def finish(context: bpy.types.Context, request: Request, outcome: Outcome) -> st
     """
     datablock = datablock_of(request.plate)
     if request.apply == "NODES":
-        nodes.check_config()
-    storage.store(datablock, outcome.estimate, list(outcome.lines))
-    storage.remember(datablock, "exposure", outcome.exposure)
+        node_group.check_config()
+    stored_estimate.store(datablock, outcome.estimate, list(outcome.lines))
+    stored_estimate.remember(datablock, "exposure", outcome.exposure)
     keep_choices(datablock, request)
     return _FINISHERS[request.apply](context, datablock, request, outcome)
 
@@ -41,10 +41,11 @@ def keep_choices(datablock: Datablock, request: Request) -> None:
 
 def _finish_nodes(context: bpy.types.Context, datablock: Datablock, request: Request, outcome: Outcome) -> str:
     """Build the node group and put it behind the plate."""
-    datablock.colorspace_settings.name = nodes.data_space()
-    group = nodes.build_group(request.plate.name, outcome.estimate.curve, outcome.exposure)
+    data_space = node_group.data_space()
+    datablock.colorspace_settings.name = data_space
+    group = node_group.build_group(request.plate.name, outcome.estimate.curve, outcome.exposure)
     compositor.apply_group(_tree(context), datablock, group, outcome.exposure, frames=_frames(request))
-    return f'node group "{group.name}" linearises it in the compositor; its colour space is now {nodes.data_space()}'
+    return f'node group "{group.name}" linearises it in the compositor; its colour space is now {data_space}'
 
 
 def _finish_color_space(_context: bpy.types.Context, datablock: Datablock, request: Request, outcome: Outcome) -> str:
@@ -54,7 +55,7 @@ def _finish_color_space(_context: bpy.types.Context, datablock: Datablock, reque
     if is_available:
         datablock.colorspace_settings.name = files.color_space
     else:
-        storage.remember(datablock, storage.PENDING, files.color_space)
+        stored_estimate.remember(datablock, stored_estimate.PENDING, files.color_space)
     if is_available and not files.is_changed:
         return f'its colour space is "{files.color_space}"'
     if request.is_config_demanded or files.config.parent != color_management.user_folder():
@@ -88,7 +89,7 @@ def _loaded(baked: Baked, *, is_clip: bool) -> Datablock:
     if not is_clip:
         datablock.source = "SEQUENCE" if baked.is_sequence else "FILE"
         datablock.reload()
-    datablock.colorspace_settings.name = nodes.linear_rec709()
+    datablock.colorspace_settings.name = node_group.linear_rec709()
     return datablock
 
 

@@ -10,7 +10,7 @@ import bpy
 import numpy as np
 import OpenImageIO as oiio
 
-from .errors import AddonError
+from ..work.errors import AddonError
 
 
 def written_temporarily(image: bpy.types.Image) -> Path:

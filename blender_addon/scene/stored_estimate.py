@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from . import libraries
+from .. import lazy_import
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
@@ -83,7 +83,7 @@ def restored(datablock: Datablock) -> ResponseEstimate:
     CurveError
         If the stored curve was tampered with.
     """
-    return libraries.load("records").estimate_of(datablock[KEY].to_dict())
+    return lazy_import.load(".work.estimate_record").estimate_of(datablock[KEY].to_dict())
 
 
 def remember(datablock: Datablock, name: str, value: Any) -> None:

@@ -14,9 +14,9 @@ from ocio import report as describe
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.plates.frames import find_frames, sample_frames
 
-from . import footage, outcomes
-from .request import Request
-from .task import Progress
+from ..ui.gather import Request
+from . import encoding_check, writers
+from .background import Progress
 
 #: The linear value of middle gray.
 MIDDLE_GRAY = 0.18
@@ -41,7 +41,7 @@ class Outcome:
     estimate: ResponseEstimate
     lines: tuple[str, ...]
     exposure: float
-    files: outcomes.Baked | outcomes.Installed | outcomes.Exported | None
+    files: writers.Baked | writers.Installed | writers.Exported | None
 
 
 def run(request: Request, progress: Progress) -> Outcome:
@@ -62,7 +62,7 @@ def run(request: Request, progress: Progress) -> Outcome:
     estimate = request.estimate or estimate_plate(request, progress)
     exposure = anchored_exposure(estimate.curve, request)
     lut = inverse_response_lut(estimate.curve, length=request.lut_length, comments=describe.provenance(estimate))
-    write = outcomes.WRITERS.get(request.apply)
+    write = writers.WRITERS.get(request.apply)
     files = write(request, lut, exposure, progress) if write else None
     return Outcome(estimate, tuple(describe.verdict_lines(estimate)), exposure, files)
 
@@ -80,7 +80,7 @@ def estimate_plate(request: Request, progress: Progress) -> ResponseEstimate:
     progress(0, 1)
     files = sample_frames(find_frames(request.plate.file))
     if not request.force:
-        footage.check_is_encoded(request.plate, files[0], request.base_config)
+        encoding_check.check_is_encoded(request.plate, files[0], request.base_config)
     network = _network(request.model, request.threads)
     return estimate_response(map(read_photo, files), network=network, progress=progress)
 

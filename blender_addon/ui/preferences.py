@@ -5,6 +5,9 @@ from pathlib import Path
 
 import bpy
 
+#: The name by which Blender knows the add-on: its root package.
+ADDON = __package__.rpartition(".")[0]
+
 #: What can be done with a response. The numbers are stored in .blend files.
 APPLY_MODES = (
     ("NODES", "Compositor Nodes", "A node group that linearises the plate in the compositor, at once", "NODETREE", 0),
@@ -17,7 +20,7 @@ APPLY_MODES = (
 class CRF_AddonPreferences(bpy.types.AddonPreferences):
     """Choices for every file."""
 
-    bl_idname = __package__
+    bl_idname = ADDON
 
     model: bpy.props.StringProperty(
         name="Model",
@@ -52,7 +55,7 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
 
 def preferences() -> CRF_AddonPreferences:
     """Return the add-on's preferences."""
-    return bpy.context.preferences.addons[__package__].preferences
+    return bpy.context.preferences.addons[ADDON].preferences
 
 
 def absolute(folder: str) -> Path | None:

@@ -6,12 +6,13 @@ from typing import Any, ClassVar
 
 import bpy
 
-from . import color_management, libraries, plates, storage
-from .errors import AddonError, CancelledError, expected_errors
+from .. import lazy_import
+from ..scene import color_management, plates, stored_estimate
+from ..work.background import Task
+from ..work.errors import AddonError, CancelledError, expected_errors
+from .gather import Request, request_for
+from .plate_settings import CHOICES, PlateChoices
 from .preferences import APPLY_MODES, absolute
-from .request import Request, request_for
-from .settings import CHOICES, PlateChoices
-from .task import Task
 
 #: Seconds between two looks at the other thread.
 TICK = 0.1
@@ -37,7 +38,7 @@ class PlateOperator(PlateChoices):
         """Run to the end."""
         try:
             request = self._request(context)
-            return self._finished(context, request, libraries.load("pipeline").run(request, _ignore))
+            return self._finished(context, request, lazy_import.load(".work.run").run(request, _ignore))
         except expected_errors() as problem:
             return self._failed(problem)
 
@@ -45,7 +46,7 @@ class PlateOperator(PlateChoices):
         """Start a run in another thread and watch it."""
         try:
             self._job = self._request(context)
-            pipeline = libraries.load("pipeline")
+            pipeline = lazy_import.load(".work.run")
         except expected_errors() as problem:
             return self._failed(problem)
         self._task = Task(lambda progress: pipeline.run(self._job, progress))
@@ -81,14 +82,14 @@ class PlateOperator(PlateChoices):
     def _request(self, context: bpy.types.Context) -> Request:
         """Return what to do; choices given in the call come before the plate's."""
         datablock = plates.chosen_datablock(context, self.image, self.clip)
-        if self.is_estimated and not storage.is_stored(datablock):
+        if self.is_estimated and not stored_estimate.is_stored(datablock):
             raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
         chosen = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
         return request_for(datablock, is_estimated=self.is_estimated, choices=chosen)
 
     def _finished(self, context: bpy.types.Context, request: Request, outcome: Any) -> set[str]:
         """Apply the outcome and say so."""
-        done = libraries.load("finish").finish(context, request, outcome)
+        done = lazy_import.load(".scene.apply").finish(context, request, outcome)
         kind = "WARNING" if outcome.estimate.warnings or outcome.estimate.verdict == "do not trust" else "INFO"
         self.report({kind}, f"{request.plate.name}: response is {outcome.estimate.verdict}; {done}")
         return {"FINISHED"}
@@ -147,7 +148,7 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
         """Return whether the plate has an estimate, and say why not; scripts outside the editors name theirs."""
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
-        if storage.is_stored(plates.active_datablock(context)):
+        if stored_estimate.is_stored(plates.active_datablock(context)):
             return True
         cls.poll_message_set("Estimate the camera response of a plate first")
         return False
@@ -168,7 +169,7 @@ class CRF_OT_restore_config(bpy.types.Operator):
         """Restore, and say what is there now."""
         folder: Path = absolute(self.folder) or color_management.user_folder()
         try:
-            self.report({"INFO"}, libraries.load("config_files").restore(folder))
+            self.report({"INFO"}, lazy_import.load("ocio.configs.installed").restore(folder))
         except expected_errors() as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}

@@ -13,11 +13,11 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core import ResponseCurve
 from crfnet_core.errors import ConfigError
+from ocio.configs.installed import role_name
 from ocio.configs.plate_color_space import LINEAR_REC709
 from ocio.luts.lut1d import DEFAULT_LENGTH, inverse_response_lut
 
 from .color_management import color_spaces, running_config
-from .config_files import role_name
 
 #: Whether Map UV has a bilinear interpolation.
 IS_BILINEAR = bpy.app.version >= (5, 0, 0)

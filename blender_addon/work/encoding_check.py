@@ -8,9 +8,9 @@ from pathlib import Path
 import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
-from .color_management import is_log_or_linear
+from ..scene.color_management import is_log_or_linear
+from ..scene.plates import Plate
 from .errors import AddonError
-from .plates import Plate
 
 #: Where files say how they are encoded.
 _METADATA = ("colorInteropID", "oiio:ColorSpace", "dpx:Transfer")

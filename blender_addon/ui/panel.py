@@ -8,7 +8,8 @@ import textwrap
 import bpy
 import bpy.utils.previews
 
-from . import curve_image, plates, storage
+from ..scene import plates, stored_estimate
+from ..work import curve_picture
 from .operators import CRF_OT_apply_response, CRF_OT_estimate_response
 
 #: The drawn curves, by what they show.
@@ -37,7 +38,7 @@ class ResponsePanel:
             layout.label(text=plates.OPEN_A_PLATE[context.area.type], icon="INFO")
             return
         _draw_choices(layout, datablock.camera_response_settings)
-        if storage.is_stored(datablock):
+        if stored_estimate.is_stored(datablock):
             layout.operator(CRF_OT_apply_response.bl_idname, icon="FILE_REFRESH")
             letter = _LETTER * (context.preferences.system.ui_scale or 1)  # 0 without a screen
             _draw_estimate(layout, datablock, letters=max(20, int(context.region.width / letter)))
@@ -88,7 +89,7 @@ def _draw_estimate(layout: bpy.types.UILayout, datablock: plates.Datablock, *, l
     box = layout.box()
     box.template_icon(icon_value=curve_icon(datablock), scale=9)
     box.label(text="Response, its 90 % band, gamma 2.2 dashed")
-    for line in storage.lines(datablock):
+    for line in stored_estimate.lines(datablock):
         icon = "ERROR" if line.startswith("Warning") else "NONE"
         for number, part in enumerate(textwrap.wrap(line, letters)):
             box.label(text=part, icon=icon if number == 0 else "BLANK1" if icon == "ERROR" else "NONE")
@@ -96,11 +97,11 @@ def _draw_estimate(layout: bpy.types.UILayout, datablock: plates.Datablock, *, l
 
 def curve_icon(datablock: plates.Datablock) -> int:
     """Return the icon of a stored response's picture, drawn when it is first asked for."""
-    key = storage.fingerprint(datablock)
+    key = stored_estimate.fingerprint(datablock)
     if key not in _previews:
         preview = _previews.new(key)
-        preview.image_size = (curve_image.SIZE, curve_image.SIZE)
-        pixels = curve_image.draw_response(*storage.curve_and_band(datablock))
+        preview.image_size = (curve_picture.SIZE, curve_picture.SIZE)
+        pixels = curve_picture.draw_response(*stored_estimate.curve_and_band(datablock))
         preview.image_pixels_float.foreach_set(pixels.ravel())
     return _previews[key].icon_id
 
