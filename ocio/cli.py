@@ -13,11 +13,11 @@ from typing import NoReturn, TypeAlias
 
 import shtab
 
+from ocio.defaults import DEPTHS, LUT_LENGTH, MAX_EXPOSURE, WINDOWS
+
+#: Exit codes.
 BAD_INPUT = 2
 INTERRUPTED = 130
-
-#: Largest gain in either direction: 2 ** 15 times white still fits into a half float.
-MOST_STOPS = 15
 
 ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
@@ -105,9 +105,13 @@ def _add_estimate(commands: Commands) -> None:
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
     parser.add_argument("--each", action="store_true", help="one response per photograph, not one for all")
-    parser.add_argument("--windows", type=_positive, default=10, metavar="N", help="windows per photograph (10)")
+    parser.add_argument(
+        "--windows", type=_positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
+    )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="which windows are drawn (0)")
-    parser.add_argument("--length", type=_positive, default=4081, metavar="N", help="entries of the LUTs (4081)")
+    parser.add_argument(
+        "--length", type=_positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
+    )
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     _add_network(parser)
     _add_plate(parser)
@@ -167,7 +171,7 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
 
 def _add_plate(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that write linear plates."""
-    parser.add_argument("--depth", choices=("half", "float"), default="half", help="of the linear EXR (half)")
+    parser.add_argument("--depth", choices=DEPTHS, default=DEPTHS[0], help=f"of the linear EXR ({DEPTHS[0]})")
     parser.add_argument("--exposure", type=_stops, default=0.0, metavar="STOPS", help="gain of the linear EXR (0)")
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
     _add_json(parser)
@@ -194,8 +198,8 @@ def _count(text: str) -> int:
 
 def _stops(text: str) -> float:
     """Parse an exposure that half floats can hold."""
-    if not abs(stops := float(text)) <= MOST_STOPS:
-        raise argparse.ArgumentTypeError(f"{text} is not between -{MOST_STOPS} and {MOST_STOPS} stops")
+    if not abs(stops := float(text)) <= MAX_EXPOSURE:
+        raise argparse.ArgumentTypeError(f"{text} is not between -{MAX_EXPOSURE} and {MAX_EXPOSURE} stops")
     return stops
 
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import json
+import re
 import shlex
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
@@ -12,23 +14,23 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.estimate import ResponseEstimate, WindowEstimate
-from crfnet_core.network import ModelConfig
+from crfnet_core.network import ModelConfig, Verdict
+from crfnet_core.photo import Photo
 from crfnet_core.response import SAMPLES
+from ocio.defaults import GAMMA_ERROR
 from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles
 from ocio.plates.frames import format_frames
 from ocio.plates.linear import PlateReport
 
-#: What gamma 2.2 is usually off by, as E_est: 3.14 on the 201 curves of DoRF, 3.57 on 22 camera bodies.
-GAMMA_ERROR = 3.3
-
 #: Digits kept in the JSON document.
 DIGITS = 6
 
+#: The verdicts in words for people.
 VERDICTS = {
-    "good": "good",
-    "usable": "usable: look at the plate before you rely on it",
-    "do not trust": "not to be trusted: take another photograph of this camera, or several together",
+    Verdict.GOOD: "good",
+    Verdict.USABLE: "usable: look at the plate before you rely on it",
+    Verdict.DO_NOT_TRUST: "not to be trusted: take another photograph of this camera, or several together",
 }
 
 
@@ -40,6 +42,12 @@ class PhotoFacts:
     width: int
     height: int
     bit_depth: int
+
+    @classmethod
+    def of(cls, photo: Photo) -> PhotoFacts:
+        """Return the facts of a photograph."""
+        height, width = photo.pixels.shape[:2]
+        return cls(photo.path.name, width, height, photo.bit_depth)
 
     def __str__(self) -> str:
         """Return one line for people."""
@@ -135,6 +143,12 @@ def estimate_document(estimate: ResponseEstimate, photos: Sequence[PhotoFacts], 
     }
 
 
+def json_text(document: Mapping[str, Any]) -> str:
+    """Return a document as JSON text: any language as it is written, and each row of numbers on one line."""
+    text = json.dumps(document, indent=1, ensure_ascii=False)
+    return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
+
+
 def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> dict[str, Any]:
     """Return what became of plates, and the response if it was estimated from them, ready for JSON."""
     return {
@@ -190,7 +204,7 @@ def model_document(config: ModelConfig) -> dict[str, Any]:
 
 def model_lines(document: Mapping[str, Any]) -> list[str]:
     """Return `model_document` in words."""
-    left_out = ("kind", "name", "calibration", "accuracy")
+    left_out = ("kind", "name", "uncertainty_model", "accuracy")
     return [
         f"{document['name']}: model",
         *(f"  {key}: {_listed(value)}" for key, value in document.items() if key not in left_out),

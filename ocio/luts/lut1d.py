@@ -10,9 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
-
-#: Entries of a LUT unless asked otherwise: 255 * 16 + 1, exact on 8-bit codes.
-DEFAULT_LENGTH = 4081
+from ocio.defaults import LUT_LENGTH
 
 #: Entries that every format and host takes.
 MAX_LENGTH = 65536
@@ -130,7 +128,7 @@ class Lut1D:
 def inverse_response_lut(
     curve: ResponseCurve,
     *,
-    length: int = DEFAULT_LENGTH,
+    length: int = LUT_LENGTH,
     domain: tuple[float, float] = (0.0, 1.0),
     comments: Sequence[str] = (),
 ) -> Lut1D:
@@ -163,7 +161,7 @@ def inverse_response_lut(
         If the length is out of range, or the domain is not finite or does not hold [0, 1].
     """
     if not 2 <= length <= MAX_LENGTH:
-        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {DEFAULT_LENGTH} suits most")
+        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {LUT_LENGTH} suits most")
     low, high = domain
     if not (-np.inf < low <= 0 and 1 <= high < np.inf):
         raise LutError(f"the domain of an inverse response must hold 0 to 1, found {low:.9g} to {high:.9g}")

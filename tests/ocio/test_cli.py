@@ -18,6 +18,7 @@ from ocio import commands
 from ocio.cli import BAD_INPUT, INTERRUPTED
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import read_spi1d, write_spi1d
+from ocio.pipeline import estimates
 
 FILES = {
     "plate.spi1d",
@@ -483,7 +484,7 @@ def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, p
     def fail(*arguments, **options):
         raise problem
 
-    monkeypatch.setattr(commands, "estimate_response", fail)
+    monkeypatch.setattr(estimates, "estimate_response", fail)
     done = estimate(plate)
     assert done.code == code
     assert done.err.startswith(line)
@@ -526,8 +527,8 @@ class TestProcess:
     @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
     def test_control_c_leaves_no_traceback(self, plate, fixed_model, tmp_path):
         code = (
-            "import sys, time, ocio.commands as c, ocio.cli;"
-            "c.estimate_response = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
+            "import sys, time, ocio.pipeline.estimates as e, ocio.cli;"
+            "e.estimate_response = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
             "sys.exit(ocio.cli.main(sys.argv[1:]))"
         )
         command = [sys.executable, "-c", code, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]

@@ -13,7 +13,8 @@ import pytest
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
-from ocio.configs.plate_color_space import FAMILY, PlateColorSpace, add_plate_color_space, write_config
+from ocio.configs.files import write_config
+from ocio.configs.plate_color_space import FAMILY, PlateColorSpace, add_plate_color_space
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
