@@ -1,89 +1,95 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run changes in Blender's data, all of it after everything that can fail; in Blender's thread only."""
+"""What a completed job changes in Blender's data: after everything that can fail, and in Blender's thread only."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import bpy
 
-from ocio.plates.frames import find_frames
+from ocio.configs.installed import Installed
 
-from ..ui.gather import Request
-from ..work.run import Outcome
-from ..work.writers import Baked
+from ..work.job import Job, RunningConfig
+from ..work.run import CompletedJob
+from ..work.writers import Baked, Exported
 from . import color_management, compositor, node_group, stored_estimate
-from .plates import Datablock, datablock_of
+from .plates import Datablock, datablock_of_plate
 
 
-def finish(context: bpy.types.Context, request: Request, outcome: Outcome) -> str:
-    """Store the estimate on its plate, apply it, and return what was done, in a sentence.
+def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
+    """Store the estimate on its plate, apply it as the job asks, and return what was done, in words.
 
     Raises
     ------
     AddonError, CRFNetError
-        If the plate has gone, or the config has no linear Rec.709; nothing is changed then.
+        If the plate was removed, or the config lacks a colour space that the nodes need; nothing is changed then.
     """
-    datablock = datablock_of(request.plate)
-    if request.apply == "NODES":
+    job, datablock = completed.job, datablock_of_plate(completed.job.plate)
+    if completed.files is None:
         node_group.check_config()
-    stored_estimate.store(datablock, outcome.estimate, list(outcome.lines))
-    stored_estimate.remember(datablock, "exposure", outcome.exposure)
-    keep_choices(datablock, request)
-    return _FINISHERS[request.apply](context, datablock, request, outcome)
+    stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
+    stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
+    remember_settings(datablock, job)
+    match completed.files:
+        case None:
+            return _insert_nodes(context, datablock, completed)
+        case Installed() as installed:
+            return _set_color_space(datablock, installed, job.config)
+        case Baked() as baked:
+            return _show_baked(context, datablock, baked, completed.frames)
+        case Exported() as exported:
+            return f"{len(exported.files)} files are in {exported.folder}"
 
 
-def keep_choices(datablock: Datablock, request: Request) -> None:
-    """Let the panel show what was applied, for the next time; to overwrite or to insist is asked for each time."""
-    for name in ("apply", "anchor", "gray", "exposure", "depth"):
-        setattr(datablock.camera_response_settings, name, getattr(request, name))
+def remember_settings(datablock: Datablock, job: Job) -> None:
+    """Remember the applied settings on the plate, where the panel shows them.
+
+    `overwrite` and `force` are not remembered, so the user confirms them every time.
+    """
+    settings = datablock.camera_response_settings
+    settings.apply = job.output.mode.value
+    settings.anchor = job.exposure.anchor.value
+    settings.gray = job.exposure.gray
+    settings.exposure = job.exposure.stops
+    settings.depth = job.output.depth
 
 
-def _finish_nodes(context: bpy.types.Context, datablock: Datablock, request: Request, outcome: Outcome) -> str:
-    """Build the node group and put it behind the plate."""
+def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:
+    """Build the node group, and insert it after the plate in the compositor."""
     data_space = node_group.data_space()
     datablock.colorspace_settings.name = data_space
-    group = node_group.build_group(request.plate.name, outcome.estimate.curve, outcome.exposure)
-    compositor.apply_group(_tree(context), datablock, group, outcome.exposure, frames=_frames(request))
+    group = node_group.build_group(completed.job.plate.name, completed.estimate.curve, completed.stops)
+    compositor.apply_group(_tree(context), datablock, group, completed.stops, frames=completed.frames)
     return f'node group "{group.name}" linearises it in the compositor; its colour space is now {data_space}'
 
 
-def _finish_color_space(_context: bpy.types.Context, datablock: Datablock, request: Request, outcome: Outcome) -> str:
-    """Set the colour space if Blender has it, else leave a note for the next start."""
-    files = outcome.files
-    is_available = files.color_space in color_management.color_spaces()
+def _set_color_space(datablock: Datablock, installed: Installed, running: RunningConfig) -> str:
+    """Set the colour space if this session has it; else remember it until Blender has been restarted."""
+    name, config = installed.color_space, installed.config
+    is_available = name in color_management.color_spaces()
     if is_available:
-        datablock.colorspace_settings.name = files.color_space
+        datablock.colorspace_settings.name = name
     else:
-        stored_estimate.remember(datablock, stored_estimate.PENDING, files.color_space)
-    if is_available and not files.is_changed:
-        return f'its colour space is "{files.color_space}"'
-    if request.is_config_demanded or files.config.parent != color_management.user_folder():
-        return (
-            f'restart Blender once with the environment variable OCIO set to {files.config} for "{files.color_space}"'
-        )
-    return f'save the file and restart Blender once: the colour space "{files.color_space}" is there from then on'
+        stored_estimate.set_entry(datablock, stored_estimate.PENDING_COLOR_SPACE, name)
+    if is_available and not installed.is_changed:
+        return f'its colour space is "{name}"'
+    if running.is_demanded or config.parent != color_management.user_folder():
+        return f'restart Blender once with the environment variable OCIO set to {config} for "{name}"'
+    return f'save the file and restart Blender once: the colour space "{name}" is there from then on'
 
 
-def _finish_bake(context: bpy.types.Context, datablock: Datablock, request: Request, outcome: Outcome) -> str:
-    """Load the linear files, and show them where the plate was shown."""
-    baked = _loaded(outcome.files, is_clip=isinstance(datablock, bpy.types.MovieClip))
+def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:
+    """Load the linear files, and show them in the editor that shows the plate."""
+    linear = _load(baked, is_clip=isinstance(datablock, bpy.types.MovieClip))
     space = context.space_data
-    if space is not None and space.type == "IMAGE_EDITOR" and isinstance(baked, bpy.types.Image):
-        space.image = baked
-        compositor.show_frames(space.image_user, _frames(request))
-    if space is not None and space.type == "CLIP_EDITOR" and isinstance(baked, bpy.types.MovieClip):
-        space.clip = baked
-    return f'linear plate "{baked.name}" is written to {request.folder} and loaded'
+    if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
+        space.image = linear
+        compositor.show_frames(space.image_user, frames)
+    if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
+        space.clip = linear
+    return f'linear plate "{linear.name}" is written to {baked.files[0].parent} and loaded'
 
 
-def _frames(request: Request) -> tuple[int, ...]:
-    """Return the frame numbers of a sequence; none for a single file."""
-    return find_frames(request.plate.file).numbers if request.plate.is_sequence else ()
-
-
-def _loaded(baked: Baked, *, is_clip: bool) -> Datablock:
-    """Return the linear plate as an image or clip in linear Rec.709; one that is there already is read again."""
+def _load(baked: Baked, *, is_clip: bool) -> Datablock:
+    """Return the linear plate as an image or clip in linear Rec.709; one that is loaded already is read again."""
     collection, first = (bpy.data.movieclips if is_clip else bpy.data.images), str(baked.files[0])
     datablock = collection.load(first, check_existing=True)
     if not is_clip:
@@ -93,21 +99,8 @@ def _loaded(baked: Baked, *, is_clip: bool) -> Datablock:
     return datablock
 
 
-def _finish_export(_context: bpy.types.Context, _datablock: Datablock, _request: Request, outcome: Outcome) -> str:
-    """Say where the files are."""
-    return f"{len(outcome.files.files)} files are in {outcome.files.folder}"
-
-
-_FINISHERS: dict[str, Callable[[bpy.types.Context, Datablock, Request, Outcome], str]] = {
-    "NODES": _finish_nodes,
-    "COLORSPACE": _finish_color_space,
-    "BAKE": _finish_bake,
-    "EXPORT": _finish_export,
-}
-
-
 def _tree(context: bpy.types.Context) -> bpy.types.NodeTree:
-    """Return the compositor tree that is being edited, or else the scene's."""
+    """Return the compositor tree that the node editor shows, or the scene's if no node editor is active."""
     space = context.space_data
     if (
         space is not None

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""An estimate as a custom property of its image or clip, complete: it survives in the .blend file."""
+"""The whole estimate as a custom property of its image or clip, so that it is saved in the .blend file.
+
+What the panel draws is read here without importing the estimator.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -11,66 +15,50 @@ from .. import lazy_import
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
+    from crfnet_core.types import Float64Array
 
     from .plates import Datablock
 
-#: The custom property.
+#: The name of the custom property.
 KEY = "camera_response"
 
-#: In it: the colour space for which a plate waits until Blender is started again.
-PENDING = "pending_color_space"
-
-#: Version of its layout.
+#: The version of its entries.
 LAYOUT = 1
 
+#: Entries that are set later: the exposure that was applied, in stops, and the colour space that the plate gets once
+#: Blender has been started with the new config.
+EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
 
-def store(datablock: Datablock, estimate: ResponseEstimate, lines: list[str]) -> None:
-    """Keep an estimate, and what is to be said of it, on a datablock.
+
+def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
+    """Store an estimate on its image or clip.
 
     Parameters
     ----------
     datablock : Image or MovieClip
         Gets the custom property `KEY`.
     estimate : ResponseEstimate
-        Kept whole, in double precision: `restored` returns its equal.
-    lines : list of str
-        For the panel, which must not load the estimator to draw.
+        Stored whole and in double precision: `restored` returns its equal.
+    lines : iterable of str
+        What the panel says of the estimate.
     """
-    windows = [w.window for w in estimate.windows]
-    datablock[KEY] = {
-        "layout": LAYOUT,
-        "model": estimate.model,
-        "photos": "\n".join(estimate.photos),
-        "verdict": estimate.verdict,
-        "uncertainty": estimate.uncertainty,
-        "spread": estimate.spread,
-        "warnings": "\n".join(estimate.warnings),
-        "lines": "\n".join(lines),
-        "weights": estimate.weights.tolist(),
-        "brightness": estimate.curve.brightness.tolist(),
-        "lower": estimate.band[0].tolist(),
-        "upper": estimate.band[1].tolist(),
-        "window_photos": [w.photo for w in estimate.windows],
-        "window_places": [n for w in windows for n in (w.x, w.y, w.step, w.filled)],
-        "window_weights": np.concatenate([w.weights for w in estimate.windows]).tolist(),
-        "window_errors": [w.expected_error for w in estimate.windows],
-        "window_kept": [int(w.kept) for w in estimate.windows],
-    }
+    entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
+    datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
 
 
 def is_stored(datablock: Datablock | None) -> bool:
-    """Return whether a datablock has an estimate of this layout."""
-    entries = datablock.get(KEY) if datablock is not None else None
+    """Return whether an image or clip has a stored estimate of this layout."""
+    entries: Any = datablock.get(KEY) if datablock is not None else None
     return hasattr(entries, "get") and entries.get("layout") == LAYOUT
 
 
 def lines(datablock: Datablock) -> list[str]:
-    """Return what is to be said of a stored estimate."""
+    """Return what the panel says of the stored estimate."""
     return datablock[KEY]["lines"].split("\n")
 
 
-def curve_and_band(datablock: Datablock) -> np.ndarray:
-    """Return a stored response and the ends of its band, shape (3, 1024)."""
+def curve_and_band(datablock: Datablock) -> Float64Array:
+    """Return the stored response and the lower and upper end of its band, shape (3, 1024)."""
     entries = datablock[KEY]
     return np.array([entries[name].to_list() for name in ("brightness", "lower", "upper")])
 
@@ -81,27 +69,26 @@ def restored(datablock: Datablock) -> ResponseEstimate:
     Raises
     ------
     CurveError
-        If the stored curve was tampered with.
+        If the stored curve is no longer that of a response, because another program changed it.
     """
     return lazy_import.load(".work.estimate_record").estimate_of(datablock[KEY].to_dict())
 
 
-def remember(datablock: Datablock, name: str, value: Any) -> None:
-    """Keep one more fact beside an estimate."""
+def set_entry(datablock: Datablock, name: str, value: Any) -> None:
+    """Set one more entry of the stored estimate."""
     datablock[KEY][name] = value
 
 
-def recall(datablock: Datablock, name: str) -> Any:
-    """Return such a fact, or None."""
-    return datablock[KEY].get(name)
-
-
-def forget(datablock: Datablock, name: str) -> None:
-    """Drop such a fact, if it is there."""
-    datablock[KEY].pop(name, None)
+def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> str:
+    """Return the colour space that a plate waits for, and end the wait, if it is available; else an empty text."""
+    name = datablock[KEY].get(PENDING_COLOR_SPACE) if is_stored(datablock) else None
+    if name is None or name not in available:
+        return ""
+    datablock[KEY].pop(PENDING_COLOR_SPACE, None)
+    return name
 
 
 def fingerprint(datablock: Datablock) -> str:
-    """Return a key that differs between estimates."""
+    """Return a text that differs between different estimates."""
     entries = datablock[KEY]
     return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"

@@ -1,5 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The errors of the add-on itself; those of the estimator are `crfnet_core.errors.CRFNetError`."""
+"""The errors of the add-on itself.
+
+They are no `crfnet_core.errors.CRFNetError`, because the add-on must be able to say that the estimator cannot be
+imported.
+"""
 
 from __future__ import annotations
 
@@ -7,14 +11,17 @@ import sys
 
 
 class AddonError(Exception):
-    """Something that the user can mend, in one sentence."""
+    """A problem that the user can solve; the message says in one line what was found and what to do."""
 
 
 class CancelledError(AddonError):
-    """The user cancelled a run."""
+    """The user cancelled a job."""
 
 
 def expected_errors() -> tuple[type[Exception], ...]:
-    """Return the errors whose text is meant for the user; the core's are among them once it is loaded."""
+    """Return the errors whose messages are written for the user.
+
+    The estimator's errors are among them once it has been imported; before that, it cannot have raised any.
+    """
     core = sys.modules.get("crfnet_core.errors")
     return (AddonError,) if core is None else (AddonError, core.CRFNetError)

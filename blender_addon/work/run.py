@@ -1,101 +1,104 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a run does outside Blender's data: estimate, and write files. It may go on in any thread."""
+"""Run a job: estimate the response and write files, through `ocio.pipeline`, the pipeline of the `crfnet` command."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
-from pathlib import Path
+from functools import cache, lru_cache, partial
 
-import numpy as np
+from crfnet_core import ResponseEstimate
+from crfnet_core.network import Verdict
+from crfnet_core.types import Progress
+from ocio.pipeline import anchored_exposure, estimate_frames, load_network, response_lut
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.report import verdict_lines
 
-from crfnet_core import CRFNetError, ResponseCurve, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
-from ocio import report as describe
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.plates.frames import find_frames, sample_frames
+from . import writers
+from .encoding_check import check_is_encoded
+from .job import Anchor, ApplyMode, Job
 
-from ..ui.gather import Request
-from . import encoding_check, writers
-from .background import Progress
+#: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
+_SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
 
-#: The linear value of middle gray.
-MIDDLE_GRAY = 0.18
+#: The network of the last estimate stays loaded.
+_load_network = lru_cache(maxsize=1)(load_network)
 
 
 @dataclass(frozen=True)
-class Outcome:
-    """What a run found and wrote.
+class CompletedJob:
+    """A job, what it found and what it wrote.
 
     Parameters
     ----------
+    job : Job
+        The job.
     estimate : ResponseEstimate
-        The response.
-    lines : tuple of str
-        What is to be said of it.
-    exposure : float
-        Stops to be added after the inverse response.
-    files : Baked, Installed, Exported or None
-        What was written.
+        The response of the plate.
+    stops : float
+        The stops to add after the inverse response.
+    frames : tuple of int
+        The frame numbers of a sequence that Blender is to show; empty for a single file.
+    files : Baked, Exported, Installed or None
+        What was written; None for nodes, which need no file.
     """
 
+    job: Job
     estimate: ResponseEstimate
-    lines: tuple[str, ...]
-    exposure: float
-    files: writers.Baked | writers.Installed | writers.Exported | None
+    stops: float
+    frames: tuple[int, ...]
+    files: writers.Written | None
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The verdict and the warnings in words, one line each."""
+        return tuple(verdict_lines(self.estimate))
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the estimate has warnings or is not to be trusted."""
+        return bool(self.estimate.warnings) or self.estimate.verdict is Verdict.DO_NOT_TRUST
 
 
-def run(request: Request, progress: Progress) -> Outcome:
-    """Return what came of a request.
+def run(job: Job, progress: Progress | None = None) -> CompletedJob:
+    """Return what a job found and wrote.
 
     Parameters
     ----------
-    request : Request
+    job : Job
         What to do.
-    progress : callable
-        Called with (done, total); what it raises ends the run.
+    progress : callable or None
+        Called with (done, total) after every step; what it raises ends the job.
 
     Raises
     ------
     CRFNetError, AddonError
-        If the plate, the model or a folder is not as it should be; no file is left half-written then.
+        If the plate, the model or a folder cannot be used; files that the job has written are removed again.
     """
-    estimate = request.estimate or estimate_plate(request, progress)
-    exposure = anchored_exposure(estimate.curve, request)
-    lut = inverse_response_lut(estimate.curve, length=request.lut_length, comments=describe.provenance(estimate))
-    write = writers.WRITERS.get(request.apply)
-    files = write(request, lut, exposure, progress) if write else None
-    return Outcome(estimate, tuple(describe.verdict_lines(estimate)), exposure, files)
+    sequence = cache(partial(find_frames, job.plate.file))  # looks for the frames at most once, and only if needed
+    estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
+    gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
+    stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
+    shows_frames = job.plate.is_sequence and job.output.mode in _SHOWING_FRAMES
+    files: writers.Written | None = None
+    if job.output.mode is not ApplyMode.NODES:
+        lut = response_lut(estimate, length=job.output.lut_length)
+        files = writers.write(job, lut, stops, sequence, progress)
+    return CompletedJob(job, estimate, stops, sequence().numbers if shows_frames else (), files)
 
 
-def estimate_plate(request: Request, progress: Progress) -> ResponseEstimate:
-    """Return the response of a plate: of its file, or of several of its frames.
+def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> ResponseEstimate:
+    """Return the response of a plate, estimated from its file or from several of its frames.
 
     Raises
     ------
     AddonError
-        If the footage is logarithmic or linear and the request does not insist.
+        If the plate is logarithmic or linear and the job does not force the estimate.
     CRFNetError
         If a file or the model cannot be read.
     """
-    progress(0, 1)
-    files = sample_frames(find_frames(request.plate.file))
-    if not request.force:
-        encoding_check.check_is_encoded(request.plate, files[0], request.base_config)
-    network = _network(request.model, request.threads)
-    return estimate_response(map(read_photo, files), network=network, progress=progress)
-
-
-def anchored_exposure(curve: ResponseCurve, request: Request) -> float:
-    """Return the stops to be added after the inverse response, so that the anchor comes where it belongs."""
-    if request.anchor != "GRAY":
-        return request.exposure
-    irradiance = float(curve.inverse(request.gray))
-    if irradiance <= 0:
-        raise CRFNetError(f"a brightness of {request.gray:g} is black in this response; anchor a brighter gray")
-    return float(np.log2(MIDDLE_GRAY / irradiance)) + request.exposure
-
-
-@lru_cache(maxsize=1)
-def _network(model: Path | None, threads: int) -> ResponseNetwork:
-    """Return the network; the last one stays loaded."""
-    return ResponseNetwork.load(model, threads=threads)
+    if progress is not None:
+        progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
+    if not job.estimation.is_forced:
+        check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
+    options = job.estimation.options
+    return estimate_frames(sequence, _load_network(options), options, progress=progress)
