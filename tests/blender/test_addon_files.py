@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.helpers.images import read_image
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 FLOAT, HALF = 1e-6, 2**-11
@@ -66,10 +68,10 @@ def run(image, **choices):
 
 
 @pytest.mark.parametrize(("depth", "limit"), [("float", FLOAT), ("half", HALF)])
-def test_bake(image, plate_file, files, codes, estimate, depth, limit):
+def test_bake(image, plate_file, codes, estimate, depth, limit):
     assert run(image, apply="BAKE", depth=depth, exposure=1) == {"FINISHED"}
     expected = 2 * estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(files.read(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
+    assert np.abs(read_image(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
     baked = bpy.data.images["plate_linear.exr"]
     assert baked.colorspace_settings.name == "Linear Rec.709"
     pixels = np.array(baked.pixels[:]).reshape(256, 256, -1)[::-1, :, :3]
@@ -124,7 +126,7 @@ def test_files_need_a_folder_that_can_be_written(image, tmp_path):
     assert "camera_response" not in image
 
 
-def test_color_space_after_a_restart(image, plate_file, tmp_path, files, codes, estimate, root):
+def test_color_space_after_a_restart(image, plate_file, tmp_path, codes, estimate, root):
     from blender_addon.scene.color_management import user_folder
 
     expected = estimate(plate_file).curve.inverse(codes / 255)
@@ -134,7 +136,7 @@ def test_color_space_after_a_restart(image, plate_file, tmp_path, files, codes, 
         image.use_fake_user = True
         bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
         found = restarted(tmp_path, root)
-        linear = files.read(tmp_path / "linear.exr")
+        linear = read_image(tmp_path / "linear.exr")
         assert np.abs(converted(user_folder() / "config.ocio", codes) - expected).max() < 1e-5
     finally:
         bpy.ops.crf.restore_config()

@@ -1,4 +1,4 @@
-"""The panel's picture and words."""
+"""What the panel shows: settings, words and the icon of the response."""
 
 import numpy as np
 import pytest
@@ -81,18 +81,3 @@ def test_the_icon_is_drawn_once_per_estimate(image):
     (preview,) = panel._previews.values()
     assert tuple(preview.image_size) == (256, 256)
     assert np.ptp(preview.image_pixels_float[:]) > 0.5
-
-
-def test_the_picture():
-    from blender_addon.work.curve_picture import BACKGROUND, CURVE, MARGIN, SIZE, draw_response
-
-    uniform = np.linspace(0, 1, 1024)
-    picture = draw_response(np.sqrt(uniform), np.clip(np.sqrt(uniform) - 0.1, 0, 1), np.sqrt(uniform))
-    assert picture.shape == (SIZE, SIZE, 4)
-    assert picture.dtype == np.float32
-    assert (picture[..., 3] == 1).all()
-    assert ((picture >= 0) & (picture <= 1)).all()
-    np.testing.assert_allclose(picture[0, 0, :3], BACKGROUND)
-    column = MARGIN + (SIZE - 2 * MARGIN - 1) // 4
-    row = round(MARGIN + np.sqrt((column - MARGIN) / (SIZE - 2 * MARGIN - 1)) * (SIZE - 2 * MARGIN - 1))
-    np.testing.assert_allclose(picture[row, column, :3], CURVE, atol=1e-6)

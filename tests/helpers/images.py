@@ -1,0 +1,58 @@
+"""Write and read image files with OpenImageIO, which is imported at first use: in Blender its own has to come first."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+#: OpenImageIO's names of the types that are not numpy's.
+SAMPLE_TYPES = {"float16": "half", "float32": "float", "float64": "double"}
+
+
+def write_image(
+    path: Path, samples: NDArray[Any], *, names: tuple[str, ...] | str = (), depth: str = "", **attributes: Any
+) -> Path:
+    """Write `samples` as they are, in the format that the suffix names, and return the path.
+
+    Parameters
+    ----------
+    path : Path
+        The file; an existing one is replaced.
+    samples : ndarray, shape (H, W, C)
+        Code values or floats.
+    names : tuple of str or str, optional
+        Names of the channels, such as "RGB" or ("X", "Z"); by default R, G, B and A, or Y.
+    depth : str, optional
+        OpenImageIO's name of the type in the file, such as "half"; by default that of the samples.
+    **attributes
+        What stands in the header. Two underscores in a name mean a colon, as in ``oiio__BitsPerSample=10``; a tuple is
+        OpenImageIO's type and the value.
+    """
+    import OpenImageIO as oiio
+
+    height, width, channels = samples.shape
+    spec = oiio.ImageSpec(width, height, channels, depth or SAMPLE_TYPES.get(samples.dtype.name, samples.dtype.name))
+    if names:
+        spec.channelnames = tuple(names)
+    for name, value in attributes.items():
+        words = value if isinstance(value, tuple) else (value,)
+        spec.attribute(name.replace("__", ":"), *words)
+    output = oiio.ImageOutput.create(str(path))
+    assert output is not None, oiio.geterror()
+    assert output.open(str(path), spec), output.geterror()
+    assert output.write_image(np.ascontiguousarray(samples)), output.geterror()
+    output.close()
+    return path
+
+
+def read_image(path: Path, *, kind: str = "float") -> NDArray[Any]:
+    """Return the samples of an image, shape (H, W, C), as OpenImageIO converts them to `kind`, such as "uint8"."""
+    import OpenImageIO as oiio
+
+    image = oiio.ImageBuf(str(path))
+    samples = image.get_pixels(kind)
+    assert not image.has_error, image.geterror()
+    return np.asarray(samples)
