@@ -24,7 +24,7 @@ _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
 _load_network = lru_cache(maxsize=1)(load_network)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CompletedJob:
     """A job, what it found and what it wrote.
 
