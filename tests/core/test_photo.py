@@ -5,7 +5,6 @@ import struct
 import subprocess
 import sys
 import warnings
-import zlib
 from pathlib import Path
 
 import numpy as np
@@ -14,73 +13,17 @@ import pytest
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import MAX_PIXELS, read_codes, read_photo
+from tests.helpers.crafted_files import jpeg, png, png_chunk, tiff, with_jpeg_size
+from tests.helpers.images import read_image, write_image
 
 ROOT = Path(__file__).parents[2]
 CODES8 = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 CODES16 = np.array([[[0, 1, 2], [32767, 32768, 32769]], [[65533, 65534, 65535], [100, 200, 300]]], np.uint16)
 
 
-def write(path, codes, **attributes):
-    """Write `codes` (H, W, C) with OpenImageIO; `__` in an attribute's name stands for a colon."""
-    kind = {"float16": "half", "float32": "float"}.get(str(codes.dtype), str(codes.dtype))
-    spec = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], kind)
-    for name, value in attributes.items():
-        spec.attribute(name.replace("__", ":"), value)
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec), output.geterror()
-    assert output.write_image(codes), output.geterror()
-    output.close()
-    return path
-
-
 def widened(codes, bits):
     """Return codes of `bits` bits as OpenImageIO takes them: on the scale of 16 bits."""
     return np.round(np.asarray(codes) * (65535 / (2**bits - 1))).astype(np.uint16)
-
-
-def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), content=b""):
-    """Return an uncompressed little-endian TIFF whose header may lie about its size."""
-    tags = [
-        (256, 4, width),
-        (257, 4, height),
-        (258, 3, bits),
-        (259, 3, 1),
-        (262, 3, photometric),
-        (273, 4, 8),
-        (277, 3, samples),
-        (278, 4, height),
-        (279, 4, min(width * height * samples * bits // 8, 2**32 - 1)),
-        (339, 3, kind),
-        *extra,
-    ]
-    directory = b"".join(struct.pack("<HHII", tag, form, 1, value) for tag, form, value in sorted(tags))
-    start = 8 + len(content)
-    return b"II*\0" + struct.pack("<I", start) + content + struct.pack("<H", len(tags)) + directory + bytes(4)
-
-
-def png(width, height, rows=b"\0", colour_type=2, depth=8, chunks=b""):
-    """Return a PNG whose header may lie about its size."""
-    header = struct.pack(">IIBBBBB", width, height, depth, colour_type, 0, 0, 0)
-    parts = chunk(b"IHDR", header), chunks, chunk(b"IDAT", zlib.compress(rows)), chunk(b"IEND", b"")
-    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
-
-
-def chunk(name, content):
-    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
-
-
-def jpeg(path, height=120, width=160, channels=3, **attributes):
-    """Write a JPEG of smooth colour with some noise, and return its bytes."""
-    rows, columns = np.mgrid[:height, :width]
-    smooth = np.stack([columns * 255 // width, rows * 255 // height, (rows + columns) * 255 // (height + width)], -1)
-    noise = np.random.default_rng(0).integers(0, 16, smooth.shape)
-    return write(path, (smooth ^ noise).astype(np.uint8)[..., :channels], **attributes).read_bytes()
-
-
-def with_jpeg_size(content, width, height):
-    """Return a JPEG whose frame header claims another size."""
-    start = next(at for marker in (b"\xff\xc0", b"\xff\xc2") if (at := content.find(marker)) > 0)
-    return content[: start + 5] + struct.pack(">HH", height, width) + content[start + 9 :]
 
 
 def refusal(path):
@@ -96,7 +39,7 @@ def refusal(path):
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx"])
 def test_8_bit_codes_over_255(tmp_path, name):
-    photo = read_photo(write(tmp_path / name, CODES8, Compression="lossless"))
+    photo = read_photo(write_image(tmp_path / name, CODES8, Compression="lossless"))
     assert photo.pixels.dtype == np.float32
     assert photo.pixels.flags.c_contiguous
     assert photo.bit_depth == 8
@@ -107,7 +50,7 @@ def test_8_bit_codes_over_255(tmp_path, name):
 
 def test_all_8_bit_codes_are_the_nearest_float(tmp_path):
     ramp = np.repeat(np.arange(256, dtype=np.uint8).reshape(16, 16, 1), 3, axis=2)
-    pixels = read_photo(write(tmp_path / "a.png", ramp)).pixels
+    pixels = read_photo(write_image(tmp_path / "a.png", ramp)).pixels
     np.testing.assert_array_equal(pixels[..., 0].ravel(), (np.arange(256) / 255).astype(np.float32))
     assert pixels.min() == 0
     assert pixels.max() == 1
@@ -115,7 +58,7 @@ def test_all_8_bit_codes_are_the_nearest_float(tmp_path):
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.dpx"])
 def test_16_bit_codes_over_65535(tmp_path, name):
-    photo = read_photo(write(tmp_path / name, CODES16))
+    photo = read_photo(write_image(tmp_path / name, CODES16))
     assert photo.bit_depth == 16
     np.testing.assert_array_equal(photo.pixels, (CODES16 / 65535).astype(np.float32))
 
@@ -124,7 +67,7 @@ def test_16_bit_codes_over_65535(tmp_path, name):
 def test_10_and_12_bit_codes_over_their_own_largest(tmp_path, name, bits):
     side = 2 ** (bits // 2)
     codes = np.arange(2**bits).reshape(side, side, 1).repeat(3, axis=2)
-    path = write(tmp_path / name, widened(codes, bits), oiio__BitsPerSample=bits)
+    path = write_image(tmp_path / name, widened(codes, bits), oiio__BitsPerSample=bits)
     np.testing.assert_array_equal(read_codes(path).codes, codes)
     photo = read_photo(path)
     assert photo.bit_depth == bits
@@ -134,7 +77,7 @@ def test_10_and_12_bit_codes_over_their_own_largest(tmp_path, name, bits):
 def test_jpeg_is_decoded_as_oiiotool_does(tmp_path):
     path = tmp_path / "a.jpg"
     jpeg(path)
-    expected = oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+    expected = read_image(path)
     photo = read_photo(str(path))
     assert (photo.pixels.shape, photo.bit_depth) == ((120, 160, 3), 8)
     np.testing.assert_allclose(photo.pixels, expected, rtol=0, atol=2e-7)
@@ -143,18 +86,18 @@ def test_jpeg_is_decoded_as_oiiotool_does(tmp_path):
 def test_no_profile_or_gamma_is_applied(tmp_path):
     rows = b"".join(b"\0" + bytes(row.ravel().tolist()) for row in CODES8)
     path = tmp_path / "a.png"
-    path.write_bytes(png(2, 2, rows, chunks=chunk(b"gAMA", struct.pack(">I", 100000))))
+    path.write_bytes(png(2, 2, rows, chunks=png_chunk(b"gAMA", struct.pack(">I", 100000))))
     np.testing.assert_array_equal(read_codes(path).codes, CODES8)
 
 
 def test_orientation_is_ignored(tmp_path):
-    path = write(tmp_path / "a.tif", np.concatenate([CODES8, CODES8[:1]]), Orientation=6)
+    path = write_image(tmp_path / "a.tif", np.concatenate([CODES8, CODES8[:1]]), Orientation=6)
     np.testing.assert_array_equal(read_codes(path).codes[:2], CODES8)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg", "a.dpx"])
 def test_gray_file_is_replicated(tmp_path, name):
-    photo = read_photo(write(tmp_path / name, np.full((8, 8, 1), 51, np.uint8)))
+    photo = read_photo(write_image(tmp_path / name, np.full((8, 8, 1), 51, np.uint8)))
     assert photo.is_gray
     assert photo.pixels.shape == (8, 8, 3)
     np.testing.assert_array_equal(photo.pixels, np.full((8, 8, 3), 0.2, np.float32))
@@ -163,15 +106,15 @@ def test_gray_file_is_replicated(tmp_path, name):
 @pytest.mark.parametrize("channel", [0, 1, 2])
 def test_gray_means_equal_channels_everywhere(tmp_path, channel):
     codes = np.repeat(np.arange(40 * 40, dtype=np.uint8).reshape(40, 40, 1), 3, axis=2)
-    assert read_photo(write(tmp_path / "gray.png", codes)).is_gray
+    assert read_photo(write_image(tmp_path / "gray.png", codes)).is_gray
     codes[33, 21, channel] += 1
-    assert not read_photo(write(tmp_path / "colour.png", codes)).is_gray
+    assert not read_photo(write_image(tmp_path / "colour.png", codes)).is_gray
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif"])
 def test_unassociated_alpha_is_dropped_and_the_codes_are_kept(tmp_path, name):
     alpha = np.array([[[0], [1]], [[128], [255]]], np.uint8)
-    path = write(tmp_path / name, np.concatenate([CODES8, alpha], axis=2), oiio__UnassociatedAlpha=1)
+    path = write_image(tmp_path / name, np.concatenate([CODES8, alpha], axis=2), oiio__UnassociatedAlpha=1)
     values = read_codes(path)
     np.testing.assert_array_equal(read_photo(path).pixels, (CODES8 / 255).astype(np.float32))
     np.testing.assert_array_equal(values.alpha, alpha[..., 0])
@@ -180,26 +123,26 @@ def test_unassociated_alpha_is_dropped_and_the_codes_are_kept(tmp_path, name):
 
 def test_opaque_webp_with_alpha_keeps_its_codes(tmp_path):
     opaque = np.concatenate([CODES8, np.full((2, 2, 1), 255, np.uint8)], axis=2)
-    path = write(tmp_path / "a.webp", opaque, Compression="lossless", oiio__UnassociatedAlpha=1)
+    path = write_image(tmp_path / "a.webp", opaque, Compression="lossless", oiio__UnassociatedAlpha=1)
     np.testing.assert_array_equal(read_photo(path).pixels, (CODES8 / 255).astype(np.float32))
 
 
 def test_associated_alpha_is_divided_out(tmp_path):
     stored = np.array([[[0, 0, 0, 0], [50, 100, 25, 100], [10, 20, 30, 255], [90, 0, 0, 80]]], np.uint8)
-    photo = read_photo(write(tmp_path / "a.tif", stored))
+    photo = read_photo(write_image(tmp_path / "a.tif", stored))
     expected = [[[0, 0, 0], [0.5, 1, 0.25], [10 / 255, 20 / 255, 30 / 255], [1, 0, 0]]]
     np.testing.assert_allclose(photo.pixels, expected, rtol=1e-7)
 
 
 def test_extra_channel_that_is_no_alpha_is_dropped(tmp_path):
     path = tmp_path / "a.tif"
-    path.write_bytes(tiff(1, 1, samples=4, extra=[(338, 3, 0)], content=bytes([10, 20, 30, 40])))
+    path.write_bytes(tiff(1, 1, samples=4, extra=((338, 3, 0),), content=bytes([10, 20, 30, 40])))
     assert read_codes(path).codes.tolist() == [[[10, 20, 30]]]
     assert read_codes(path).alpha is None
 
 
 def test_gray_with_alpha(tmp_path):
-    path = write(tmp_path / "a.png", np.array([[[9, 100], [8, 0]]], np.uint8), oiio__UnassociatedAlpha=1)
+    path = write_image(tmp_path / "a.png", np.array([[[9, 100], [8, 0]]], np.uint8), oiio__UnassociatedAlpha=1)
     values = read_codes(path)
     assert values.codes.tolist() == [[[9, 9, 9], [8, 8, 8]]]
     assert values.alpha.tolist() == [[100, 0]]
@@ -218,12 +161,12 @@ def test_first_of_several_frames(tmp_path):
 
 
 def test_one_pixel(tmp_path):
-    assert read_photo(write(tmp_path / "a.png", CODES8[:1, :1])).pixels.shape == (1, 1, 3)
+    assert read_photo(write_image(tmp_path / "a.png", CODES8[:1, :1])).pixels.shape == (1, 1, 3)
 
 
 @pytest.mark.parametrize(("content", "name"), [("a.png", "b.jpg"), ("a.jpg", "b.png"), ("a.tif", "b")])
 def test_the_content_counts_not_the_suffix(tmp_path, content, name):
-    write(tmp_path / content, CODES8)
+    write_image(tmp_path / content, CODES8)
     expected = read_photo(tmp_path / content).pixels
     path = (tmp_path / content).rename(tmp_path / name)
     np.testing.assert_array_equal(read_photo(path).pixels, expected)
@@ -232,13 +175,7 @@ def test_the_content_counts_not_the_suffix(tmp_path, content, name):
 def test_ultra_hdr_gives_the_standard_image(tmp_path):
     hdr = np.linspace(0, 8, 64 * 64 * 3, dtype=np.float32).reshape(64, 64, 3).astype(np.float16)
     path = tmp_path / "a.jpg"
-    spec = oiio.ImageSpec(64, 64, 3, "half")
-    spec.attribute("jpeg:ultrahdr", 1)
-    spec.attribute("oiio:ColorSpace", "lin_rec709_scene")
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec)
-    assert output.write_image(hdr)
-    output.close()
+    write_image(path, hdr, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
     if str(oiio.ImageBuf(str(path)).spec().format) == "uint8":
         pytest.skip("this OpenImageIO has no Ultra HDR writer or reader")
     whole = path.read_bytes()
@@ -246,7 +183,7 @@ def test_ultra_hdr_gives_the_standard_image(tmp_path):
     plain.write_bytes(whole[: whole.index(b"\xff\xd9", whole.index(b"\xff\xda")) + 2])
     photo = read_photo(path)
     assert (photo.bit_depth, photo.path) == (8, path)
-    np.testing.assert_array_equal(photo.pixels, oiio.ImageBuf(str(plain)).get_pixels(oiio.UINT8) / np.float32(255))
+    np.testing.assert_array_equal(photo.pixels, read_image(plain, kind="uint8") / np.float32(255))
 
 
 def absent(path):
@@ -282,11 +219,11 @@ def half_tiff(path):
 
 
 def exr(path):
-    write(path, np.ones((2, 2, 3), np.float16))
+    write_image(path, np.ones((2, 2, 3), np.float16))
 
 
 def radiance(path):
-    write(path, np.ones((2, 2, 3), np.float32))
+    write_image(path, np.ones((2, 2, 3), np.float32))
 
 
 def raw(path):
@@ -432,7 +369,7 @@ def test_what_follows_a_jpeg_is_ignored(tmp_path):
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx"])
 def test_other_cut_files_are_refused(tmp_path, name, share):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
-    whole = write(tmp_path / name, noise, Compression="lossless" if name == "a.webp" else "none").read_bytes()
+    whole = write_image(tmp_path / name, noise, Compression="lossless" if name == "a.webp" else "none").read_bytes()
     (tmp_path / name).write_bytes(whole[: int(len(whole) * share)])
     assert "damaged or cut short" in refusal(tmp_path / name)
 
@@ -473,7 +410,7 @@ def test_bombs_take_little_memory(tmp_path):
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
 def test_memory_is_the_codes_and_the_floats(tmp_path):
-    path = write(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
+    path = write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
     code = (
         "import resource, sys\n"
         "from crfnet_core.image_io import read_photo\n"
@@ -488,7 +425,7 @@ def test_memory_is_the_codes_and_the_floats(tmp_path):
 
 
 def test_unreadable_file(tmp_path, monkeypatch):
-    path = write(tmp_path / "a.png", CODES8)
+    path = write_image(tmp_path / "a.png", CODES8)
 
     def refused(*arguments, **options):
         raise PermissionError(13, "Permission denied")
@@ -517,13 +454,13 @@ def test_argument_that_is_no_path(path):
 
 
 def test_photo_is_frozen(tmp_path):
-    photo = read_photo(write(tmp_path / "a.png", CODES8))
+    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
     with pytest.raises(AttributeError):
         photo.bit_depth = 16
 
 
 def test_reading_twice_gives_the_same(tmp_path):
-    path = write(tmp_path / "a.png", CODES8)
+    path = write_image(tmp_path / "a.png", CODES8)
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         np.testing.assert_array_equal(read_photo(path).pixels, read_photo(path).pixels)

@@ -24,6 +24,7 @@ from ocio.plates import exr
 from ocio.plates import linear as plates_module
 from ocio.plates.frames import find_frames
 from ocio.plates.linear import STALE_SECONDS, PlateReport, linear_targets, linearize_plates
+from tests.helpers.processes import start_interruptible
 
 ROOT = Path(__file__).parents[2]
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2), comments=("photograph plate.jpg", "model test"))
@@ -463,7 +464,7 @@ def test_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop)
     for number in range(1, total):
         shutil.copy(tmp_path / "plate.0000.png", tmp_path / f"plate.{number:04d}.png")
     arguments = [sys.executable, "-c", RUN, tmp_path / "plate.%04d.png", out / "a.%d.exr"]
-    process = subprocess.Popen(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    process = start_interruptible(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
     for _ in range(3):
         assert process.stdout.readline()
     process.send_signal(stop)

@@ -1,0 +1,86 @@
+"""PNG, TIFF and JPEG files made by hand, whose headers say what no image writer would."""
+
+from __future__ import annotations
+
+import struct
+import zlib
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from tests.helpers.images import write_image
+
+
+def tiff(
+    width: int,
+    height: int,
+    *,
+    samples: int = 3,
+    photometric: int = 2,
+    bits: int = 8,
+    kind: int = 1,
+    extra: tuple[tuple[int, int, int], ...] = (),
+    content: bytes = b"",
+) -> bytes:
+    """Return an uncompressed little-endian TIFF whose header may lie about its size.
+
+    Parameters
+    ----------
+    width, height : int
+        The size that the header claims.
+    samples, photometric, bits, kind : int
+        Values of the tags SamplesPerPixel, PhotometricInterpretation, BitsPerSample and SampleFormat.
+    extra : tuple of (tag, type, value)
+        Further tags.
+    content : bytes
+        The samples.
+    """
+    tags = [
+        (256, 4, width),
+        (257, 4, height),
+        (258, 3, bits),
+        (259, 3, 1),
+        (262, 3, photometric),
+        (273, 4, 8),
+        (277, 3, samples),
+        (278, 4, height),
+        (279, 4, min(width * height * samples * bits // 8, 2**32 - 1)),
+        (339, 3, kind),
+        *extra,
+    ]
+    directory = b"".join(struct.pack("<HHII", tag, form, 1, value) for tag, form, value in sorted(tags))
+    start = 8 + len(content)
+    return b"II*\0" + struct.pack("<I", start) + content + struct.pack("<H", len(tags)) + directory + bytes(4)
+
+
+def png(width: int, height: int, rows: bytes = b"\0", *, chunks: bytes = b"") -> bytes:
+    """Return an RGB PNG of 8 bits whose header may lie about its size; `rows` each begin with their filter, 0."""
+    header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
+    parts = (
+        png_chunk(b"IHDR", header),
+        chunks,
+        png_chunk(b"IDAT", zlib.compress(rows)),
+        png_chunk(b"IEND", b""),
+    )
+    return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
+
+
+def png_chunk(name: bytes, content: bytes) -> bytes:
+    """Return a chunk of a PNG: its length, name, content and checksum."""
+    return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
+
+
+def jpeg(path: Path, **attributes: Any) -> bytes:
+    """Write a JPEG of 120 x 160 pixels, smooth colour with some noise, and return its bytes; see `write_image`."""
+    height, width = 120, 160
+    rows, columns = np.mgrid[:height, :width]
+    smooth = np.stack([columns * 255 // width, rows * 255 // height, (rows + columns) * 255 // (height + width)], -1)
+    noise = np.random.default_rng(0).integers(0, 16, smooth.shape)
+    return write_image(path, (smooth ^ noise).astype(np.uint8), **attributes).read_bytes()
+
+
+def with_jpeg_size(content: bytes, width: int, height: int) -> bytes:
+    """Return a JPEG whose frame header claims another size."""
+    start = next(at for marker in (b"\xff\xc0", b"\xff\xc2") if (at := content.find(marker)) > 0)
+    return content[: start + 5] + struct.pack(">HH", height, width) + content[start + 9 :]
