@@ -7,7 +7,6 @@ from pathlib import Path
 
 import pytest
 
-ROOMS = ("ui", "scene", "work")
 ESTIMATOR = {"crfnet_core", "ocio", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
 
 #: Modules of `work` that Blender imports when it enables the add-on.
@@ -96,10 +95,8 @@ def test_what_is_registered_imports_no_estimator(addon_folder, module):
     assert of_work <= set(LIGHT)
 
 
-@pytest.mark.parametrize("room", ROOMS)
-def test_a_room_has_at_most_a_dozen_modules_and_names_each(addon_folder, room):
+@pytest.mark.parametrize("room", ["ui", "scene", "work"])
+def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     modules = {path.stem for path in (addon_folder / room).glob("*.py")} - {"__init__"}
     text = ast.get_docstring(ast.parse((addon_folder / room / "__init__.py").read_text(encoding="utf-8")))
-    listed = {line.split()[0] for line in text.split("\n\n")[1].splitlines()}
-    assert len(modules) <= 12
-    assert listed == modules
+    assert {line.split()[0] for line in text.split("\n\n")[1].splitlines()} == modules
