@@ -16,7 +16,7 @@ PHOTO := tests/data/plate.jpg
 DEMO := demo_out
 DATA ?=
 RUN ?= runs/model
-MODEL := crfnet_core/models/photograph-statistics
+MODEL := crfnet_core/models/photograph-statistics-1.0
 
 comma := ,
 
@@ -59,7 +59,7 @@ model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): m
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
 	$(TRAIN)/bin/python -m training.network.train --shards $(RUN)/photos --run $(RUN)
-	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden.npz
+	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden_predictions.npz
 	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --out $(RUN)/evaluation
 	$(TRAIN)/bin/python -m training.export.model_card --model $(MODEL) --report $(RUN)/evaluation/report.json
 

@@ -1,4 +1,19 @@
-"""Camera response estimation from one photograph: numpy and onnxruntime, OpenImageIO only in image_io.py."""
+"""Estimate a camera's response from one photograph, with numpy and onnxruntime.
+
+estimate             the method on one screen: photographs in, response and uncertainty out
+photo, image_io      a photograph's code values, and the one reader of image files
+windows              the windows of a photograph that are analysed
+statistics           what is counted in a window
+network              the trained network: its folder, its inputs and predictions, pooling, uncertainty
+emor                 the empirical model of response: weights to curve, curve to weights
+response             a strictly monotone response and its inverse
+transfer_functions   sRGB and Rec.709, to compare with
+metrics              how far an estimate is from the truth
+files                write a file whole or not at all
+errors, types        the errors that a user can fix; names of array types
+
+The names below are the public interface; docs/METHOD.md explains the steps and their equations.
+"""
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import CRFNetError

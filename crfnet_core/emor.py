@@ -1,4 +1,4 @@
-"""The empirical model of response (EMoR): a mean response and its principal components."""
+"""The empirical model of response (EMoR): a mean response and its principal components (Eq. 1 of docs/METHOD.md)."""
 
 from __future__ import annotations
 
@@ -7,17 +7,16 @@ from functools import cache
 from pathlib import Path
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crfnet_core.response import SAMPLES
+from crfnet_core.types import Float64Array
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
 
 #: The packaged basis.
 BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -39,8 +38,8 @@ class EmorBasis:
         Orthonormal rows, most variance first.
     """
 
-    mean: Floats
-    components: Floats
+    mean: Float64Array
+    components: Float64Array
 
     @classmethod
     @cache
@@ -59,11 +58,11 @@ class EmorBasis:
         components = np.linalg.svd(samples - mean, full_matrices=False)[2][:COMPONENTS]
         return cls(mean, components * np.sign(components.sum(axis=1, keepdims=True)))
 
-    def project(self, curves: ArrayLike) -> Floats:
+    def project(self, curves: ArrayLike) -> Float64Array:
         """Return the weights, shape (..., 11), of responses of shape (..., 1024)."""
         return (np.asarray(curves, dtype=np.float64) - self.mean) @ self.components.T
 
-    def reconstruct(self, weights: ArrayLike) -> Floats:
+    def reconstruct(self, weights: ArrayLike) -> Float64Array:
         """Return the responses, shape (..., 1024), of weights of shape (..., 11).
 
         What comes out of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`.

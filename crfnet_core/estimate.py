@@ -1,4 +1,7 @@
-"""From one photograph, or several of one camera, to its response and how far to trust it."""
+"""The method: from one photograph, or several of one camera, to its response and how far to trust it.
+
+`estimate_response` is the whole of it on one screen; docs/METHOD.md explains each step with its equations.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +12,13 @@ import numpy as np
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import ResponseNetwork, Verdict, pooling
+from crfnet_core.network import Predictions, ResponseNetwork, Verdict, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.response import ResponseCurve
-from crfnet_core.types import Float32Array, Float64Array, Progress
-from crfnet_core.windows import FULL_COVERAGE, Window, cut_windows, select_windows
+from crfnet_core.types import BoolArray, Float32Array, Float64Array, Progress
+from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
-#: Share of samples at the ends of the range above which a photograph counts as mostly clipped.
+#: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
 
 
@@ -30,11 +33,11 @@ class WindowEstimate:
     window : Window
         Where it lies and how much of the range it covers.
     weights : ndarray, float64, shape (11,)
-        The EMoR weights that the network gave for it.
+        The EMoR weights that the network predicts from this window alone.
     expected_error : float
-        The E_est that the network expects of it.
+        The E_est that the network expects of them.
     kept : bool
-        Whether it agrees with the others; an outlier enters no average of a network that does not pool by itself.
+        Whether the window agrees with the others (`pooling.inliers`). Without learned pooling, only such windows count.
     """
 
     photo: int
@@ -55,11 +58,11 @@ class ResponseEstimate:
     weights : ndarray, float64, shape (11,)
         Its EMoR weights, before it was made monotone.
     windows : tuple of WindowEstimate
-        What each window said.
+        What the network says of each window.
     spread : float
-        RMS distance of the kept windows' estimates from their mean, in units of E_est.
+        RMS distance of the kept windows' weights from their mean, in units of E_est.
     uncertainty : float
-        The E_est to be expected of this estimate.
+        The expected E_est of this estimate.
     band : ndarray, float64, shape (2, 1024)
         Lower and upper end of the 90 % band around the response.
     warnings : tuple of str
@@ -90,15 +93,16 @@ def estimate_response(
     photos: Photo | Iterable[Photo],
     *,
     network: ResponseNetwork,
-    windows: int = 10,
+    windows: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
     progress: Progress | None = None,
 ) -> ResponseEstimate:
     """Estimate the response of the camera that took one or several photographs.
 
-    The network pools the windows of all photographs into one response. Where it cannot, as that of the CRF-net paper,
-    every window's own estimate counts: those far from the others are removed and the rest averaged.
+    Windows are cut from every photograph. The network reads them, or statistics that are counted in them, and answers
+    with EMoR weights, which become a strictly monotone response. A network with learned pooling answers once for all
+    windows. For one without, such as that of the CRF-net paper, the windows that agree are averaged.
 
     Parameters
     ----------
@@ -109,7 +113,7 @@ def estimate_response(
     windows : int
         Windows of each photograph.
     seed : int
-        Of the choice of windows.
+        Seed of the choice of windows.
     coverage : int
         Code values, of 256, that a window should hold; see `select_windows`.
     progress : callable, optional
@@ -121,12 +125,11 @@ def estimate_response(
         If there is no photograph, or one is smaller than a window.
     """
     photos = (photos,) if isinstance(photos, Photo) else photos
-    evidence = [_evidence(photo, windows, seed, coverage) for photo in photos]
-    if not evidence:
+    sources = [_choose_windows(photo, windows, seed, coverage) for photo in photos]
+    if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
-    chosen = [(i, window) for i, part in enumerate(evidence) for window in part.windows]
-    samples = np.concatenate([part.samples for part in evidence])
-    inputs = network.inputs(samples, progress=progress)
+    samples = np.concatenate([source.samples for source in sources])  # (N, 227, 227, 3)
+    inputs = network.inputs(samples, progress=progress)  # statistics (N, LENGTH), or the samples
     predictions = network.predict(inputs, progress=progress)
     kept = pooling.inliers(predictions.weights)
     answer = predictions.pooled or pooling.robust_mean(predictions, kept)
@@ -136,21 +139,18 @@ def estimate_response(
     return ResponseEstimate(
         curve=curve,
         weights=answer.weights,
-        windows=tuple(
-            WindowEstimate(i, window, predictions.weights[n], float(predictions.expected_errors[n]), bool(kept[n]))
-            for n, (i, window) in enumerate(chosen)
-        ),
+        windows=_window_estimates(sources, predictions, kept),
         spread=spread,
         uncertainty=uncertainty,
         band=network.config.uncertainty_model.band(curve, uncertainty),
-        warnings=_warnings(evidence, samples),
+        warnings=_warnings(sources, samples),
         model=network.config.label,
-        photos=tuple(part.name for part in evidence),
+        photos=tuple(source.name for source in sources),
     )
 
 
 @dataclass(frozen=True)
-class _Evidence:
+class _Source:
     """What stays of a photograph once its windows are cut: name, whether it is gray, windows and their samples."""
 
     name: str
@@ -159,21 +159,30 @@ class _Evidence:
     samples: Float32Array
 
 
-def _evidence(photo: Photo, count: int, seed: int, coverage: int) -> _Evidence:
+def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Source:
     """Return the windows of one photograph; an error names its file."""
     try:
         windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
-    return _Evidence(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))
+    return _Source(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))
 
 
-def _warnings(evidence: Sequence[_Evidence], samples: Float32Array) -> tuple[str, ...]:
+def _window_estimates(
+    sources: Sequence[_Source], predictions: Predictions, kept: BoolArray
+) -> tuple[WindowEstimate, ...]:
+    """Return what the network says of each window, in the order of the photographs."""
+    origins = [(number, window) for number, source in enumerate(sources) for window in source.windows]
+    said = zip(predictions.weights, predictions.expected_errors.tolist(), kept.tolist(), strict=True)
+    return tuple(WindowEstimate(*origin, *rest) for origin, rest in zip(origins, said, strict=True))
+
+
+def _warnings(sources: Sequence[_Source], samples: Float32Array) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     warnings = []
-    if not any(window.covers_range for part in evidence for window in part.windows):
+    if not any(window.covers_range for source in sources for window in source.windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
-    if all(part.is_gray for part in evidence):
+    if all(source.is_gray for source in sources):
         warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
     if np.mean((samples <= 0.5 / 255) | (samples >= 254.5 / 255)) > MOSTLY_CLIPPED:
         warnings.append("mostly clipped: take a photograph with another exposure")

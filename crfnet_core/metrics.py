@@ -7,6 +7,9 @@ from numpy.typing import ArrayLike
 
 from crfnet_core.response import ResponseCurve
 
+#: The 8-bit codes between which the shape of a response matters: outside, black level and clipping rule.
+FIRST_SHAPE_CODE, LAST_SHAPE_CODE = 16, 240
+
 
 def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     """Return E_est = ||f - f_hat||_2 over the responses at 1024 uniform irradiances (RMSE times 32)."""
@@ -37,6 +40,17 @@ def linearization_error(
     squares = (irradiance - estimated.inverse(brightness)) ** 2
     peak = irradiance[weights > 0].max()
     return float(np.sqrt(np.average(squares, weights=weights)) / peak)
+
+
+def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
+    """Return how far the estimated linear light is off, in stops (RMS), once the exposure has been matched.
+
+    The error is log2(g_hat(B) / g(B)) at the 8-bit codes B from 16 to 240, less its mean over them: a linear plate has
+    no absolute scale, so a constant factor is a gain and no error. This is the error that a compositor sees.
+    """
+    brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    stops = np.log2(estimated.inverse(brightness) / true.inverse(brightness))
+    return float(np.std(stops))
 
 
 def peak_signal_to_noise(linearisation: float) -> float:

@@ -5,17 +5,16 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import ArrayLike
 
 from crfnet_core.errors import CurveError
+from crfnet_core.types import Float64Array
 
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
 SAMPLES = 1024
 
-#: Share of the identity in every response: its least slope, and so the bound on the slope of the inverse.
+#: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
 LEAST_SLOPE = 1e-4
-
-Floats = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
@@ -35,8 +34,8 @@ class ResponseCurve:
         If the samples are of another shape, not strictly increasing, or do not run from 0 to 1.
     """
 
-    brightness: Floats
-    _irradiance: Floats = field(init=False, repr=False, compare=False)
+    brightness: Float64Array
+    _irradiance: Float64Array = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         brightness = np.array(self.brightness, dtype=np.float64)
@@ -91,41 +90,16 @@ class ResponseCurve:
             raise CurveError(f"a gamma must be above 0, found {exponent}")
         return cls.from_samples(np.linspace(0, 1, SAMPLES) ** (1 / exponent))
 
-    def forward(self, irradiance: ArrayLike) -> Floats:
+    def forward(self, irradiance: ArrayLike) -> Float64Array:
         """Return brightness f(E) in [0, 1], of the shape of `irradiance`; E is clipped to [0, 1]."""
         return np.interp(np.asarray(irradiance, dtype=np.float64), self._irradiance, self.brightness)
 
-    def inverse(self, brightness: ArrayLike) -> Floats:
+    def inverse(self, brightness: ArrayLike) -> Float64Array:
         """Return irradiance g(B) in [0, 1], of the shape of `brightness`; B is clipped to [0, 1]."""
         return np.interp(np.asarray(brightness, dtype=np.float64), self.brightness, self._irradiance)
 
-    def forward_samples(self, size: int) -> Floats:
-        """Return f at `size` uniform irradiances from 0 to 1, shape (size,)."""
-        return self.forward(np.linspace(0, 1, size))
 
-    def inverse_samples(self, size: int) -> Floats:
-        """Return g at `size` uniform brightnesses from 0 to 1, shape (size,)."""
-        return self.inverse(np.linspace(0, 1, size))
-
-    def rescaled(self, upper: float) -> ResponseCurve:
-        """Return the response over the lower part of the range, renormalised (CRF-net paper, Fig. 9).
-
-        Parameters
-        ----------
-        upper : float
-            The irradiance in (0, 1] that becomes the new 1; what lies above it is ignored.
-
-        Raises
-        ------
-        CurveError
-            If `upper` is not in (0, 1].
-        """
-        if not 0 < upper <= 1:
-            raise CurveError(f"the upper end of a partial response must lie in (0, 1], found {upper}")
-        return ResponseCurve.from_samples(self.forward(upper * self._irradiance))
-
-
-def nearest_increasing(samples: ArrayLike) -> Floats:
+def nearest_increasing(samples: ArrayLike) -> Float64Array:
     """Return the non-decreasing sequence nearest to `samples` in L2 (pool adjacent violators), shape (N,).
 
     Source: Ayer et al., "An empirical distribution function for sampling with incomplete information", 1955.

@@ -6,23 +6,24 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.types import Float32Array, Uint8Array
 
 #: Side of a window in samples.
 WINDOW_SIZE = 227
 
-#: Code values over all three channels that a good window holds, of 256.
+#: Windows that are analysed in a photograph.
+WINDOWS_PER_PHOTOGRAPH = 10
+
+#: Code values over all three channels that a good window holds, of 256 (CRF-net paper, Sec. 3.2).
 FULL_COVERAGE = 220
 
-#: Candidates drawn before the best so far are taken.
-MAX_ATTEMPTS = 400
+#: Random positions that are tried before the best-covering windows so far are taken.
+POSITIONS_TRIED = 400
 
 #: The shorter side of a photograph holds at least this many windows.
 WINDOWS_ACROSS = 2
-
-Pixels = NDArray[np.float32]
 
 
 @dataclass(frozen=True)
@@ -36,7 +37,7 @@ class Window:
 
     @property
     def extent(self) -> int:
-        """Pixels of the photograph that the window spans in each direction."""
+        """Float32Array of the photograph that the window spans in each direction."""
         return (WINDOW_SIZE - 1) * self.step + 1
 
     @property
@@ -44,7 +45,7 @@ class Window:
         """Whether the window holds enough of the 256 code values to show the whole response."""
         return self.filled >= FULL_COVERAGE
 
-    def cut(self, pixels: Pixels) -> Pixels:
+    def cut(self, pixels: Float32Array) -> Float32Array:
         """Return a view of the window's samples, shape (227, 227, 3)."""
         end_y, end_x = self.y + self.extent, self.x + self.extent
         return pixels[self.y : end_y : self.step, self.x : end_x : self.step]
@@ -53,18 +54,19 @@ class Window:
 def sampling_step(height: int, width: int) -> int:
     """Return the distance in pixels between the samples of a window.
 
-    Large photographs are point-sampled, never averaged: every sample keeps its exact code value, and a window sees as
-    much of the scene as the training windows did.
+    Large photographs are point-sampled, never averaged: averaging mixes brightness where the camera mixed irradiance,
+    and so bends the curve. Every sample keeps its exact code value, and a window sees as much of the scene as the
+    windows of training did.
     """
     return max(1, min(height, width) // (WINDOWS_ACROSS * WINDOW_SIZE))
 
 
-def filled_bins(samples: Pixels) -> int:
+def filled_bins(samples: Float32Array) -> int:
     """Return how many of the 256 bins of one histogram over all channels hold a sample; samples in [0, 1]."""
     return filled_codes(np.rint(samples * np.float32(255)).astype(np.uint8))
 
 
-def filled_codes(codes: NDArray[np.uint8]) -> int:
+def filled_codes(codes: Uint8Array) -> int:
     """Return how many of the 256 code values occur among `codes`, of any shape."""
     seen = np.zeros(256, dtype=bool)
     seen[codes] = True
@@ -72,12 +74,17 @@ def filled_codes(codes: NDArray[np.uint8]) -> int:
 
 
 def select_windows(
-    pixels: Pixels, *, count: int = 10, seed: int = 0, step: int | None = None, coverage: int = FULL_COVERAGE
+    pixels: Float32Array,
+    *,
+    count: int = WINDOWS_PER_PHOTOGRAPH,
+    seed: int = 0,
+    step: int | None = None,
+    coverage: int = FULL_COVERAGE,
 ) -> tuple[Window, ...]:
-    """Return the windows to analyse, those that cover the range first found.
+    """Return the windows to analyse (CRF-net paper, Sec. 3.2).
 
-    Candidates are drawn at random; one is taken when its 256-bin histogram over all channels has at least `coverage`
-    bins filled. After `MAX_ATTEMPTS` candidates the best-covering of those left make up the number, so
+    Positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least `coverage`
+    bins filled. If `POSITIONS_TRIED` positions do not give enough of them, the best-covering others fill the number:
     look at `Window.covers_range`.
 
     Parameters
@@ -85,13 +92,13 @@ def select_windows(
     pixels : ndarray, float32, shape (H, W, 3)
         A photograph, code values in [0, 1]; not changed.
     count : int
-        Windows wanted; fewer only where the photograph has fewer positions.
+        Number of windows; fewer only if the photograph has fewer positions.
     seed : int
-        The same seed gives the same windows.
+        Seed of the positions: the same seed gives the same windows.
     step : int, optional
-        Pixels between samples; by default `sampling_step`.
+        Float32Array between samples; by default `sampling_step`.
     coverage : int
-        Code values, of 256, that a window should hold; 0 takes the first candidates.
+        Code values, of 256, that a window should hold; 0 takes the first positions.
 
     Raises
     ------
@@ -117,14 +124,14 @@ def select_windows(
     return tuple(chosen + others[: count - len(chosen)])
 
 
-def cut_windows(pixels: Pixels, windows: Sequence[Window]) -> Pixels:
+def cut_windows(pixels: Float32Array, windows: Sequence[Window]) -> Float32Array:
     """Return the samples of `windows`, shape (N, 227, 227, 3), copied from `pixels` of shape (H, W, 3)."""
     return np.stack([window.cut(pixels) for window in windows])
 
 
 def _positions(height: int, width: int, step: int, seed: int) -> list[tuple[int, int]]:
-    """Return up to `MAX_ATTEMPTS` distinct random window corners (x, y)."""
+    """Return up to `POSITIONS_TRIED` distinct random window corners (x, y)."""
     extent = Window(0, 0, step, 0).extent
     rows, columns = height - extent + 1, width - extent + 1
-    places = np.random.default_rng(seed).choice(rows * columns, min(MAX_ATTEMPTS, rows * columns), replace=False)
-    return [(int(place % columns), int(place // columns)) for place in places]
+    drawn = np.random.default_rng(seed).choice(rows * columns, min(POSITIONS_TRIED, rows * columns), replace=False)
+    return [(int(position % columns), int(position // columns)) for position in drawn]

@@ -30,7 +30,7 @@ class Cost:
 
 def make_photograph(path: Path) -> None:
     """Write the bundled photograph, mirrored and tiled to 24 megapixels, with noise of its own everywhere."""
-    pixels = oiio.ImageBuf(str(PLATE)).get_pixels(oiio.UINT8)
+    pixels = np.asarray(oiio.ImageBuf(str(PLATE)).get_pixels(oiio.UINT8))
     pair = np.concatenate([pixels, pixels[:, ::-1]], axis=1)
     tile = np.concatenate([pair, pair[::-1]], axis=0)
     rows, columns = -(-HEIGHT // tile.shape[0]), -(-WIDTH // tile.shape[1])

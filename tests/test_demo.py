@@ -19,4 +19,5 @@ def test_prints_the_true_error_and_the_files(crfnet, demo, plate, fixed_model, t
     out = capsys.readouterr().out
     assert "gamma 2.2                           3.72" in out
     assert "this estimate                       0.01" in out
+    assert "0.38" in next(line for line in out.splitlines() if "gamma 2.2" in line and "3.72" in line)
     assert "plate_linear.exr" in out

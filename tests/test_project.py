@@ -12,11 +12,28 @@ def project(root):
     return tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
 
 
-@pytest.mark.parametrize("name", ["README.md", "CONTRIBUTING.md", "CHANGELOG.md", "tests/data/README.md"])
-def test_links_lead_somewhere(root, name):
-    text = (root / name).read_text(encoding="utf-8")
-    targets = [target for target in re.findall(r"\]\(([^)#]+)\)", text) if "://" not in target]
-    assert not [target for target in targets if not (root / name).parent.joinpath(target).exists()]
+DOCUMENTS = ("*.md", "docs/**/*.md", "blender_addon/*.md", "training/*.md", "tests/data/**/*.md")
+
+
+def test_links_lead_somewhere(root):
+    documents = [path for pattern in DOCUMENTS for path in root.glob(pattern)]
+    assert len(documents) > 10
+    assert not [f"{path.relative_to(root)}: {link}" for path in documents for link in broken_links(path)]
+
+
+def broken_links(path):
+    """The links of a document to files that are not there, and to headings that its target has not."""
+    for target in re.findall(r"\]\(([^)]+)\)", path.read_text(encoding="utf-8")):
+        file, _, heading = target.partition("#")
+        place = path.parent / file if file else path
+        if "://" not in target and not (place.exists() and (not heading or heading in anchors(place))):
+            yield target
+
+
+def anchors(path):
+    """The anchors that GitHub gives the headings of a document."""
+    headings = re.findall(r"^#+ (.*)", path.read_text(encoding="utf-8"), re.MULTILINE)
+    return {re.sub(r"[^\w -]", "", heading).lower().replace(" ", "-") for heading in headings}
 
 
 def test_the_readme_names_every_target_that_it_uses(root):

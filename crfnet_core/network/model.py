@@ -15,7 +15,7 @@ from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
 MODELS = Path(__file__).parents[1] / "models"
-DEFAULT_MODEL = MODELS / "photograph-statistics"
+DEFAULT_MODEL = MODELS / "photograph-statistics-1.0"
 
 
 @dataclass(frozen=True)
@@ -107,11 +107,17 @@ class ModelConfig:
 
 
 def model_folder(wanted: str | Path | None = None) -> Path:
-    """Return the folder of a model: that of a path where there is one, else of the packaged model of this name."""
+    """Return the folder of a model: a path, or the name of a packaged model, of which the version may be left out.
+
+    A folder of that path comes first. What is neither is returned as it is, for an error that names it.
+    """
     if wanted is None:
         return DEFAULT_MODEL
-    is_packaged = not Path(wanted).is_dir() and (MODELS / wanted / "model.json").is_file()
-    return MODELS / wanted if is_packaged else Path(wanted)
+    if Path(wanted).is_dir():
+        return Path(wanted)
+    packaged = sorted((config.parent for config in MODELS.glob("*/model.json")), reverse=True)
+    named = (folder for folder in packaged if str(wanted) in (folder.name, folder.name.rpartition("-")[0]))
+    return next(named, Path(wanted))
 
 
 def _read_uncertainty_model(path: Path, entries: object) -> UncertaintyModel:

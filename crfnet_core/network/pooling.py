@@ -1,4 +1,4 @@
-"""From the windows' predictions to one answer, as the CRF-net paper does it (Sec. 3.3): outliers removed, a mean.
+"""From the windows' predictions to one answer, as the CRF-net paper makes it: outliers removed, then a mean.
 
 Only a network without learned pooling is pooled so. The outliers are named for every network, because windows that
 agree are what a user can see of the evidence.

@@ -32,7 +32,7 @@ def load_config(path: str | Path) -> OCIO.Config:
     """
     try:
         return OCIO.Config.CreateFromFile(str(path))
-    except OCIO.Exception as problem:
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError(
             f"{path}: OpenColorIO refuses this config ({one_line(problem)}); mend it or choose a folder"
         ) from None
@@ -85,10 +85,17 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
 
 
 def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
-    """Raise a ConfigError unless a colour space converts as its LUT does in both directions, also beyond its ends."""
+    """Raise a ConfigError unless a colour space converts as its LUT does."""
     space = config.getColorSpace(name)
     if space is None:
         raise ConfigError(f"{name}: the config has no such colour space; add it before writing")
+    worst = _conversion_error(config, space, lut)
+    if not worst <= TOLERANCE:
+        raise ConfigError(f"{name}: converts other than its LUT by {worst:.2g}; write the LUT and the config again")
+
+
+def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -> float:
+    """Return the largest difference between a colour space and its LUT, in both directions and beyond both ends."""
     low, high = lut.domain
     margin = (high - low) / 8
     brightness = np.linspace(low - margin, high + margin, CHECKED_VALUES, dtype=np.float32)
@@ -96,14 +103,13 @@ def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
     config.addColorSpace(linear)
     gain = np.float32(2 ** _exposure(space))
     expected = lut.apply(brightness) * gain
-    irradiance = _converted(config, name, linear.getName(), brightness)
-    back = _converted(config, linear.getName(), name, expected)
+    irradiance = _converted(config, space.getName(), linear.getName(), brightness)
+    back = _converted(config, linear.getName(), space.getName(), expected)
     scale = np.maximum(np.abs(expected), 1)
     forward = np.abs(irradiance - expected) / scale
+    # The inverse of a flat part is not determined in float32, so a brightness also passes if it gives the irradiance.
     backward = np.minimum(np.abs(back - lut.apply_inverse(expected / gain)), np.abs(lut.apply(back) * gain - expected))
-    worst = max(float(forward.max()), float((backward / scale).max()))
-    if not worst <= TOLERANCE:
-        raise ConfigError(f"{name}: converts other than its LUT by {worst:.2g}; write the LUT and the config again")
+    return max(float(forward.max()), float((backward / scale).max()))
 
 
 def _exposure(space: OCIO.ColorSpace) -> float:

@@ -1,12 +1,12 @@
-"""The one way from photographs to files, for the command and for the add-on. Nothing here prints or draws a bar.
+"""The one way from photographs to files, for the command and for the add-on.
 
-estimates  photographs or frames -> the response estimated from them -> its LUT and its exposure
+estimates  photographs or frames to the response estimated from them, its LUT and its exposure
 folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheets, documents and config
-delivery   what is made of a LUT alone: the linear frames of a sequence, or LUT files and a config
+delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
 
-Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback takes (done, total); what
-it raises ends the step, after the step has removed its unfinished files. A config in which Blender or another program
-finds the plate's colour space at its start is the job of `ocio.configs.installed`.
+Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
+called with (done, total); whatever it raises ends the step, which first removes its unfinished files. To put a colour
+space into the config that a program reads at its start, see `ocio.configs.installed`.
 """
 
 from ocio.pipeline.delivery import bake_plates, export_luts

@@ -1,4 +1,4 @@
-"""What is made of a LUT alone: linear frames, or LUT files and a config. All files are written, or none."""
+"""What is made of one LUT: linear frames, or LUT files and a config. Either all files are written, or none."""
 
 from __future__ import annotations
 

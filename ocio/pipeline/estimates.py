@@ -117,6 +117,8 @@ def estimate_frames(
 ) -> ResponseEstimate:
     """Estimate the one response of a sequence from up to `FRAMES_ANALYSED` of its frames, evenly spread.
 
+    Only one frame is in memory at a time, so these few frames are read again when the sequence is linearised.
+
     Parameters
     ----------
     sequence : FrameSequence

@@ -120,7 +120,7 @@ def _write_estimate(files: OutputFiles, found: PhotographEstimate, lut: Lut1D, p
     """Write the files of one estimate, except the config, and return its document."""
     for path in files.luts:
         write_lut(path, lut, overwrite=plates.overwrite)
-    for photo, linear in zip(found.paths, files.linear, strict=True):
+    for photo, linear in zip(found.paths, files.linear, strict=True):  # reads each again: see `estimate_photographs`
         linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
     if files.sheet:
         _write_sheet(files.sheet, found, overwrite=plates.overwrite)

@@ -6,6 +6,7 @@ from crfnet_core.metrics import (
     linearization_error,
     peak_signal_to_noise,
     ratio_to_gamma,
+    shape_error,
     win_rate,
 )
 from crfnet_core.response import SAMPLES, ResponseCurve
@@ -34,6 +35,19 @@ def test_counts_stand_for_repeated_pixels():
     pixels = np.array([0.1, 0.1, 0.1, 0.6, 0.9, 0.9])
     counted = linearization_error([0.1, 0.6, 0.9, 1.0], STRAIGHT, SQUARE, counts=[3, 1, 2, 0])
     assert counted == pytest.approx(linearization_error(pixels, STRAIGHT, SQUARE), rel=1e-12)
+
+
+def test_the_shape_error_of_two_powers():
+    """By hand: log2(B ** 2 / B) = log2(B), whose spread over the codes 16 to 240 is a sum of logarithms."""
+    codes = np.arange(16, 241)
+    assert shape_error(STRAIGHT, SQUARE) == pytest.approx(np.std(np.log2(codes)) / 2, rel=2e-2)
+
+
+def test_the_shape_error_ignores_the_exposure():
+    """f(E) = 2 E until it clips: the linear light of codes below white is off by one stop everywhere."""
+    clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
+    assert estimation_error(STRAIGHT, clipped) > 5
+    assert shape_error(STRAIGHT, clipped) < 2e-3
 
 
 def test_psnr():

@@ -16,8 +16,17 @@ def network():
 
 @pytest.fixture(scope="module")
 def golden(root):
-    with np.load(root / "tests" / "data" / "golden.npz") as arrays:
-        return dict(arrays)
+    """Windows, their statistics, and what torch said of these."""
+    arrays = {}
+    for name in ("golden_statistics.npz", "golden_predictions.npz"):
+        with np.load(root / "tests" / "data" / name) as file:
+            arrays |= file
+    return arrays
+
+
+@pytest.fixture
+def windows(golden):
+    return golden["windows"] / np.float32(255)
 
 
 @pytest.fixture
@@ -36,7 +45,7 @@ def edit(folder, **entries):
 
 
 def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
-    found = predictions(network, golden["windows"] / np.float32(255))
+    found = network.predict(golden["statistics"])
     np.testing.assert_allclose(found.weights, golden["weights"], atol=tolerance.parity)
     np.testing.assert_allclose(np.log(found.expected_errors), golden["log_errors"], atol=tolerance.parity)
     np.testing.assert_allclose(found.pooled.weights, golden["pooled_weights"][0], atol=tolerance.parity)
@@ -44,22 +53,19 @@ def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
     assert np.abs(golden["weights"]).max() > 0.1
 
 
-def test_threads_do_not_change_the_result(golden, fixed_model):
+def test_threads_do_not_change_the_result(windows, fixed_model):
     """The packaged network reads statistics, the fixed one windows."""
-    windows = golden["windows"] / np.float32(255)
     for model in (DEFAULT_MODEL, fixed_model):
         first, second = (predictions(ResponseNetwork.load(model, threads=threads), windows) for threads in (1, 3))
         np.testing.assert_array_equal(first.weights, second.weights)
 
 
-def test_windows_are_independent_of_each_other(network, golden, tolerance):
-    windows = golden["windows"] / np.float32(255)
+def test_windows_are_independent_of_each_other(network, windows, tolerance):
     together = predictions(network, windows).weights
     np.testing.assert_allclose(predictions(network, windows[1:2]).weights, together[1:2], atol=tolerance.parity)
 
 
-def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, golden, tolerance):
-    windows = golden["windows"] / np.float32(255)
+def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, windows, tolerance):
     pooled = predictions(network, windows).pooled.weights
     np.testing.assert_allclose(predictions(network, windows[::-1]).pooled.weights, pooled, atol=tolerance.parity)
     assert np.linalg.norm(predictions(network, windows[:2]).pooled.weights - pooled) > 1e-3
@@ -74,27 +80,27 @@ def test_a_flat_window_has_a_finite_answer(network, level):
 
 def test_a_model_is_found_by_its_name_or_its_folder(copied):
     assert model_folder() == DEFAULT_MODEL
-    assert model_folder("crfnet2017") == MODELS / "crfnet2017"
+    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.0") == MODELS / "crfnet2017-1.0"
     assert model_folder(copied) == copied
     assert model_folder("nonesuch").name == "nonesuch"
 
 
-def test_the_paper_s_network_runs_by_name(golden):
+def test_the_paper_s_network_runs_by_name(windows):
     network = ResponseNetwork.load("crfnet2017")
-    found = predictions(network, golden["windows"] / np.float32(255))
-    assert network.config.name == "crfnet2017"
+    found = predictions(network, windows)
+    assert network.config.name == "crfnet2017-1.0"
     assert found.weights.shape == (3, 11)
     assert found.pooled is None
     assert len(set(found.expected_errors)) == 1
 
 
-def test_progress_counts_the_windows(network, golden):
+def test_progress_counts_the_windows(network, windows):
     calls = []
-    predictions(network, golden["windows"] / np.float32(255), progress=lambda done, total: calls.append((done, total)))
+    predictions(network, windows, progress=lambda done, total: calls.append((done, total)))
     assert calls == [(1, 3), (2, 3), (3, 3)]
 
 
-def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
+def test_an_error_in_the_progress_stops_the_run(network, windows, monkeypatch):
     run = []
     monkeypatch.setattr(
         "crfnet_core.network.inference.window_statistics", lambda w: run.append(1) or window_statistics(w)
@@ -104,20 +110,18 @@ def test_an_error_in_the_progress_stops_the_run(network, golden, monkeypatch):
         raise KeyboardInterrupt
 
     with pytest.raises(KeyboardInterrupt):
-        predictions(network, np.repeat(golden["windows"], 20, axis=0) / np.float32(255), progress=stop)
+        predictions(network, np.repeat(windows, 20, axis=0), progress=stop)
     assert len(run) < 60
 
 
-def test_the_windows_are_not_changed(network, golden):
-    windows = golden["windows"] / np.float32(255)
+def test_the_windows_are_not_changed(network, windows):
     before = windows.copy()
     predictions(network, windows)
     np.testing.assert_array_equal(windows, before)
 
 
-def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, golden):
+def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, windows):
     """Another curve on the same windows gives another estimate: the network looks at its input."""
-    windows = golden["windows"] / np.float32(255)
     bent = np.rint(windows**0.6 * 255) / np.float32(255)
     assert np.linalg.norm(predictions(network, bent).weights - predictions(network, windows).weights) > 0.5
 

@@ -89,23 +89,6 @@ def test_evaluation_keeps_the_shape_clips_and_leaves_its_argument(function):
     np.testing.assert_array_equal(values, before)
 
 
-@pytest.mark.parametrize("size", [2, 256, 4081])
-def test_samples_of_any_size_run_from_0_to_1(size):
-    curve = ResponseCurve.gamma()
-    for samples in (curve.forward_samples(size), curve.inverse_samples(size)):
-        assert samples.shape == (size,)
-        assert (samples[0], samples[-1]) == (0, 1)
-        assert (np.diff(samples) > 0).all()
-
-
-def test_rescaled_ignores_the_upper_range():
-    curve = ResponseCurve.gamma(2.2)
-    part = curve.rescaled(0.8)
-    assert is_strict(part)
-    np.testing.assert_allclose(part.forward(0.5), curve.forward(0.4) / curve.forward(0.8), atol=1e-3)
-    np.testing.assert_allclose(curve.rescaled(1.0).brightness, curve.brightness, atol=1e-4)
-
-
 @pytest.mark.parametrize(
     ("samples", "said"),
     [
@@ -126,12 +109,6 @@ def test_the_constructor_only_takes_strict_samples():
         ResponseCurve(np.zeros(SAMPLES))
     with pytest.raises(CurveError, match="shape"):
         ResponseCurve(np.linspace(0, 1, 10))
-
-
-@pytest.mark.parametrize("upper", [0, -1, 1.1, float("nan")])
-def test_a_partial_range_lies_within_the_range(upper):
-    with pytest.raises(CurveError, match="upper end"):
-        ResponseCurve.gamma().rescaled(upper)
 
 
 def test_a_gamma_is_positive():

@@ -6,18 +6,11 @@ import pytest
 
 from crfnet_core.errors import PhotoError, PlateError
 from ocio.plates.frame_files import read_frame
+from tests.helpers.images import write_image
 
 
 def write_exr(path, values, names, **attributes):
-    spec = oiio.ImageSpec(values.shape[1], values.shape[0], values.shape[2], "float")
-    spec.channelnames = names
-    for name, value in attributes.items():
-        spec.attribute(name, value)
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec), output.geterror()
-    assert output.write_image(values.astype(np.float32))
-    output.close()
-    return path
+    return write_image(path, values.astype(np.float32), names=names, **attributes)
 
 
 def test_encoded_exr_keeps_its_values(tmp_path):
@@ -51,14 +44,14 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
         (("A",), {}, "needs channels R, G and B, or a gray one; found A"),
     ],
 )
-def test_exr_that_is_no_encoded_plate(tmp_path, channels, attributes, message):
+def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, message):
     path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
     with pytest.raises(PlateError, match=message) as caught:
         read_frame(path)
     assert str(caught.value).startswith(str(path))
 
 
-def test_cut_exr_is_refused(tmp_path):
+def test_a_cut_exr_is_refused(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.random.default_rng(0).random((64, 64, 3)), ("R", "G", "B"))
     whole = path.read_bytes()
     for size in (0, 100, len(whole) // 2):

@@ -41,16 +41,16 @@ def names(sequence):
         ("a@b.###.png", 1, "a@b.001.png"),
     ],
 )
-def test_pattern_names_a_frame(pattern, number, name):
+def test_a_pattern_names_the_file_of_a_frame(pattern, number, name):
     assert FramePattern.parse(pattern).path(number).name == name
 
 
-def test_pattern_keeps_the_folder(tmp_path):
+def test_a_pattern_keeps_the_folder(tmp_path):
     assert FramePattern.parse(tmp_path / "shot_####" / "a.##.png").path(5) == tmp_path / "shot_####" / "a.05.png"
 
 
 @pytest.mark.parametrize("name", ["plate.png", "plate.%s.png", "plate.%4d.png", "100%.png"])
-def test_name_without_placeholder(name):
+def test_a_name_without_a_placeholder_is_no_pattern(name):
     assert FramePattern.parse(name) is None
 
 
@@ -60,19 +60,19 @@ def test_several_placeholders_are_refused(name):
         FramePattern.parse(name)
 
 
-def test_single_file(tmp_path):
+def test_a_single_file_has_no_frame_numbers(tmp_path):
     touch(tmp_path, "plate.png")
     assert find_frames(tmp_path / "plate.png") == FrameSequence((tmp_path / "plate.png",), (), ())
     assert find_frames(str(tmp_path / "plate.png")).paths == (tmp_path / "plate.png",)
 
 
-def test_single_file_whose_name_looks_like_a_pattern(tmp_path):
+def test_a_file_whose_name_looks_like_a_pattern_is_found(tmp_path):
     touch(tmp_path, "a@2x.png", "a52x.png")
     assert names(find_frames(tmp_path / "a@2x.png")) == ["a@2x.png"]
 
 
 @pytest.mark.parametrize("pattern", ["p.%04d.png", "p.####.png", "p.#.png", "p.@@@@.png"])
-def test_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
+def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     touch(tmp_path, "p.0010.png", "p.0009.png", "p.0012.png", "p.0015.png")
     sequence = find_frames(tmp_path / pattern)
     assert names(sequence) == ["p.0009.png", "p.0010.png", "p.0012.png", "p.0015.png"]
@@ -92,12 +92,12 @@ def test_other_files_are_left_alone(tmp_path):
     assert find_frames(tmp_path / "p.%04d.png").numbers == (1,)
 
 
-def test_negative_frames(tmp_path):
+def test_frame_numbers_may_be_negative(tmp_path):
     touch(tmp_path, "p.-002.png", "p.-001.png", "p.0000.png", "p.-000.png")
     assert find_frames(tmp_path / "p.####.png").numbers == (-2, -1, 0)
 
 
-def test_chosen_frames(tmp_path):
+def test_only_the_chosen_frames_are_found(tmp_path):
     touch(tmp_path, *(f"p.{number:04d}.png" for number in (1, 2, 3, 5, 8)))
     sequence = find_frames(tmp_path / "p.####.png", "2-6,20")
     assert sequence.numbers == (2, 3, 5)
@@ -123,34 +123,34 @@ def test_chosen_frames(tmp_path):
         (np.array([4, 2]), (2, 4)),
     ],
 )
-def test_parse_frames(frames, numbers):
+def test_a_specification_stands_for_ascending_numbers(frames, numbers):
     assert parse_frames(frames) == numbers
 
 
 @pytest.mark.parametrize("frames", ["", "a", "1-", "-", "1-2-3", "1-5x", "1..5", "1;2", "1,,2", "1.5", "x2", "٣"])
-def test_malformed_specification(frames):
+def test_a_malformed_specification_is_refused(frames):
     with pytest.raises(PlateError, match="is no frame or range; give, say, 1001-1100") as caught:
         parse_frames(frames)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("frames", ["5-1", "1-5x0"])
-def test_range_that_goes_nowhere(frames):
+def test_a_range_that_goes_nowhere_is_refused(frames):
     with pytest.raises(PlateError, match="runs backwards or stands still"):
         parse_frames(frames)
 
 
-def test_endless_range_is_refused_at_once():
+def test_an_endless_range_is_refused_at_once():
     with pytest.raises(PlateError, match=f"more than {MAX_FRAMES} frames; give fewer"):
         parse_frames("0-999999999")
 
 
-def test_frames_that_are_no_integers():
+def test_frames_that_are_no_integers_are_refused():
     with pytest.raises(TypeError):
         parse_frames([1.5])
 
 
-def test_frames_that_are_years_apart(tmp_path):
+def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
     with pytest.raises(PlateError, match="frames 1 to 20261121 are too far apart; say which"):
         find_frames(tmp_path / "p.%d.png")
@@ -170,7 +170,7 @@ def test_frames_that_are_years_apart(tmp_path):
         ("p.*.png", None, "there is no such file; check the name, or give a sequence such as plate.%04d.png"),
     ],
 )
-def test_nothing_found(tmp_path, name, frames, message):
+def test_what_cannot_be_found_is_named_with_a_remedy(tmp_path, name, frames, message):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     with pytest.raises(PlateError, match=message) as caught:
         find_frames(tmp_path / name, frames)
@@ -203,5 +203,5 @@ def test_samples_are_evenly_spread(tmp_path, total, count, places):
         ([1, 3, 5, 7, 9, 11], "1, 3, 5, 7, 9, …"),
     ],
 )
-def test_format_frames(numbers, text):
+def test_numbers_are_shown_as_ranges(numbers, text):
     assert format_frames(numbers) == text

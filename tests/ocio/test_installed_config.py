@@ -1,7 +1,6 @@
 """A plate's colour space in the config that a program reads at its start, and the way back."""
 
 import numpy as np
-import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import ConfigError, PlateError
@@ -13,6 +12,8 @@ from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import read_spi1d
+from tests.helpers.configs import converted, loaded
+from tests.helpers.folders import listed, tree
 
 SPACE = PlateColorSpace("CRF plate", "plate.spi1d", file_pattern="plate.*")
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
@@ -36,21 +37,14 @@ def folder(tmp_path):
     return tmp_path / "user"
 
 
-def tree(folder):
-    """Every file below a folder with its bytes."""
-    return {str(path.relative_to(folder)): path.read_bytes() for path in folder.rglob("*") if path.is_file()}
-
-
-def converted(config, values, space="CRF plate"):
-    OCIO.ClearAllCaches()
-    pixels = np.repeat(np.float32(values), 3)
-    processor = OCIO.Config.CreateFromFile(str(config)).getProcessor(space, "scene_linear")
-    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
-    return pixels[::3]
+def irradiance(config, brightness, space="CRF plate"):
+    """Gray brightnesses, shape (N,), converted by a config file."""
+    pixels = np.repeat(np.float32(brightness)[:, None], 3, axis=1)
+    return converted(loaded(config), space, "scene_linear", pixels)[:, 0]
 
 
 def space_names(config):
-    return [space.getName() for space in OCIO.Config.CreateFromFile(str(config)).getColorSpaces()]
+    return [space.getName() for space in loaded(config).getColorSpaces()]
 
 
 def test_a_new_folder_is_complete_in_itself(folder, base, tolerance):
@@ -61,9 +55,9 @@ def test_a_new_folder_is_complete_in_itself(folder, base, tolerance):
     assert set(tree(folder)) == {
         *(CONFIG_NAME, "luts/film.spi1d", f"{FOLDER}/plate.spi1d", f"{FOLDER}/{installed.RECORD_NAME}")
     }
-    assert list(OCIO.Config.CreateFromFile(str(done.config)).getSearchPaths()) == ["luts", "."]
+    assert list(loaded(done.config).getSearchPaths()) == ["luts", "."]
     values = np.linspace(0, 1, 99)
-    np.testing.assert_allclose(converted(done.config, values), LUT.apply(values), atol=tolerance.lut)
+    np.testing.assert_allclose(irradiance(done.config, values), LUT.apply(values), atol=tolerance.lut)
     assert tree(base.parent) == before
 
 
@@ -92,8 +86,8 @@ def test_several_plates_share_the_config(folder, base, tolerance):
     install(folder, base, SPACE, LUT)
     install(folder, base, PlateColorSpace("CRF other", "other.spi1d"), OTHER_LUT)
     config = folder / CONFIG_NAME
-    np.testing.assert_allclose(converted(config, [0.5]), LUT.apply([0.5]), atol=tolerance.lut)
-    np.testing.assert_allclose(converted(config, [0.5], "CRF other"), OTHER_LUT.apply([0.5]), atol=tolerance.lut)
+    np.testing.assert_allclose(irradiance(config, [0.5]), LUT.apply([0.5]), atol=tolerance.lut)
+    np.testing.assert_allclose(irradiance(config, [0.5], "CRF other"), OTHER_LUT.apply([0.5]), atol=tolerance.lut)
     assert restore(folder).is_removed
     assert tree(folder) == {}
 
@@ -142,7 +136,7 @@ def test_a_config_that_does_not_load_is_left_alone(folder, base):
     with pytest.raises(ConfigError, match="refuses this config"):
         install(folder, base, SPACE, LUT)
     assert tree(folder) == {CONFIG_NAME: b"no config"}
-    assert [path.name for path in folder.iterdir()] == [CONFIG_NAME]
+    assert listed(folder) == [CONFIG_NAME]
 
 
 def test_what_was_written_goes_again_after_a_failure(folder, base, monkeypatch):

@@ -16,6 +16,7 @@ from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import OutputFiles
 from ocio.plates.frames import FrameSequence, find_frames
 from ocio.plates.linear import linear_targets
+from tests.helpers.folders import listed
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
 
@@ -32,10 +33,6 @@ def cancel_after(frames):
             raise CancelledError
 
     return progress
-
-
-def listed(folder):
-    return sorted(path.name for path in folder.rglob("*") if path.is_file())
 
 
 @pytest.fixture(scope="module")
@@ -111,7 +108,7 @@ class TestBake:
         calls = []
         targets = linear_targets(tmp_path / "new" / "deep" / "lin.%04d.exr", sequence)
         pipeline.bake_plates(sequence, targets, LUT, PlateOptions(), progress=lambda *call: calls.append(call))
-        assert listed(tmp_path / "new") == [f"lin.{number:04d}.exr" for number in range(1, 13)]
+        assert listed(tmp_path / "new" / "deep") == [f"lin.{number:04d}.exr" for number in range(1, 13)]
         assert calls[-1] == (12, 12)
 
     @pytest.mark.parametrize("done", [0, 3])

@@ -45,6 +45,9 @@ CALIBRATION_PHOTOS = 50
 #: Knots of the band's profile over irradiance.
 BAND_KNOTS = 33
 
+#: Windows of the bundled plate and their statistics; written by tests/data/make_golden_statistics.py.
+GOLDEN_STATISTICS = Path(__file__).parents[2] / "tests" / "data" / "golden_statistics.npz"
+
 Network = TypeVar("Network", bound=nn.Module)
 
 UNCALIBRATED = UncertaintyModel(base=0.0, of_predicted=1.0, of_spread=0.0, band_profile=(0.0,) * BAND_KNOTS)
@@ -137,22 +140,21 @@ def write_config(
 
 
 def write_golden(network: nn.Module, signature: Signature, plate: Path, path: Path) -> None:
-    """Write windows of the bundled plate with what torch says of them, for the tests."""
+    """Write what torch says of windows of the bundled plate, those of `GOLDEN_STATISTICS`, for the tests."""
     pixels = read_photo(plate).pixels
     windows = cut_windows(pixels, select_windows(pixels, count=3))
     read = np.stack([window_statistics(window) for window in windows]) if signature is POOLING else windows
     with torch.inference_mode():
         outputs = [output.numpy() for output in network(torch.from_numpy(read))]
     with atomic_write(path, overwrite=True) as temporary:
-        codes = np.rint(windows * 255).astype(np.uint8)
-        np.savez_compressed(temporary, windows=codes, **dict(zip(signature.output_names, outputs, strict=True)))
+        np.savez_compressed(temporary, **dict(zip(signature.output_names, outputs, strict=True)))
 
 
 def assert_parity(folder: Path, golden: Path) -> float:
     """Return the largest difference between onnxruntime and the golden torch figures; fail above `PARITY`."""
-    with np.load(golden) as expected:
+    with np.load(GOLDEN_STATISTICS) as statistics, np.load(golden) as expected:
         network = ResponseNetwork.load(folder)
-        found = network.predict(network.inputs(expected["windows"] / np.float32(255)))
+        found = network.predict(network.inputs(statistics["windows"] / np.float32(255)))
         differences = [
             np.abs(found.weights - expected["weights"]).max(),
             np.abs(np.log(found.expected_errors) - expected["log_errors"]).max(),

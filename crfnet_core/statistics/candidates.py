@@ -1,0 +1,62 @@
+"""Candidate responses: a grid over the first two EMoR weights, as tables over the 256 codes.
+
+The equations between channels (`channel_equations`) hold to first order only. The exact question, whether the mixing
+ratios agree between the channels, can only be asked of a given response. So it is asked of 32, and the network reads
+how well each of them does.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+
+import numpy as np
+
+from crfnet_core.emor import COMPONENTS, EmorBasis
+from crfnet_core.response import ResponseCurve
+from crfnet_core.statistics.sampling import CODES
+from crfnet_core.types import Float32Array
+
+#: Weights of the first two components whose combinations are the candidates: what responses of cameras span.
+FIRST_WEIGHTS = (-9.0, -5.0, -2.5, -0.5, 1.0, 2.5, 4.0, 6.0)
+SECOND_WEIGHTS = (-1.8, -0.6, 0.6, 2.0)
+
+CANDIDATE_COUNT = len(FIRST_WEIGHTS) * len(SECOND_WEIGHTS)
+
+#: Fraction of the identity mixed into every candidate, so that no inverse is too steep for 8 bits.
+IDENTITY_FRACTION = 0.02
+
+
+@dataclass(frozen=True)
+class CandidateResponses:
+    """The candidates' inverse responses at every code, each array float32 (256, CANDIDATE_COUNT).
+
+    Parameters
+    ----------
+    irradiance : ndarray
+        g.
+    slope : ndarray
+        g', per code.
+    log_slope, log_irradiance : ndarray
+        Their natural logarithms; the irradiance of code 0 counts as that of code 1.
+    """
+
+    irradiance: Float32Array
+    slope: Float32Array
+    log_slope: Float32Array
+    log_irradiance: Float32Array
+
+
+@cache
+def candidate_responses() -> CandidateResponses:
+    """Return the candidates, made from the EMoR basis once."""
+    weights = np.zeros((CANDIDATE_COUNT, COMPONENTS))
+    weights[:, :2] = [(first, second) for first in FIRST_WEIGHTS for second in SECOND_WEIGHTS]
+    curves = [ResponseCurve.from_samples(samples) for samples in EmorBasis.load().reconstruct(weights)]
+    uniform = np.linspace(0, 1, len(curves[0].brightness))
+    mixed = [(1 - IDENTITY_FRACTION) * curve.brightness + IDENTITY_FRACTION * uniform for curve in curves]
+    irradiance = np.stack([np.interp(np.linspace(0, 1, CODES), curve, uniform) for curve in mixed], axis=1)
+    slope = np.gradient(irradiance, axis=0)
+    positive = np.maximum(irradiance, irradiance[1])
+    tables = (irradiance, slope, np.log(slope), np.log(positive))
+    return CandidateResponses(*(table.astype(np.float32) for table in tables))

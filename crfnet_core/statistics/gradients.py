@@ -1,0 +1,66 @@
+"""The histogram, and the differences between neighbours at each level of brightness."""
+
+from __future__ import annotations
+
+from functools import cache
+
+import numpy as np
+
+from crfnet_core.statistics.sampling import CODES, interpolation_weights, rows_and_columns
+from crfnet_core.types import Float32Array, Float64Array, Uint8Array
+
+#: Levels of brightness that counts over codes are gathered into.
+LEVELS = 64
+
+#: Distances between neighbours, in samples.
+STRIDES = (1, 2, 4, 8, 16)
+
+#: Sums per channel, stride and level: |d|, log(1 + |d|), d == 0, d and 1, for differences d in codes.
+GRADIENT_SUMS = 5
+
+SHAPES = {"histogram": (3, LEVELS), "gradients": (len(STRIDES), 3, GRADIENT_SUMS, LEVELS)}
+
+
+def level_histogram(planes: Uint8Array) -> Float64Array:
+    """Return the number of samples at each level, shape (3, LEVELS), of planes of codes (3, N, N)."""
+    counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in planes])  # (3, 256)
+    histogram: Float64Array = np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64)
+    return histogram
+
+
+def gradient_sums(planes: Uint8Array) -> Float32Array:
+    """Return `GRADIENT_SUMS` over the neighbours of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
+
+    Both neighbours count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
+    level, so the mean gradient of brightness, as a function of brightness, follows the slope of f.
+    """
+    sums = np.stack([_sums_by_code(planes, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
+    by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)
+    return by_level
+
+
+def _sums_by_code(planes: Uint8Array, stride: int) -> Float32Array:
+    """Return the sums over the neighbours of the samples of each code, shape (3, GRADIENT_SUMS, 256)."""
+    tables, sums = _difference_tables(), np.empty((3, GRADIENT_SUMS, CODES), np.float32)
+    for plane, into in zip(planes, sums, strict=True):
+        rows = rows_and_columns(plane, stride, 2)
+        pairs = np.concatenate([(first.astype(np.uint16) << 8) | second for first, second in rows])
+        counts = np.bincount(pairs, minlength=CODES * CODES).reshape(CODES, CODES).astype(np.float32)
+        np.einsum("ij,kij->ki", counts + counts.T, tables, out=into)
+    return sums
+
+
+@cache
+def _difference_tables() -> Float32Array:
+    """Return what is summed for a sample of code i with a neighbour of code j, shape (GRADIENT_SUMS, 256, 256)."""
+    code = np.arange(CODES, dtype=np.float32)
+    signed_difference = code[None, :] - code[:, None]
+    absolute_difference = np.abs(signed_difference)
+    tables = [
+        absolute_difference,
+        np.log1p(absolute_difference),
+        signed_difference == 0,
+        signed_difference,
+        np.ones_like(signed_difference),
+    ]
+    return np.stack(tables).astype(np.float32)

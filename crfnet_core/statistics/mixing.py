@@ -1,0 +1,220 @@
+"""Mixtures: whether the light of b mixes that of its two sides as it should, under each of the candidate responses.
+
+Light adds. Three samples a, b, c in a row with b between a and c obey g(b) = (1 - alpha) g(a) + alpha g(c) (Eq. 2 of
+docs/METHOD.md). Under the true inverse response g the mixing ratio alpha is the same in every channel, and any alpha
+is as likely as any other. Under a wrong one neither holds.
+
+Source: Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004, look for the response that
+makes light mix linearly; here the network reads how well each candidate does.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
+from crfnet_core.statistics.edges import shared_edges
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, both_directions, evenly_spread, half_resolution
+from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
+
+#: Distances between the samples of a mixture; and between those of half resolution.
+MIXING_STRIDES = (1, 2, 4)
+HALF_RESOLUTION_STRIDES = (1, 2)
+
+#: Least difference between a and c in codes: below it rounding decides the mixing ratio.
+LEAST_HEIGHT = 12
+
+#: An edge is isolated if the samples before a and behind c differ from these by less than its height divided by this.
+#: There a and c show the two surfaces themselves. Two readings of it, the second stricter.
+ISOLATION = (2, 5)
+
+#: Classes of mixtures that are summed up: all of them, and the isolated ones by each reading.
+SUMMED_CLASSES = 1 + len(ISOLATION)
+
+#: Classes of mixtures that are compared between channels: all of them, and the isolated ones by the first reading.
+COMPARED_CLASSES = 2
+
+#: Sums per class and candidate: see `mixing_sums`.
+MIXING_SUMS = 3
+
+#: Mixtures that are summed up, and that are compared, at most: of one stride and one pair of channels.
+MOST_SUMMED, MOST_COMPARED = 350, 500
+
+#: Compare two channels at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above so many codes.
+LEAST_DIFFERENCE = 60
+
+#: And b must lie at least 1/5 of the edge's height from both a and c.
+INNER = 5
+
+#: Bands of the level of b in which the disagreement is kept apart: candidates fail at different levels.
+LEVEL_BANDS = 4
+
+#: Standard deviation of the difference between two channels' mixing ratios that is expected even under the true
+#: response (noise, demosaicing), on top of 8-bit rounding.
+RATIO_NOISE = 0.07
+
+_DISAGREEMENT = (COMPARED_CLASSES, LEVEL_BANDS)
+
+SHAPES = {
+    "mixing": (len(MIXING_STRIDES), SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT),
+    "mixing_counts": (len(MIXING_STRIDES), SUMMED_CLASSES, 1, 1),
+    "disagreement": (len(MIXING_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT),
+    "disagreement_counts": (len(MIXING_STRIDES), *_DISAGREEMENT, 1),
+}
+
+HALF_RESOLUTION_SHAPES = {
+    "half_resolution_disagreement": (len(HALF_RESOLUTION_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT),
+    "half_resolution_disagreement_counts": (len(HALF_RESOLUTION_STRIDES), *_DISAGREEMENT, 1),
+}
+
+
+@dataclass(frozen=True)
+class Mixtures:
+    """Samples a, b, c in a row, codes as int16 (3, M): b may be a mixture of a and c in two channels or more.
+
+    Parameters
+    ----------
+    a, b, c : ndarray
+        The samples.
+    is_mixture : ndarray, bool, shape (3, M)
+        Whether a and c differ enough, and b lies between them.
+    is_isolated : ndarray, bool, shape (len(ISOLATION), 3, M)
+        Whether the samples before a and behind c hardly differ from these.
+    """
+
+    a: Int16Array
+    b: Int16Array
+    c: Int16Array
+    is_mixture: BoolArray
+    is_isolated: BoolArray
+
+    @classmethod
+    def among(cls, row: Row) -> Mixtures:
+        """Return the mixtures among five samples in a row, each uint8 (3, M)."""
+        index, is_mixture = shared_edges(row[1:4], LEAST_HEIGHT)
+        before, a, b, c, behind = (side.take(index, axis=1).astype(np.int16) for side in row)
+        change, height = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
+        is_isolated = np.stack([reading * change <= np.maximum(height, reading) for reading in ISOLATION])
+        return cls(a, b, c, is_mixture, is_isolated)
+
+    def of_channel(self, channel: int, index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
+        """Return a, b and c of one channel at some indices."""
+        return self.a[channel].take(index), self.b[channel].take(index), self.c[channel].take(index)
+
+
+def mixing_parts(planes: Uint8Array) -> dict[str, Float32Array]:
+    """Return the sums over the mixtures in planes of codes (3, N, N): see `SHAPES`."""
+    mixtures = [Mixtures.among(both_directions(planes, stride, 5)) for stride in MIXING_STRIDES]
+    sums, counts = _stacked(map(mixing_sums, mixtures))
+    disagreement, disagreement_counts = _stacked(map(disagreement_sums, mixtures))
+    return {
+        "mixing": sums,
+        "mixing_counts": counts,
+        "disagreement": disagreement,
+        "disagreement_counts": disagreement_counts,
+    }
+
+
+def half_resolution_parts(planes: Uint8Array) -> dict[str, Float32Array]:
+    """Return the disagreement of the channels at half the resolution of planes (3, N, N): see `HALF_RESOLUTION_SHAPES`.
+
+    JPEG and video keep colour at half the resolution, so there the channels of single samples were never independent.
+    """
+    halved = half_resolution(planes)
+    mixtures = [Mixtures.among(both_directions(halved, stride, 5)) for stride in HALF_RESOLUTION_STRIDES]
+    sums, counts = _stacked(map(disagreement_sums, mixtures))
+    return {"half_resolution_disagreement": sums, "half_resolution_disagreement_counts": counts}
+
+
+def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
+    """Return sums over the mixtures under each candidate, and the number of mixtures in each class.
+
+    The sums are (i) the logarithm of the density of b, log g'(b) - log |g(c) - g(a)|, if every mixing ratio is as
+    likely (Eq. 4), relative to its mean over the candidates; (ii) the mixing ratio of the brighter side, less a half;
+    (iii) its square.
+
+    Returns
+    -------
+    ndarray, float32, shape (SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT), and ndarray, shape (SUMMED_CLASSES, 1, 1)
+    """
+    log_slope = candidate_responses().log_slope
+    sums = np.zeros((SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT), np.float32)
+    counts = np.zeros(SUMMED_CLASSES, np.float32)
+    for first, second in CHANNEL_PAIRS:
+        index = evenly_spread(mixtures.is_mixture[first] & mixtures.is_mixture[second], MOST_SUMMED)
+        is_isolated = (mixtures.is_isolated[:, first] & mixtures.is_isolated[:, second]).take(index, axis=1)
+        classes = np.concatenate([np.ones((1, len(index))), is_isolated]).astype(np.float32)
+        for channel in (first, second):
+            a, b, c = mixtures.of_channel(channel, index)
+            ratio, height = mixing_ratio(a, b, c)  # (len(index), CANDIDATE_COUNT)
+            log_density = log_slope.take(b, axis=0) - np.log(np.abs(height))
+            brighter = np.where((c > a)[:, None], ratio, 1 - ratio) - np.float32(0.5)
+            sums += np.stack([classes @ part for part in (log_density, brighter, brighter**2)], axis=1)
+            counts += classes.sum(axis=1)
+    sums[:, 0] -= sums[:, 0].mean(axis=1, keepdims=True)
+    return sums, counts[:, None, None]
+
+
+def disagreement_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
+    """Return how much the channels disagree on mixing ratios under each candidate, and of how many comparisons.
+
+    The sums are relative to their means over the candidates.
+
+    Returns
+    -------
+    ndarray, float32, shape (COMPARED_CLASSES, LEVEL_BANDS, CANDIDATE_COUNT), and ndarray, shape (..., 1)
+    """
+    sums = np.zeros((*_DISAGREEMENT, CANDIDATE_COUNT), np.float32)
+    counts = np.zeros(_DISAGREEMENT, np.float32)
+    heights, middles = mixtures.c - mixtures.a, mixtures.a + mixtures.c
+    nearer = np.minimum(np.abs(mixtures.b - mixtures.a), np.abs(mixtures.b - mixtures.c))
+    is_inner = mixtures.is_mixture & (INNER * nearer > np.abs(heights))
+    for first, second in CHANNEL_PAIRS:
+        difference = np.abs(middles[first] - middles[second]) + np.abs(heights[first] - heights[second])
+        is_compared = is_inner[first] & is_inner[second] & (difference > LEAST_DIFFERENCE)
+        is_isolated = mixtures.is_isolated[0, first] & mixtures.is_isolated[0, second]
+        for number, is_chosen in enumerate((is_compared, is_compared & is_isolated)):
+            index = evenly_spread(is_chosen, MOST_COMPARED)
+            sides = [mixtures.of_channel(channel, index) for channel in (first, second)]
+            bands = _level_bands((sides[0][1] + sides[1][1]) >> 1)
+            sums[number] += bands @ _disagreement(*sides)
+            counts[number] += bands.sum(axis=1)
+    return sums - sums.mean(axis=2, keepdims=True), counts[..., None]
+
+
+def mixing_ratio(a: Int16Array, b: Int16Array, c: Int16Array) -> tuple[Float32Array, Float32Array]:
+    """Return alpha = (g(b) - g(a)) / (g(c) - g(a)) of codes (M,), and g(c) - g(a), each (M, CANDIDATE_COUNT): Eq. 2."""
+    irradiance = candidate_responses().irradiance
+    start = irradiance.take(a, axis=0)
+    height = irradiance.take(c, axis=0) - start
+    return (irradiance.take(b, axis=0) - start) / height, height
+
+
+def _disagreement(*sides: tuple[Int16Array, Int16Array, Int16Array]) -> Float32Array:
+    """Return how much two channels, each a, b and c, disagree on alpha, from 0 to 1, shape (M, CANDIDATE_COUNT).
+
+    It is the Geman-McClure penalty d^2 / (d^2 + s^2 + r) of the difference d (Eq. 5), with s `RATIO_NOISE` and r the
+    variance from rounding: 1 / 6 squared codes in each channel, half of it from b and at most half from a and c.
+    """
+    slope = candidate_responses().slope
+    ratios, heights = zip(*(mixing_ratio(*side) for side in sides), strict=True)
+    rounding = [(slope.take(b, axis=0) / height) ** 2 for (_, b, _), height in zip(sides, heights, strict=True)]
+    squared = (ratios[0] - ratios[1]) ** 2
+    variance = (rounding[0] + rounding[1]) / np.float32(6)
+    disagreement: Float32Array = squared / (squared + variance + np.float32(RATIO_NOISE**2))
+    return disagreement
+
+
+def _stacked(pairs: Iterable[tuple[Float32Array, Float32Array]]) -> tuple[Float32Array, Float32Array]:
+    """Return the sums and the counts of several strides, each stacked."""
+    sums, counts = zip(*pairs, strict=True)
+    return np.stack(sums), np.stack(counts)
+
+
+def _level_bands(level: Int16Array) -> Float32Array:
+    """Return whether codes (M,) are in each band of levels, 0 or 1, shape (LEVEL_BANDS, M)."""
+    bands: Float32Array = (level * LEVEL_BANDS // 256 == np.arange(LEVEL_BANDS)[:, None]).astype(np.float32)
+    return bands

@@ -1,0 +1,39 @@
+"""All statistics of one window (numpy only; the network normalises the sums)."""
+
+from __future__ import annotations
+
+from crfnet_core.statistics.channel_equations import channel_equations
+from crfnet_core.statistics.edges import edge_sums
+from crfnet_core.statistics.gradients import gradient_sums, level_histogram
+from crfnet_core.statistics.layout import pack
+from crfnet_core.statistics.mixing import half_resolution_parts, mixing_parts
+from crfnet_core.statistics.sampling import code_planes
+from crfnet_core.statistics.shading import shading_parts
+from crfnet_core.types import Float32Array
+
+
+def window_statistics(window: Float32Array) -> Float32Array:
+    """Return the statistics of one window, float32 (LENGTH,); those of several windows add up.
+
+    Parameters
+    ----------
+    window : ndarray, float32, shape (227, 227, 3)
+        Code values in [0, 1]; not changed.
+
+    Returns
+    -------
+    ndarray
+        The parts of `crfnet_core.statistics.layout`, packed: `unpack` gives them back by name.
+    """
+    planes = code_planes(window)
+    return pack(
+        {
+            "histogram": level_histogram(planes),
+            "gradients": gradient_sums(planes),
+            "edges": edge_sums(planes),
+            "channel_equations": channel_equations(planes),
+            **mixing_parts(planes),
+            **shading_parts(planes),
+            **half_resolution_parts(planes),
+        }
+    )

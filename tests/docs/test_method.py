@@ -1,0 +1,162 @@
+"""The documents name functions and equations that there are."""
+
+import ast
+import math
+import re
+from inspect import signature
+
+import pytest
+
+from crfnet_core import emor, response, windows
+from crfnet_core.network import pooling, uncertainty
+from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
+from ocio.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
+
+DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md")
+
+DOTTED = re.compile(r"\b(?:crfnet_core|ocio|training)(?:\.\w+)+")
+
+
+def documents(root):
+    return sorted({path for pattern in DOCUMENTS for path in root.glob(pattern)})
+
+
+def dotted_names(root):
+    return sorted({name for path in documents(root) for name in DOTTED.findall(path.read_text(encoding="utf-8"))})
+
+
+def exists(root, name):
+    """Whether a dotted name is a package, a module, or a name defined or imported at its top level, or in a class.
+
+    The source is parsed and not imported, so that training needs no torch here.
+    """
+    parts = name.split(".")
+    for size in range(len(parts), 0, -1):
+        place = root.joinpath(*parts[:size])
+        source = next((file for file in (place / "__init__.py", place.with_suffix(".py")) if file.is_file()), None)
+        if source:
+            return is_defined(ast.parse(source.read_text(encoding="utf-8")).body, parts[size:])
+    return False
+
+
+def is_defined(body, names):
+    """Whether statements define `names`, each within the one before it."""
+    if not names:
+        return True
+    first, *rest = names
+    for statement in body:
+        match statement:
+            case ast.ClassDef(name=name, body=inner) if name == first:
+                return is_defined(inner, rest)
+            case ast.FunctionDef(name=name) if name == first:
+                return not rest
+            case ast.Assign(targets=targets) if first in names_in(*targets):
+                return not rest
+            case ast.AnnAssign(target=target) if first in names_in(target):
+                return not rest
+            case ast.ImportFrom(names=imported) if first in {alias.asname or alias.name for alias in imported}:
+                return not rest
+    return False
+
+
+def names_in(*targets):
+    return {node.id for target in targets for node in ast.walk(target) if isinstance(node, ast.Name)}
+
+
+def test_every_function_that_a_document_names_is_there(root):
+    names = dotted_names(root)
+    assert len(names) > 30
+    assert not [name for name in names if not exists(root, name)]
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "crfnet_core.nowhere",
+        "crfnet_core.emor.EmorBasis.nothing",
+        "crfnet_core.metrics.estimation_error.nothing",
+        "training.network.nothing",
+    ],
+)
+def test_a_name_that_is_not_there_is_found_out(root, name):
+    assert not exists(root, name)
+
+
+def test_a_name_is_found_in_modules_classes_and_facades(root):
+    names = ("crfnet_core", "crfnet_core.read_photo", "crfnet_core.emor.EmorBasis.load", "crfnet_core.windows.Window.x")
+    assert [exists(root, name) for name in names] == [True] * 4
+
+
+def test_the_equations_are_numbered_without_a_gap(root):
+    numbers = re.findall(r"\\tag\{(\d+)\}", (root / "docs" / "METHOD.md").read_text(encoding="utf-8"))
+    assert [int(number) for number in numbers] == list(range(1, len(numbers) + 1))
+
+
+def test_every_equation_that_is_cited_is_there(root):
+    """In the documents, and in the docstrings and comments of the code."""
+    last = len(re.findall(r"\\tag\{", (root / "docs" / "METHOD.md").read_text(encoding="utf-8")))
+    sources = [*(root / "crfnet_core").rglob("*.py"), *(root / "training").rglob("*.py"), *documents(root)]
+    cited = {
+        int(number)
+        for path in sources
+        for text in re.findall(r"\bEq\. (\d+(?:(?:, | and | to )\d+)*)", path.read_text(encoding="utf-8"))
+        for number in re.findall(r"\d+", text)
+    }
+    assert cited
+    assert not [number for number in cited if not 1 <= number <= last]
+
+
+def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
+    text = (root / "docs" / "METHOD.md").read_text(encoding="utf-8")
+    equations = {int(number): body for body, number in re.findall(r"```math\n(.*?)\\tag\{(\d+)\}", text, re.DOTALL)}
+    parts = {1: "f_0(E)", 2: "(1 - \\alpha) \\, g(a)", 3: "h \\, k(m)", 4: "\\log p(b)", 5: "\\rho(d)", 6: "\\log g(a)"}
+    assert not [number for number, part in parts.items() if part not in equations[number]]
+
+
+@pytest.mark.parametrize(
+    "sentence",
+    [
+        f"\\sum_{{k=1}}^{{{emor.COMPONENTS}}}",
+        f"squares of {windows.WINDOW_SIZE} x {windows.WINDOW_SIZE} samples",
+        f"at least {windows.FULL_COVERAGE} of the 256 bins",
+        f"After {windows.POSITIONS_TRIED} draws",
+        f"{windows.WINDOWS_PER_PHOTOGRAPH} in a photograph",
+        f"\\min(H, W) / {windows.WINDOWS_ACROSS * windows.WINDOW_SIZE}",
+        f"Of each channel at {gradients.LEVELS} levels",
+        f"{edges.GRID} x {edges.GRID} cells",
+        f"at two of {channel_equations.EQUATION_LEVELS} levels",
+        f"asked of {candidates.CANDIDATE_COUNT} candidates, {len(candidates.FIRST_WEIGHTS)} values",
+        f"times {len(candidates.SECOND_WEIGHTS)} of $c_2$",
+        f"{candidates.IDENTITY_FRACTION:.0%}".replace("%", " % of the identity"),
+        f"$s = {mixing.RATIO_NOISE}$",
+        f"by more than {mixing.LEAST_DIFFERENCE} codes",
+        f"1/{mixing.INNER} of the edge's height",
+        f"({shading.LITTLE[0]} to {shading.LITTLE[1]} codes)",
+        f"({shading.MUCH[0]} to {shading.MUCH[1]})",
+        f"s = {shading.OTHER_CHANGE} ",
+        f"The factor {pooling.OUTLIER_FACTOR:g} is ours",
+        f"\\varepsilon = 10^{{{math.log10(response.LEAST_SLOPE):.0f}}}",
+        f"$u < {uncertainty.GOOD:g}$, *usable* below {uncertainty.USABLE:g}",
+        f"at {signature(inverse_response_lut).parameters['length'].default} uniform brightnesses",
+        f"at most {MAX_END_SLOPE:g}",
+    ],
+)
+def test_the_numbers_of_the_method_are_those_of_the_code(root, sentence):
+    text = " ".join((root / "docs" / "METHOD.md").read_text(encoding="utf-8").split())
+    assert sentence in text
+
+
+def test_no_module_of_the_method_is_left_out(root):
+    """Every cue of the statistics has its place in METHOD.md."""
+    text = (root / "docs" / "METHOD.md").read_text(encoding="utf-8")
+    modules = {path.stem for path in (root / "crfnet_core" / "statistics").glob("*.py")} - {"__init__"}
+    assert not [name for name in modules if f"crfnet_core.statistics.{name}" not in text]
+
+
+def test_the_references_are_complete(root):
+    text = (root / "docs" / "REFERENCES.bib").read_text(encoding="utf-8")
+    entries = re.findall(r"^@\w+\{(\w+),(.*?)^\}", text, re.MULTILINE | re.DOTALL)
+    assert len(entries) >= 11
+    assert len({key for key, _ in entries}) == len(entries)
+    assert not [key for key, body in entries if "title" not in body or "author" not in body]
+    assert not [doi for doi in re.findall(r"doi\s*=\s*\{(.*?)\}", text) if not re.fullmatch(r"10\.\d{4,}/\S+", doi)]
