@@ -7,7 +7,9 @@ import re
 from pathlib import Path
 
 import OpenImageIO as oiio
-import PyOpenColorIO as OCIO
+
+from crfnet_core.errors import ConfigError
+from ocio.configs.files import load_config
 
 from .errors import AddonError
 from .job import Plate
@@ -67,8 +69,8 @@ def _is_guess(plate: Plate, file: Path) -> bool:
 def _encoding(color_space: str, config: str) -> str:
     """Return the encoding of a colour space in a config; empty if the config gives none."""
     try:
-        found = OCIO.Config.CreateFromFile(config).getColorSpace(color_space)
-    except (OCIO.Exception, OCIO.ExceptionMissingFile):
+        found = load_config(config).getColorSpace(color_space)
+    except ConfigError:
         return ""
     return "" if found is None or found.isData() else found.getEncoding() or ""
 
