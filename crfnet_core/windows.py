@@ -37,7 +37,7 @@ class Window:
 
     @property
     def extent(self) -> int:
-        """Float32Array of the photograph that the window spans in each direction."""
+        """Pixels of the photograph that the window spans in each direction."""
         return (WINDOW_SIZE - 1) * self.step + 1
 
     @property
@@ -96,7 +96,7 @@ def select_windows(
     seed : int
         Seed of the positions: the same seed gives the same windows.
     step : int, optional
-        Float32Array between samples; by default `sampling_step`.
+        Pixels between samples; by default `sampling_step`.
     coverage : int
         Code values, of 256, that a window should hold; 0 takes the first positions.
 

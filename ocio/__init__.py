@@ -1,1 +1,14 @@
-"""LUT files, OpenColorIO configs and linear plates from an estimated camera response."""
+"""LUT files, OpenColorIO configs and linear plates from an estimated camera response; the command `crfnet`.
+
+cli           the arguments, exit codes and error lines of `crfnet`
+commands      its subcommands: arguments to options, pipeline, output
+defaults      constants that several modules share
+options       typed options of the pipeline
+pipeline      the one way from photographs to files, for the command and for the add-on
+output_files  which files an estimate writes, and whether they may be written
+report        estimates and files in words, as JSON, and as provenance
+sheet         an estimate as a picture
+luts          the LUT, and its file formats
+configs       OpenColorIO configs with a plate's colour space
+plates        frame sequences, and linear EXR files made of them
+"""

@@ -1,4 +1,4 @@
-"""The `crfnet` command: arguments, exit codes and error lines; the work is in `ocio.commands`."""
+"""The `crfnet` command: arguments, exit codes and error lines. The subcommands are in `ocio.commands`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,11 @@ from typing import NoReturn, TypeAlias
 
 import shtab
 
+from ocio.defaults import DEPTHS, LUT_LENGTH, MAX_EXPOSURE, WINDOWS
+
+#: Exit codes.
 BAD_INPUT = 2
 INTERRUPTED = 130
-
-#: Largest gain in either direction: 2 ** 15 times white still fits into a half float.
-MOST_STOPS = 15
 
 ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
@@ -43,7 +43,7 @@ COMPLETION_EXAMPLES = """examples:
   crfnet completion bash > ~/.local/share/bash-completion/completions/crfnet
   crfnet completion zsh > ~/.zfunc/_crfnet"""
 
-#: Problems whose own message would not help.
+#: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
     MemoryError: "not enough memory; close something or give fewer photographs",
     UnicodeEncodeError: "a file's name is no valid Unicode; rename it",
@@ -51,22 +51,23 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 
 
 class Parser(argparse.ArgumentParser):
-    """An argument parser that refuses in one line."""
+    """An argument parser whose error messages are one line."""
 
     def error(self, message: str) -> NoReturn:
-        """Print `message` in one line and exit with `BAD_INPUT`."""
+        """Print `message` on one line and exit with `BAD_INPUT`."""
         self.exit(BAD_INPUT, f"crfnet: error: {message} (see {self.prog} --help)\n")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code: 0, `BAD_INPUT` or `INTERRUPTED`."""
     _print_any_character()
-    options = build_parser().parse_args(argv)
-    from crfnet_core.errors import CRFNetError  # the core brings numpy and onnxruntime: --help need not wait for them
+    arguments = build_parser().parse_args(argv)
+    # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
+    from crfnet_core.errors import CRFNetError
 
     try:
-        "".join(sys.argv if argv is None else argv).encode()  # refuses names that no library or file here could hold
-        _run(options)
+        "".join(sys.argv if argv is None else argv).encode()  # refuses file names that are not valid Unicode
+        _run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
         return _fail(problem)
@@ -105,9 +106,13 @@ def _add_estimate(commands: Commands) -> None:
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
     parser.add_argument("--each", action="store_true", help="one response per photograph, not one for all")
-    parser.add_argument("--windows", type=_positive, default=10, metavar="N", help="windows per photograph (10)")
+    parser.add_argument(
+        "--windows", type=_positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
+    )
     parser.add_argument("--seed", type=int, default=0, metavar="N", help="which windows are drawn (0)")
-    parser.add_argument("--length", type=_positive, default=4081, metavar="N", help="entries of the LUTs (4081)")
+    parser.add_argument(
+        "--length", type=_positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
+    )
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     _add_network(parser)
     _add_plate(parser)
@@ -167,7 +172,7 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
 
 def _add_plate(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that write linear plates."""
-    parser.add_argument("--depth", choices=("half", "float"), default="half", help="of the linear EXR (half)")
+    parser.add_argument("--depth", choices=DEPTHS, default=DEPTHS[0], help=f"of the linear EXR ({DEPTHS[0]})")
     parser.add_argument("--exposure", type=_stops, default=0.0, metavar="STOPS", help="gain of the linear EXR (0)")
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
     _add_json(parser)
@@ -179,47 +184,47 @@ def _add_json(parser: argparse.ArgumentParser) -> None:
 
 
 def _positive(text: str) -> int:
-    """Parse an integer above 0."""
+    """Return the integer in `text`, which must be 1 or more."""
     if (number := int(text)) < 1:
         raise argparse.ArgumentTypeError(f"{text} is below 1")
     return number
 
 
 def _count(text: str) -> int:
-    """Parse an integer from 0."""
+    """Return the integer in `text`, which must be 0 or more."""
     if (number := int(text)) < 0:
         raise argparse.ArgumentTypeError(f"{text} is below 0")
     return number
 
 
 def _stops(text: str) -> float:
-    """Parse an exposure that half floats can hold."""
-    if not abs(stops := float(text)) <= MOST_STOPS:
-        raise argparse.ArgumentTypeError(f"{text} is not between -{MOST_STOPS} and {MOST_STOPS} stops")
+    """Return the exposure in `text`, which must be within `MAX_EXPOSURE` stops."""
+    if not abs(stops := float(text)) <= MAX_EXPOSURE:
+        raise argparse.ArgumentTypeError(f"{text} is not between -{MAX_EXPOSURE} and {MAX_EXPOSURE} stops")
     return stops
 
 
-def _run(options: argparse.Namespace) -> None:
-    """Carry out the command."""
-    if options.command == "completion":
-        sys.stdout.write(shtab.complete(build_parser(), shell=options.shell) + "\n")
+def _run(arguments: argparse.Namespace) -> None:
+    """Run the subcommand."""
+    if arguments.command == "completion":
+        sys.stdout.write(shtab.complete(build_parser(), shell=arguments.shell) + "\n")
         return
     from ocio import commands
 
     run = {"estimate": commands.run_estimate, "linearize": commands.run_linearize, "info": commands.run_info}
-    run[options.command](options)
+    run[arguments.command](arguments)
 
 
 def _print_any_character() -> None:
-    """Let names be printed where the terminal or the pipe lacks their characters: as escapes."""
+    """Print characters that the terminal or the pipe cannot show as escapes, instead of failing."""
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
 
 
 def _fail(problem: BaseException) -> int:
-    """Print the problem in one line and return the exit code."""
-    if isinstance(problem, BrokenPipeError):  # `crfnet info X | head`: nobody is left to be told
+    """Print the problem on one line and return the exit code."""
+    if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BAD_INPUT
     text = UNEXPLAINED.get(type(problem), str(problem))

@@ -1,4 +1,4 @@
-"""Which files an estimate writes, and whether they may be written: asked before any work is done."""
+"""Which files an estimate writes, and whether they may be written: checked before any work is done."""
 
 from __future__ import annotations
 
@@ -11,8 +11,7 @@ from pathlib import Path
 
 from crfnet_core.errors import PlateError
 from ocio.configs.plate_color_space import PlateColorSpace
-
-CONFIG_NAME = "config.ocio"
+from ocio.defaults import CONFIG_NAME
 
 
 @dataclass(frozen=True)
@@ -28,7 +27,7 @@ class OutputFiles:
     linear : tuple of Path
         One linear EXR per photograph.
     sheet : Path or None
-        The picture, if there is to be one.
+        The picture of the estimate; None if it is not drawn.
     report : Path
         The JSON document.
     color_space : str
@@ -46,7 +45,7 @@ class OutputFiles:
 
     @classmethod
     def named(cls, folder: Path, photos: Sequence[Path], *, has_sheet: bool = True) -> OutputFiles:
-        """Return the files for `photos`, whose response is one."""
+        """Return the files for `photos`, which have one response in common."""
         stem = plain_stem(photos[0])
         return cls(
             spi1d=folder / f"{stem}.spi1d",
@@ -60,15 +59,30 @@ class OutputFiles:
         )
 
     @property
+    def luts(self) -> tuple[Path, ...]:
+        """The inverse response in every format."""
+        return (self.spi1d, self.cube, self.clf)
+
+    @property
     def own(self) -> tuple[Path, ...]:
-        """Every file but the config."""
+        """Every file except the config, which other estimates may share."""
         sheet = () if self.sheet is None else (self.sheet,)
-        return (self.spi1d, self.cube, self.clf, *self.linear, *sheet, self.report)
+        return (*self.luts, *self.linear, *sheet, self.report)
 
-    def plate_color_space(self, photo: Path, exposure: float = 0.0) -> PlateColorSpace:
-        """Return the colour space of `photo`, for a config beside the LUTs; `exposure` in stops.
+    def plate_color_space(
+        self, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
+    ) -> PlateColorSpace:
+        """Return the colour space of a photograph, for a config beside the LUTs.
 
-        Its file rule is for the photograph's own name; a frame number at its end (shot.0001.jpg) stands for any.
+        Parameters
+        ----------
+        photo : Path
+            The photograph.
+        exposure : float
+            Stops added after the response.
+        file_pattern : str or None
+            The file names for the file rule, with `*` and `?`; by default the photograph's own name, where a frame
+            number at the end (shot.0001.jpg) stands for any number.
 
         Raises
         ------
@@ -80,27 +94,27 @@ class OutputFiles:
             lut_file=self.spi1d.name,
             aliases=(re.sub(r"\W+", "_", self.color_space).lower(),),
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
-            file_pattern=re.sub(r"\.\d{2,}$", ".*", photo.stem) + photo.suffix,
+            file_pattern=file_pattern or re.sub(r"\.\d{2,}$", ".*", photo.stem) + photo.suffix,
             exposure=exposure,
         )
 
 
 def plain_stem(photo: Path) -> str:
-    """Return a file's name without its suffix, and with `_` for what means more than itself in configs and patterns."""
+    """Return a file's name without its suffix, and with `_` for characters that configs and patterns interpret."""
     return re.sub(r"[$%#*?]", "_", photo.stem)
 
 
 def check_outputs(
     folder: Path, outputs: Iterable[OutputFiles], *, photos: Iterable[Path] = (), overwrite: bool = False
 ) -> None:
-    """Check that everything can be written before anything is; nothing is created.
+    """Check that everything can be written before anything is; create nothing.
 
     Parameters
     ----------
     folder : Path
         The folder to write to; it need not exist yet.
     outputs : iterable of OutputFiles
-        What will be written there.
+        The files to be written there.
     photos : iterable of Path
         The photographs, none of which may be replaced.
     overwrite : bool
@@ -130,7 +144,7 @@ def check_outputs(
 
 
 def check_folder(folder: Path) -> None:
-    """Check that `folder` is one that can be written to, or can be made.
+    """Check that `folder` can be written to, or can be made.
 
     Raises
     ------
@@ -146,7 +160,7 @@ def check_folder(folder: Path) -> None:
 
 @contextmanager
 def output_folder(folder: Path) -> Iterator[None]:
-    """Make `folder` for the length of a block; if the block fails, folders made for it and still empty go again."""
+    """Make `folder` for a block; if the block fails, remove again those folders that were made and are empty."""
     made = [place for place in (folder, *folder.parents) if not place.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     try:
@@ -155,4 +169,17 @@ def output_folder(folder: Path) -> Iterator[None]:
         for place in made:
             with suppress(OSError):
                 place.rmdir()
+        raise
+
+
+@contextmanager
+def new_files_removed_on_failure(paths: Iterable[Path]) -> Iterator[None]:
+    """Run a block; if it fails or is cancelled, remove those of `paths` that did not exist before it."""
+    new = [path for path in paths if not path.exists()]
+    try:
+        yield
+    except BaseException:
+        for path in new:
+            with suppress(OSError):
+                path.unlink(missing_ok=True)
         raise

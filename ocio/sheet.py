@@ -1,4 +1,7 @@
-"""One picture of an estimate: the curve and its uncertainty, the windows, before and after. Needs matplotlib."""
+"""The sheet, one picture of an estimate: the curve with its band, the windows, and the plate before and after.
+
+It needs matplotlib, which is an optional dependency.
+"""
 
 from __future__ import annotations
 
@@ -13,26 +16,27 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
-from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write
+from crfnet_core.network import Verdict
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.types import Float32Array
 from crfnet_core.windows import Window
 from ocio.report import agreeing, brightness_percent
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
 
-#: Lower edge and height of everything below the heading, as shares of the sheet.
+#: Lower edge and height of everything below the heading, as fractions of the height of the sheet.
 BOTTOM, HEIGHT = 0.1, 0.735
 
 INK, QUIET, GRID, CURVE = "#1b1f24", "#6a737d", "#e6e8eb", "#0b66c3"
-VERDICT_INK = {"good": "#1a7f37", "usable": "#9a6700", "do not trust": "#b42318"}
+VERDICT_INK = {Verdict.GOOD: "#1a7f37", Verdict.USABLE: "#9a6700", Verdict.DO_NOT_TRUST: "#b42318"}
 
-#: The most of `warnings` and of a name that fits.
+#: Characters of a file name, and of all warnings together, for which there is room.
 LONGEST_NAME, LONGEST_LINE = 46, 150
 
 STYLE: dict[Any, Any] = {
@@ -47,11 +51,9 @@ STYLE: dict[Any, Any] = {
     "text.parse_math": False,
 }
 
-Pixels = NDArray[np.float32]
-
 
 def draw_sheet(
-    path: Path, preview: Pixels, estimate: ResponseEstimate, *, stride: int = 1, overwrite: bool = False
+    path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1, overwrite: bool = False
 ) -> None:
     """Write the picture of an estimate as PNG; the same input gives the same bytes.
 
@@ -62,9 +64,9 @@ def draw_sheet(
     preview : ndarray, float32, shape (h, w, 3)
         Every `stride`-th pixel of the first photograph, code values in [0, 1].
     estimate : ResponseEstimate
-        What was found.
+        The estimate.
     stride : int
-        Distance between the pixels of `preview` in the photograph.
+        Distance in the photograph between neighbouring pixels of `preview`.
     overwrite : bool
         Whether an existing file may be replaced.
 
@@ -74,7 +76,7 @@ def draw_sheet(
         If the file cannot be written.
     """
     with mpl.rc_context(), warnings.catch_warnings():
-        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # a file name may hold any character
+        warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # file names may hold any character
         mpl.rcdefaults()
         mpl.rcParams.update(STYLE)
         figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
@@ -89,23 +91,23 @@ def draw_sheet(
 
 
 def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
-    """Write the photograph's name, the verdict, the figures and the warnings."""
+    """Draw the photograph's name, the verdict, the figures and the warnings."""
     name = _shortened(estimate.photos[0], LONGEST_NAME)
     more = f" + {len(estimate.photos) - 1}" if len(estimate.photos) > 1 else ""
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
-    off = brightness_percent(estimate.uncertainty)
+    percent = brightness_percent(estimate.uncertainty)
     color = VERDICT_INK[estimate.verdict]
     verdict = figure.text(0.058, 0.896, estimate.verdict, size=11, weight="bold", va="center", color=color)
     figures = (
-        f"expected error {estimate.uncertainty:.2f} ({off:.1f} % of the brightness range)   ·   "
+        f"expected error {estimate.uncertainty:.2f} ({percent:.1f} % of the brightness range)   ·   "
         f"{agreeing(estimate)}   ·   {estimate.model}"
     )
     beside = Annotation(
         figures, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=QUIET
     )
     figure.add_artist(beside)
-    cautions = _shortened("   ·   ".join(estimate.warnings), LONGEST_LINE)
-    figure.text(0.058, 0.026, cautions, size=9, va="center", color=VERDICT_INK["usable"])
+    warning_line = _shortened("   ·   ".join(estimate.warnings), LONGEST_LINE)
+    figure.text(0.058, 0.026, warning_line, size=9, va="center", color=VERDICT_INK[Verdict.USABLE])
 
 
 def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
@@ -129,7 +131,7 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
 
 
 def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
-    """Return the places of the photograph and of the linear plate: side by side, or one above the other."""
+    """Return the axes of the photograph and of the linear plate: side by side if portrait, else one above the other."""
     if portrait:
         boxes = [(left, BOTTOM, 0.215, HEIGHT) for left in (0.532, 0.757)]
     else:
@@ -139,8 +141,8 @@ def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
     return before, after
 
 
-def _draw_photograph(axes: Axes, preview: Pixels, estimate: ResponseEstimate, stride: int) -> None:
-    """Show the first photograph with its windows: solid, dashed if far from the others."""
+def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
+    """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
     _show(axes, preview, stride, "Photograph and its windows (dashed: far from the others)")
     for found in estimate.windows:
         if found.photo == 0:
@@ -157,13 +159,13 @@ def _outline(window: Window, *, kept: bool, width: float, color: str) -> Rectang
     )
 
 
-def _draw_linear(axes: Axes, preview: Pixels, curve: ResponseCurve) -> None:
-    """Show the linear plate as a viewer with an sRGB display shows it."""
+def _draw_linear(axes: Axes, preview: Float32Array, curve: ResponseCurve) -> None:
+    """Show the linear plate as on an sRGB display."""
     _show(axes, srgb_encode(curve.inverse(preview)).astype(np.float32), 1, "Linear plate, in an sRGB view")
 
 
-def _show(axes: Axes, pixels: Pixels, stride: int, title: str) -> None:
-    """Show pixels in [0, 1] without axes, in units of the photograph's pixels."""
+def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:
+    """Show pixels in [0, 1]; the coordinates of the axes are the photograph's pixels."""
     height, width = pixels.shape[:2]
     codes = np.rint(255 * np.clip(pixels, 0, 1)).astype(np.uint8)
     axes.imshow(codes, extent=(0, width * stride, height * stride, 0), interpolation="antialiased")
@@ -172,7 +174,7 @@ def _show(axes: Axes, pixels: Pixels, stride: int, title: str) -> None:
 
 
 def _shortened(text: str, longest: int) -> str:
-    """Return `text`, with an ellipsis for its middle if it is longer than `longest`."""
+    """Return `text`, with its middle replaced by an ellipsis if it has more than `longest` characters."""
     if len(text) <= longest:
         return text
     return f"{text[: longest // 2 - 1]}…{text[-(longest // 2 - 1) :]}"

@@ -15,6 +15,8 @@ for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
 print(*sys.modules)
 """
 
+PIPELINE = "import sys, ocio.pipeline, ocio.configs.installed; print(*sys.modules)"
+
 START = "import sys, ocio.cli; ocio.cli.build_parser(); print(*sys.modules)"
 
 
@@ -32,6 +34,11 @@ def test_the_core_loads_no_guest(root):
 def test_the_command_starts_light(root):
     """`crfnet --help` must not wait for onnxruntime, OpenImageIO or matplotlib."""
     assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
+
+
+def test_the_pipeline_loads_what_the_add_on_has(root):
+    """Blender's package holds neither the command's libraries nor matplotlib."""
+    assert not loaded_by(PIPELINE, root) & {"bpy", "torch", "matplotlib", "tqdm", "shtab"}
 
 
 def test_only_image_io_reads_images(root):

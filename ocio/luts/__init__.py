@@ -1,9 +1,9 @@
-"""Lookup tables: the table itself, and a module per file format.
+"""Lookup tables: the table itself, and one module per file format.
 
-lut1d   the table, its arithmetic, and the inverse response as one
-text    read the text of a LUT file with care
-spi1d   Sony's .spi1d
-cube    Iridas' .cube
-clf     the Academy's Common LUT Format
-files   a LUT file by its suffix
+lut1d  the table, its interpolation in both directions, and the inverse response as a table
+text   the text of a LUT file: numbers and tables, with errors that name the line
+spi1d  Sony's .spi1d
+cube   the .cube format of Adobe and Resolve
+clf    the Academy's Common LUT Format
+files  read or write a LUT file of any of these formats, by its suffix
 """

@@ -1,7 +1,7 @@
-"""The Common LUT Format: a LUT1D, behind a Range when its domain is not [0, 1].
+"""The Common LUT Format: one LUT1D, after a Range if its domain is not [0, 1].
 
-It is written here and not by OpenColorIO's `GroupTransform.write`, which keeps eight digits: neighbouring float32
-values may then fall together, and the file would change with OpenColorIO's version.
+OpenColorIO's own `GroupTransform.write` is not used: it keeps eight digits, by which neighbouring float32 values may
+become equal, and its output depends on the version of OpenColorIO.
 
 Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 2136-1.
 """
@@ -22,14 +22,14 @@ from crfnet_core.files import atomic_write_text
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.text import LutText
 
-#: What an integer file depth multiplies values by.
+#: The factor of the values in a file, by the bit depth that the file declares.
 DEPTH_SCALES = {"8i": 255, "10i": 1023, "12i": 4095, "16i": 65535, "16f": 1, "32f": 1}
 
 
 def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
-    """Write a LUT as CLF 3.0, its comments as Description elements; the same LUT gives the same bytes.
+    """Write a LUT as CLF 3.0, with its comments as Description elements; the same LUT gives the same bytes.
 
-    The id is derived from the table and its domain, so that equal LUTs have equal ids.
+    The id is a hash of the table and its domain, so equal LUTs have equal ids.
 
     Parameters
     ----------
@@ -59,17 +59,17 @@ def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
 
 
 def read_clf(path: str | Path) -> Lut1D:
-    """Return the LUT of a CLF file, its Description elements as comments.
+    """Return the LUT in a CLF file, with its Description elements as comments.
 
     Parameters
     ----------
     path : str or Path
-        A ProcessList of one LUT1D, of one column or three equal ones, that may follow one Range for its domain.
+        A ProcessList of one LUT1D with one column or three equal ones; a Range before it may give the domain.
 
     Raises
     ------
     LutError
-        If the file is absent, no such LUT, incomplete, differs between channels or does not increase strictly.
+        If the file is absent, incomplete or of another format, differs between channels or does not increase strictly.
     """
     source = LutText.read(path)
     steps, comments = _steps(source)
@@ -85,13 +85,13 @@ def read_clf(path: str | Path) -> Lut1D:
 
 
 def _identity(lut: Lut1D) -> str:
-    """Return an id that depends on the table and its domain alone."""
+    """Return an id that depends on nothing but the table and its domain."""
     content = np.array([*lut.domain, *lut.values], dtype="<f4").tobytes()
     return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def _steps(source: LutText) -> tuple[list[ElementTree.Element], list[str]]:
-    """Return the process nodes, a Range or none and the LUT1D, without namespaces, and the descriptions."""
+    """Return the process nodes (a LUT1D, perhaps after a Range), without XML namespaces, and the descriptions."""
     text = "\n".join(source.lines)
     if "<!DOCTYPE" in text or "<!ENTITY" in text:
         raise source.error("declares XML entities, which no LUT needs; give a plain CLF file")
@@ -113,7 +113,7 @@ def _steps(source: LutText) -> tuple[list[ElementTree.Element], list[str]]:
 
 
 def _domain(source: LutText, step: ElementTree.Element) -> tuple[float, float]:
-    """Return the inputs that a Range maps to 0 and 1."""
+    """Return the inputs that a Range converts to 0 and 1."""
     line = _line(source, "Range")
     keys = ("minInValue", "maxInValue", "minOutValue", "maxOutValue")
     numbers = [source.numbers(step.findtext(key) or "", line, count=1)[0] for key in keys]
@@ -125,7 +125,7 @@ def _domain(source: LutText, step: ElementTree.Element) -> tuple[float, float]:
 
 
 def _scale(source: LutText, step: ElementTree.Element, key: str, kind: str) -> int:
-    """Return what the values of a step are multiplied by in the file."""
+    """Return the factor of a process node's values in the file."""
     depth = step.get(key, "")
     if depth not in DEPTH_SCALES:
         raise source.error(f"{key} is {depth!r}; known are {', '.join(DEPTH_SCALES)}", line=_line(source, kind))
@@ -141,13 +141,13 @@ def _array(source: LutText, table: ElementTree.Element) -> ElementTree.Element:
 
 
 def _line(source: LutText, tag: str) -> int | None:
-    """Return the number of the line that opens the first element of a kind."""
+    """Return the number of the line on which the first element of a kind begins."""
     opening = re.compile(rf"<(\w+:)?{tag}\b")
     return next((line for line, text in enumerate(source.lines, 1) if opening.search(text)), None)
 
 
 def _rows(source: LutText, array: ElementTree.Element, *, one_column: bool) -> Iterator[tuple[int, str]]:
-    """Yield the numbered rows of the Array; a single column may have several to a line."""
+    """Yield line number and text of every row of the Array; a single column may have several rows on a line."""
     first = _line(source, "Array") or 1
     for line, text in enumerate((array.text or "").split("\n"), first):
         rows = text.split() if one_column else [text.strip()]

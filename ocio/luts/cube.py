@@ -1,4 +1,4 @@
-"""The .cube format with a 1D table, as Adobe, Resolve and OpenColorIO understand it.
+"""The .cube format with a 1D table, as Adobe, Resolve and OpenColorIO read it.
 
 Source: Adobe, "Cube LUT Specification 1.0", 2013; OpenColorIO, `FileFormatIridasCube.cpp`, `FileFormatResolveCube.cpp`.
 """
@@ -14,7 +14,7 @@ from ocio.luts.text import LutText
 
 
 def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
-    """Write a LUT as a 1D .cube of three equal columns, its comments as `#` lines at the head.
+    """Write a LUT as a 1D .cube of three equal columns, with its comments as `#` lines at the top.
 
     A domain other than [0, 1] is written as DOMAIN_MIN and DOMAIN_MAX. The same LUT gives the same bytes.
 
@@ -41,17 +41,17 @@ def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None
 
 
 def read_cube(path: str | Path) -> Lut1D:
-    """Return the LUT of a 1D .cube file, its `#` lines as comments and its TITLE, if any, the first of them.
+    """Return the LUT in a 1D .cube file; its TITLE, if any, and its `#` lines become the comments.
 
     Parameters
     ----------
     path : str or Path
-        A file with LUT_1D_SIZE; the domain comes from DOMAIN_MIN and DOMAIN_MAX or from LUT_1D_INPUT_RANGE.
+        A file with LUT_1D_SIZE; its domain is in DOMAIN_MIN and DOMAIN_MAX, or in LUT_1D_INPUT_RANGE.
 
     Raises
     ------
     LutError
-        If the file is absent, no such LUT, a 3D LUT, incomplete, differs between channels or does not increase
+        If the file is absent, incomplete, a 3D LUT or of another format, differs between channels or does not increase
         strictly.
     """
     source = LutText.read(path)
@@ -74,7 +74,7 @@ def read_cube(path: str | Path) -> Lut1D:
 
 
 def _length(source: LutText, header: dict[str, tuple[int, str]]) -> float:
-    """Return the announced number of entries of the 1D table."""
+    """Return the number of entries that the header announces."""
     if "LUT_3D_SIZE" in header:
         message = "is a 3D LUT, which mixes the channels; give a 1D LUT of the camera's response"
         raise source.error(message, line=header["LUT_3D_SIZE"][0])
@@ -85,7 +85,7 @@ def _length(source: LutText, header: dict[str, tuple[int, str]]) -> float:
 
 
 def _domain(source: LutText, header: dict[str, tuple[int, str]]) -> tuple[float, float]:
-    """Return the first and the last input; [0, 1] unless the header says otherwise."""
+    """Return the first and the last input: 0 and 1 unless the header says otherwise."""
     low, high = 0.0, 1.0
     if "LUT_1D_INPUT_RANGE" in header:
         line, text = header["LUT_1D_INPUT_RANGE"]

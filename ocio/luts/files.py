@@ -1,4 +1,4 @@
-"""LUT files by their suffix."""
+"""Read or write a LUT file; its suffix names the format."""
 
 from __future__ import annotations
 
@@ -11,25 +11,25 @@ from ocio.luts.cube import read_cube, write_cube
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import read_spi1d, write_spi1d
 
-#: The readers of LUT files, by suffix.
+#: The reader of each format, by suffix.
 READERS: dict[str, Callable[[str | Path], Lut1D]] = {".spi1d": read_spi1d, ".cube": read_cube, ".clf": read_clf}
 
-#: The writers of LUT files, by suffix.
+#: The writer of each format, by suffix.
 WRITERS: dict[str, Callable[..., None]] = {".spi1d": write_spi1d, ".cube": write_cube, ".clf": write_clf}
 
 
 def read_lut(path: str | Path) -> Lut1D:
-    """Return the LUT of a .spi1d, .cube or .clf file.
+    """Return the LUT in a .spi1d, .cube or .clf file.
 
     Parameters
     ----------
     path : str or Path
-        The file; its suffix, in any case, names the format.
+        The file; its suffix, in lower or upper case, names the format.
 
     Raises
     ------
     LutError
-        If the suffix is another one, or as the reader of the format.
+        If the suffix is another one, and as the reader of the format raises it.
     """
     return READERS[_known_suffix(path)](path)
 
@@ -40,7 +40,7 @@ def write_lut(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     Parameters
     ----------
     path : str or Path
-        The file to be written; its suffix, in any case, names the format.
+        The file to be written; its suffix, in lower or upper case, names the format.
     lut : Lut1D
         The table.
     overwrite : bool
@@ -49,13 +49,13 @@ def write_lut(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     Raises
     ------
     LutError
-        If the suffix is another one, or as the writer of the format.
+        If the suffix is another one, and as the writer of the format raises it.
     """
     WRITERS[_known_suffix(path)](path, lut, overwrite=overwrite)
 
 
 def _known_suffix(path: str | Path) -> str:
-    """Return the suffix in lower case; a LutError if no format has it."""
+    """Return the suffix in lower case; raise a LutError if no format has it."""
     suffix = Path(path).suffix.lower()
     if suffix not in READERS:
         raise LutError(f"{path}: LUT files end in {', '.join(READERS)}, found {suffix or 'no suffix'!r}; rename it")

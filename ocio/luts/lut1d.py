@@ -1,4 +1,4 @@
-"""A one-dimensional lookup table: its values, its arithmetic, and the inverse response as one."""
+"""A one-dimensional lookup table: its values, its interpolation in both directions, and the inverse response."""
 
 from __future__ import annotations
 
@@ -10,49 +10,46 @@ from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float64Array
+from ocio.defaults import LUT_LENGTH
 
-#: Entries of a LUT unless asked otherwise: 255 * 16 + 1, exact on 8-bit codes.
-DEFAULT_LENGTH = 4081
-
-#: Entries that every format and host takes.
+#: Largest number of entries that every format and host accepts.
 MAX_LENGTH = 65536
 
-#: Bound on the slope dE/dB of the lines that continue a response beyond [0, 1].
+#: Largest slope dE/dB of the lines that continue an inverse response beyond [0, 1].
 MAX_END_SLOPE = 8.0
 
-#: Characters kept of a comment: OpenColorIO reads .spi1d lines into a buffer of 4096 bytes.
+#: Characters kept of a comment; OpenColorIO reads each line of a .spi1d file into a buffer of 4096 bytes.
 MAX_COMMENT = 500
 
 #: The bit pattern of the largest subnormal float32.
 BELOW_NORMAL = 0x007FFFFF
 
-Floats = NDArray[np.float64]
-
 
 @dataclass(frozen=True, eq=False)
 class Lut1D:
-    """A strictly increasing table, linear between its entries, the same for R, G and B.
+    """A strictly increasing table, interpolated linearly between its entries, the same for R, G and B.
 
-    Everything is held in float32 precision, the one in which LUT hosts work, so that what is written with nine
-    digits is read back bit for bit and is strictly increasing in every host. Subnormal numbers become 0, because
-    OpenColorIO's .spi1d reader refuses them.
+    All numbers are rounded to float32, the precision of LUT hosts. Written with nine digits they are therefore read
+    back bit for bit, and the table increases strictly in every host. Subnormal numbers become 0, because OpenColorIO's
+    .spi1d reader refuses them.
 
     Parameters
     ----------
     values : array_like, shape (N,), 2 <= N <= 65536
-        Outputs at N uniform inputs over `domain`; kept as float64 holding float32 values, read-only.
+        Outputs at N uniform inputs over `domain`; kept as a read-only float64 array of float32 values.
     domain : tuple of float
         The first and the last input.
     comments : tuple of str
-        Provenance, a line each; white space is collapsed and lines are cut at 500 characters.
+        Provenance, one line each; white space is collapsed and lines are cut after 500 characters.
 
     Raises
     ------
     LutError
-        If the values are not finite and strictly increasing as float32, or the domain is not an interval.
+        If the values are not finite, do not increase strictly as float32, or the domain is no finite interval.
     """
 
-    values: Floats
+    values: Float64Array
     domain: tuple[float, float] = (0.0, 1.0)
     comments: tuple[str, ...] = ()
 
@@ -80,9 +77,9 @@ class Lut1D:
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output for every pixel, by linear interpolation.
 
-        Inputs beyond the domain are clamped to it and NaN gives the first entry, as in OpenColorIO. Half and single
-        precision are computed in float32 as OpenColorIO's CPU renderer does: the results are the same to one unit
-        in the last place on the steepest table. Everything else is computed in float64.
+        As in OpenColorIO, inputs beyond the domain are clamped to it, and NaN gives the first entry. Half and single
+        precision are computed in float32 as in OpenColorIO's CPU renderer: the results differ by one unit in the last
+        place at most, on the steepest table. Everything else is computed in float64.
 
         Parameters
         ----------
@@ -100,16 +97,16 @@ class Lut1D:
         position = inputs
         if self.domain != (0.0, 1.0):
             position = position * kind(1 / (high - low)) + kind(-low / (high - low))
-        position = np.fmin(np.fmax(position * kind(last), 0), last)  # unlike clip, they take 0 for NaN
+        position = np.fmin(np.fmax(position * kind(last), 0), last)  # unlike np.clip, fmax gives 0 for NaN
         below = np.minimum(position.astype(np.int32), last - 1)
         values = self.values.astype(kind)
         return np.asarray(values[below] + (position - below.astype(kind)) * np.diff(values)[below], dtype=kind)
 
     def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
-        """Return the input that gives every pixel, clamped to the domain; NaN gives its low end.
+        """Return the input that gives every pixel, clamped to the domain; NaN gives the low end of the domain.
 
-        OpenColorIO agrees to 1e-6 with lossless optimization. By default, and so in most hosts, it inverts through an
-        approximate table, off by 4e-4 on the steepest curves.
+        OpenColorIO agrees to 1e-6 if its optimisation is lossless. By default, and so in most hosts, it inverts
+        through an approximate table, which differs by up to 4e-4 on the steepest curves.
 
         Parameters
         ----------
@@ -130,21 +127,27 @@ class Lut1D:
 def inverse_response_lut(
     curve: ResponseCurve,
     *,
-    length: int = DEFAULT_LENGTH,
+    length: int = LUT_LENGTH,
     domain: tuple[float, float] = (0.0, 1.0),
     comments: Sequence[str] = (),
 ) -> Lut1D:
-    """Return the inverse response g: brightness B to irradiance E, as a LUT.
+    """Return the inverse response g, from brightness B to irradiance E, as a LUT.
 
-    A LUT is exact where its grid meets the codes of the plate. Over [0, 1] that is on 8-bit codes for a length of
-    255 k + 1 (256, 4081, 16321), on 10-bit codes for 1023 k + 1 (1024, 4093), on 12-bit codes for 4095 k + 1 (4096)
-    and on 16-bit codes for 65536 alone, which is exact on 8 bits too. Over (-0.125, 1.125) it is 2550 k + 1 (2551,
-    5101) for 8 bits and 10230 k + 1 (10231) for 10 bits. Elsewhere it is linear between the nearest entries.
+    A LUT is exact where its entries lie on the codes of the plate, and linear between them. Lengths that are exact:
 
-    Beyond [0, 1], for super-whites and for noise below black, g continues as a line with the slope that it has over
-    the outermost 8-bit code. A response that is flat near an end has an almost endless inverse slope there, which
-    says only that the camera clipped, so this slope is bounded by `MAX_END_SLOPE`: a brightness of 1.125 then means
-    an irradiance of 2 at most, one stop above white.
+    =============== ============================= ========================
+    codes           domain (0, 1)                 domain (-0.125, 1.125)
+    =============== ============================= ========================
+    8 bits          255 k + 1: 256, 4081, 16321   2550 k + 1: 2551, 5101
+    10 bits         1023 k + 1: 1024, 4093        10230 k + 1: 10231
+    12 bits         4095 k + 1: 4096
+    16 bits         65536 (also for 8 bits)
+    =============== ============================= ========================
+
+    Beyond [0, 1], for super-whites and for noise below black, g continues as a line with its slope over the outermost
+    8-bit code. Where a response is flat near an end, its inverse is almost vertical there; that only means that the
+    camera clipped. The slope is therefore limited to `MAX_END_SLOPE`, by which a brightness of 1.125 is an irradiance
+    of 2 at most, one stop above white.
 
     Parameters
     ----------
@@ -153,17 +156,17 @@ def inverse_response_lut(
     length : int
         Entries, 2 to 65536.
     domain : tuple of float
-        The first and the last brightness; holds [0, 1].
+        The first and the last brightness; must include [0, 1].
     comments : sequence of str
-        Provenance, a line each.
+        Provenance, one line each.
 
     Raises
     ------
     LutError
-        If the length is out of range, or the domain is not finite or does not hold [0, 1].
+        If the length is out of range, or the domain is not finite or does not include [0, 1].
     """
     if not 2 <= length <= MAX_LENGTH:
-        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {DEFAULT_LENGTH} suits most")
+        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {LUT_LENGTH} suits most")
     low, high = domain
     if not (-np.inf < low <= 0 and 1 <= high < np.inf):
         raise LutError(f"the domain of an inverse response must hold 0 to 1, found {low:.9g} to {high:.9g}")
@@ -175,33 +178,39 @@ def inverse_response_lut(
     return Lut1D(strictly_increasing(irradiance), (low, high), tuple(comments))
 
 
-def strictly_increasing(values: ArrayLike) -> Floats:
-    """Return `values` in float32 precision, moved by the few units in the last place that keep neighbours apart.
+def strictly_increasing(values: ArrayLike) -> Float64Array:
+    """Return `values` rounded to float32, with equal neighbours moved apart by units in the last place.
 
     Parameters
     ----------
     values : array_like, shape (N,)
-        Finite and increasing, though perhaps not strictly as float32; the last entry stays as it is.
+        Finite and increasing, though perhaps no longer strictly as float32; the last entry stays as it is.
+
+    Returns
+    -------
+    ndarray, float64, shape (N,)
+        float32 values that increase strictly.
     """
+    # The bits of positive float32 numbers, read as integers, are in the order of the numbers: + 1 is the next number.
     bits = single_precision(values).astype(np.float32).view(np.int32).astype(np.int64)
     magnitude = bits & 0x7FFFFFFF
     rank = np.sign(bits) * np.maximum(magnitude - BELOW_NORMAL, 0)
     steps = np.arange(rank.size)
-    raised = np.maximum.accumulate(rank - steps) + steps
-    raised = np.minimum(raised, rank[-1] - steps[::-1])
+    raised = np.maximum.accumulate(rank - steps) + steps  # at least 1 above the entry before
+    raised = np.minimum(raised, rank[-1] - steps[::-1])  # and never above the last entry, which stays
     pattern = np.where(raised == 0, 0, np.abs(raised) + BELOW_NORMAL).astype(np.int32)
     return np.asarray(np.copysign(pattern.view(np.float32), raised), dtype=np.float64)
 
 
-def first_fault(values: Floats) -> int | None:
+def first_fault(values: Float64Array) -> int | None:
     """Return the index of the first value that is not finite or not above the one before it, or None."""
     with np.errstate(invalid="ignore"):
         faults = np.flatnonzero(~np.isfinite(values) | (np.diff(values, prepend=-np.inf) <= 0))
     return int(faults[0]) if faults.size else None
 
 
-def single_precision(values: ArrayLike) -> Floats:
-    """Return float64 numbers that float32 can hold; what is below its normal range becomes 0."""
+def single_precision(values: ArrayLike) -> Float64Array:
+    """Return `values` rounded to float32, as float64; subnormal numbers become 0."""
     with np.errstate(over="ignore"):
         single = np.asarray(values, dtype=np.float64).astype(np.float32)
     return np.where(np.abs(single) < np.finfo(np.float32).tiny, 0, single).astype(np.float64)
@@ -214,7 +223,7 @@ def _floating(pixels: ArrayLike) -> NDArray[np.floating]:
 
 
 def _clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
-    """Return comments that fit into a line of any format; empty ones go."""
+    """Return the comments, each fit for one line of any format; empty ones are dropped."""
     printable = ("".join(c if c.isprintable() else " " for c in comment) for comment in comments)
     cleaned = (" ".join(comment.split())[:MAX_COMMENT].strip() for comment in printable)
     return tuple(comment for comment in cleaned if comment)

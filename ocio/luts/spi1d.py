@@ -1,4 +1,4 @@
-"""The .spi1d format: Sony Imageworks' 1D LUT, OpenColorIO's plainest.
+"""The .spi1d format: Sony Imageworks' 1D LUT, the simplest that OpenColorIO reads.
 
 Source: OpenColorIO, `FileFormatSpi1D.cpp`.
 """
@@ -14,7 +14,7 @@ from ocio.luts.text import LutText
 
 
 def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
-    """Write a LUT as .spi1d, its comments as `#` lines at the head; the same LUT gives the same bytes.
+    """Write a LUT as .spi1d, with its comments as `#` lines at the top; the same LUT gives the same bytes.
 
     Parameters
     ----------
@@ -38,17 +38,17 @@ def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> Non
 
 
 def read_spi1d(path: str | Path) -> Lut1D:
-    """Return the LUT of a .spi1d file, its `#` lines as comments.
+    """Return the LUT in a .spi1d file, with its `#` lines as comments.
 
     Parameters
     ----------
     path : str or Path
-        A file of one component, or of three equal ones.
+        A file with one component, or with three equal ones.
 
     Raises
     ------
     LutError
-        If the file is absent, no such LUT, incomplete, differs between channels or does not increase strictly.
+        If the file is absent, incomplete or of another format, differs between channels or does not increase strictly.
     """
     source = LutText.read(path)
     comments: list[str] = []
@@ -77,7 +77,7 @@ def read_spi1d(path: str | Path) -> Lut1D:
 
 
 def _header_numbers(source: LutText, header: dict[str, tuple[int, str]], key: str, count: int) -> list[float]:
-    """Return the numbers behind a keyword of the header."""
+    """Return the numbers that follow a keyword of the header."""
     if key not in header:
         raise source.error(f"has no line '{key.capitalize()}'; the file is cut or no .spi1d LUT")
     line, text = header[key]

@@ -1,4 +1,4 @@
-"""The text of a LUT file, read with care: every fault is an error that names the file, the line and the remedy."""
+"""The text of a LUT file. Every fault is an error that names the file, the line and the remedy."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import numpy as np
 from crfnet_core.errors import LutError
 from ocio.luts.lut1d import Lut1D, first_fault, single_precision
 
-#: Bytes of the largest LUT file that is read.
+#: Size in bytes of the largest LUT file that is read.
 MAX_FILE_SIZE = 64 * 1024 * 1024
 
 
@@ -24,7 +24,7 @@ class LutText:
 
     @classmethod
     def read(cls, path: str | Path) -> LutText:
-        """Return the text of `path`; a LutError if it is absent, empty, too large or no text."""
+        """Return the text of `path`; raise a LutError if it is absent, empty, too large or no text."""
         path = Path(path)
         try:
             size = path.stat().st_size
@@ -45,7 +45,7 @@ class LutText:
         return LutError(f"{self.path}: {problem}" if line is None else f"{self.path}, line {line}: {problem}")
 
     def numbers(self, text: str, line: int | None, *, count: int) -> list[float]:
-        """Return the numbers of one line; a LutError if they are not `count` finite ones."""
+        """Return the numbers in `text`; raise a LutError unless they are `count` finite ones."""
         numbers = []
         for token in text.split():
             try:
@@ -69,7 +69,24 @@ class LutText:
         domain: tuple[float, float],
         comments: Sequence[str],
     ) -> Lut1D:
-        """Return the LUT of `rows` (line number, text), each of one value or of three equal ones."""
+        """Return the LUT of a table.
+
+        Parameters
+        ----------
+        rows : iterable of (int, str)
+            Line number and text of each entry: one value, or three equal ones.
+        length, channels : float
+            The number of entries, and of values per entry, that the file announces.
+        domain : tuple of float
+            The first and the last input.
+        comments : sequence of str
+            Provenance.
+
+        Raises
+        ------
+        LutError
+            If the table is incomplete, differs between channels, or does not increase strictly.
+        """
         if channels not in (1, 3):
             raise self.error(f"has {channels:g} channels; a LUT of a camera's response has 1, or 3 equal ones")
         lines: list[int] = []

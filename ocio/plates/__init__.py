@@ -1,5 +1,7 @@
-"""Plates: the frames of a sequence, and the linear EXR made of them.
+"""Plates: the frames of a sequence, and the linear EXR files made of them.
 
-frames   find the frames of a sequence, choose some, read one
-linear   write encoded frames as scene-linear OpenEXR
+frames       names, patterns and sequences of frames: find the files, choose some of them
+frame_files  read one frame: its encoded samples, its alpha and its header
+linear       linearise frames through a LUT, several at a time
+exr          the header and the file of a linear plate
 """

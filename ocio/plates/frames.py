@@ -1,4 +1,4 @@
-"""The frames of a sequence such as `plate.%04d.png` or `plate.####.png`: find them, choose, read one."""
+"""The frames of a sequence such as `plate.%04d.png` or `plate.####.png`: find their files, choose some of them."""
 
 from __future__ import annotations
 
@@ -7,19 +7,14 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from operator import index
 from pathlib import Path
-from typing import Any
-
-import numpy as np
-import OpenImageIO as oiio
-from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
-from crfnet_core.image_io import MAX_PIXELS, first_line, read_codes
+from ocio.defaults import FRAMES_ANALYSED
 
-#: Frames that a specification or a sequence with its gaps may span; more is a mistake.
+#: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
 MAX_FRAMES = 1_000_000
 
-#: Frame placeholders, the most explicit first: a name is split at the first kind that it holds.
+#: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
 _PLACEHOLDERS = (re.compile(r"%(?:0([0-9]{1,2}))?d"), re.compile("#+"), re.compile("@+"))
 
 _RANGE = re.compile(r"(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?", re.ASCII)
@@ -44,28 +39,6 @@ class FrameSequence:
     missing: tuple[int, ...] = ()
 
 
-@dataclass(frozen=True, eq=False)
-class EncodedFrame:
-    """The samples of a plate before its linearisation.
-
-    Parameters
-    ----------
-    samples : ndarray, shape (H, W, 3)
-        Code values (unsigned integers), or encoded values as float32, not multiplied by alpha.
-    largest : int
-        The code that stands for 1; 1 for floats.
-    alpha : ndarray, float32, shape (H, W), or None
-        Coverage in [0, 1].
-    header : OpenImageIO.ImageSpec
-        The header of the file.
-    """
-
-    samples: NDArray[Any]
-    largest: int
-    alpha: NDArray[np.float32] | None
-    header: Any
-
-
 @dataclass(frozen=True)
 class FramePattern:
     """A file name with one frame placeholder.
@@ -75,7 +48,7 @@ class FramePattern:
     folder : Path
         The folder of the files.
     prefix, suffix : str
-        What stands before and after the frame number.
+        The parts of the name before and after the frame number.
     width : int
         Digits to which the number is padded with zeros.
     """
@@ -89,8 +62,8 @@ class FramePattern:
     def parse(cls, pattern: str | Path) -> FramePattern | None:
         """Return the pattern, or None for a name without a placeholder.
 
-        `%04d` and `####` pad to four digits, `@@@` to three, `%d` to none. A single `#` means four digits, as in
-        oiiotool and RV; two and more mean that many, as in Nuke. Placeholders in the folder's name are left alone.
+        `%04d` and `####` pad to four digits, `@@@` to three; `%d` does not pad. A single `#` means four digits, as in
+        oiiotool and RV; several mean as many digits, as in Nuke. Placeholders in the name of the folder do not count.
 
         Raises
         ------
@@ -112,7 +85,7 @@ class FramePattern:
         return self.folder / f"{self.prefix}{number:0{self.width}d}{self.suffix}"
 
     def files(self) -> dict[int, Path]:
-        """Return the files there are, by frame number; a PlateError if the folder cannot be listed."""
+        """Return the existing files by frame number; raise a PlateError if the folder cannot be listed."""
         named = re.compile(f"{re.escape(self.prefix)}(-?[0-9]{{1,18}}){re.escape(self.suffix)}")
         files = {}
         try:
@@ -132,9 +105,9 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     ----------
     pattern : str or Path
         The name of one file, or of a sequence with a placeholder for the frame number (see `FramePattern.parse`).
-        A file of exactly this name comes first, so a single file may have `#` or `@` in its name.
+        An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`.
     frames : str, iterable of int, or None
-        The frames to use, as `parse_frames` takes them; all that are there by default.
+        The frames to use, as in `parse_frames`; all existing ones by default.
 
     Raises
     ------
@@ -157,12 +130,12 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
 
 
-def sample_frames(sequence: FrameSequence, count: int = 8) -> tuple[Path, ...]:
-    """Return up to `count` (1 or more) evenly spread files of a sequence, the first and the last among them."""
+def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYSED) -> tuple[Path, ...]:
+    """Return up to `count` (1 or more) evenly spread files of a sequence, including the first and the last."""
     last = len(sequence.paths) - 1
     steps = max(1, count - 1)
-    places = {(2 * last * step + steps) // (2 * steps) for step in range(count)}
-    return tuple(sequence.paths[place] for place in sorted(places))
+    positions = {(2 * last * step + steps) // (2 * steps) for step in range(count)}  # last * step / steps, rounded
+    return tuple(sequence.paths[position] for position in sorted(positions))
 
 
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
@@ -176,7 +149,7 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     Raises
     ------
     PlateError
-        If it is malformed, a range runs backwards or its step is 0, or there are more than `MAX_FRAMES`.
+        If it is malformed, a range runs backwards, a step is 0, or there are more than `MAX_FRAMES` frames.
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
@@ -195,7 +168,7 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
 
 
 def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
-    """Return ascending frame numbers as ranges, "1-3, 7, 9-12", with an ellipsis after `limit` of them."""
+    """Return ascending frame numbers as ranges, for example "1-3, 7, 9-12", with an ellipsis after `limit` ranges."""
     ranges: list[list[int]] = []
     for number in numbers:
         if ranges and number == ranges[-1][1] + 1:
@@ -206,65 +179,8 @@ def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
     return ", ".join(texts[:limit]) + (", …" if len(texts) > limit else "")
 
 
-def read_frame(path: Path) -> EncodedFrame:
-    """Return the encoded samples of a file that `read_photo` reads, or of an OpenEXR file that holds encoded values.
-
-    Raises
-    ------
-    PhotoError, PlateError
-        If the file is damaged, too large, of another kind, or scene-linear already.
-    """
-    if path.suffix.lower() == ".exr":
-        return _read_encoded_exr(path)
-    values = read_codes(path)
-    alpha = None
-    if values.alpha is not None:
-        alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
-    samples = values.pixels() if values.is_associated else values.codes
-    return EncodedFrame(samples, values.largest, alpha, values.header)
-
-
-def _read_encoded_exr(path: Path) -> EncodedFrame:
-    """Return the encoded values in an OpenEXR file, divided by its alpha."""
-    source = oiio.ImageInput.open(str(path))
-    problem = oiio.geterror()
-    if source is None:
-        raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
-    try:
-        header = source.spec()
-        _check_encoded_exr(path, header)
-        values = source.read_image(0, 0, 0, header.nchannels, "float")
-        problem = source.geterror()
-    finally:
-        source.close()
-    if values is None or problem:
-        raise PlateError(f"{path}: this EXR file is damaged or cut short ({first_line(problem)}); write it again")
-    gray = next(place for place, name in enumerate(header.channelnames) if name != "A")
-    places = [header.channelindex(name) for name in "RGB"]
-    samples = values[..., [gray if place < 0 else place for place in places]]
-    if header.alpha_channel < 0:
-        return EncodedFrame(samples, 1, None, header)
-    alpha = values[..., header.alpha_channel]
-    covered = alpha[..., None] != 0
-    return EncodedFrame(
-        np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered), 1, alpha, header
-    )
-
-
-def _check_encoded_exr(path: Path, header: Any) -> None:
-    """Refuse an OpenEXR file that is linear already, too large, deep, or no picture."""
-    space = header.get_string_attribute("colorInteropID")
-    if space.startswith("lin_"):
-        raise PlateError(f"{path}: is scene-linear already ({space}); give the encoded plate")
-    if header.image_pixels() > MAX_PIXELS:
-        raise PlateError(f"{path}: claims {header.width} x {header.height} pixels; crop it to {MAX_PIXELS} pixels")
-    names = set(header.channelnames)
-    if header.deep or not (names >= set("RGB") or len(names - {"A"}) == 1):
-        raise PlateError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
-
-
 def _width(found: re.Match[str]) -> int:
-    """Return the digits of a placeholder."""
+    """Return the number of digits to which a placeholder pads."""
     text = found[0]
     if text.startswith("%"):
         return int(found[1] or 1)
@@ -272,7 +188,7 @@ def _width(found: re.Match[str]) -> int:
 
 
 def _kind(path: Path) -> str:
-    """Return "file", "folder" or "": a name that the system refuses is nothing."""
+    """Return "file", "folder", or "" for a name that does not exist or that the system refuses."""
     try:
         return "file" if path.is_file() else "folder" if path.is_dir() else ""
     except OSError:
@@ -280,7 +196,7 @@ def _kind(path: Path) -> str:
 
 
 def _no_sequence(path: Path) -> str:
-    """Return what is wrong with a name that is neither a file to be used whole nor a pattern."""
+    """Return why a name that is neither a pattern nor a file to be used as a whole stands for no frames."""
     sequence = "a sequence such as plate.%04d.png or plate.####.png"
     if _kind(path) == "folder":
         return f"is a folder; give a file in it, or {sequence}"
@@ -290,7 +206,7 @@ def _no_sequence(path: Path) -> str:
 
 
 def _span(files: Iterable[int], path: Path) -> Sequence[int]:
-    """Return the numbers from the first to the last file."""
+    """Return all frame numbers from the first to the last file."""
     numbers = sorted(files)
     if not numbers:
         return ()

@@ -1,10 +1,9 @@
-"""Frame sequences: patterns, specifications, gaps, samples and reading one encoded frame."""
+"""Frame sequences: patterns, specifications, gaps and samples."""
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
-from crfnet_core.errors import PhotoError, PlateError
+from crfnet_core.errors import PlateError
 from ocio.plates.frames import (
     MAX_FRAMES,
     FramePattern,
@@ -12,7 +11,6 @@ from ocio.plates.frames import (
     find_frames,
     format_frames,
     parse_frames,
-    read_frame,
     sample_frames,
 )
 
@@ -43,16 +41,16 @@ def names(sequence):
         ("a@b.###.png", 1, "a@b.001.png"),
     ],
 )
-def test_pattern_names_a_frame(pattern, number, name):
+def test_a_pattern_names_the_file_of_a_frame(pattern, number, name):
     assert FramePattern.parse(pattern).path(number).name == name
 
 
-def test_pattern_keeps_the_folder(tmp_path):
+def test_a_pattern_keeps_the_folder(tmp_path):
     assert FramePattern.parse(tmp_path / "shot_####" / "a.##.png").path(5) == tmp_path / "shot_####" / "a.05.png"
 
 
 @pytest.mark.parametrize("name", ["plate.png", "plate.%s.png", "plate.%4d.png", "100%.png"])
-def test_name_without_placeholder(name):
+def test_a_name_without_a_placeholder_is_no_pattern(name):
     assert FramePattern.parse(name) is None
 
 
@@ -62,19 +60,19 @@ def test_several_placeholders_are_refused(name):
         FramePattern.parse(name)
 
 
-def test_single_file(tmp_path):
+def test_a_single_file_has_no_frame_numbers(tmp_path):
     touch(tmp_path, "plate.png")
     assert find_frames(tmp_path / "plate.png") == FrameSequence((tmp_path / "plate.png",), (), ())
     assert find_frames(str(tmp_path / "plate.png")).paths == (tmp_path / "plate.png",)
 
 
-def test_single_file_whose_name_looks_like_a_pattern(tmp_path):
+def test_a_file_whose_name_looks_like_a_pattern_is_found(tmp_path):
     touch(tmp_path, "a@2x.png", "a52x.png")
     assert names(find_frames(tmp_path / "a@2x.png")) == ["a@2x.png"]
 
 
 @pytest.mark.parametrize("pattern", ["p.%04d.png", "p.####.png", "p.#.png", "p.@@@@.png"])
-def test_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
+def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     touch(tmp_path, "p.0010.png", "p.0009.png", "p.0012.png", "p.0015.png")
     sequence = find_frames(tmp_path / pattern)
     assert names(sequence) == ["p.0009.png", "p.0010.png", "p.0012.png", "p.0015.png"]
@@ -94,12 +92,12 @@ def test_other_files_are_left_alone(tmp_path):
     assert find_frames(tmp_path / "p.%04d.png").numbers == (1,)
 
 
-def test_negative_frames(tmp_path):
+def test_frame_numbers_may_be_negative(tmp_path):
     touch(tmp_path, "p.-002.png", "p.-001.png", "p.0000.png", "p.-000.png")
     assert find_frames(tmp_path / "p.####.png").numbers == (-2, -1, 0)
 
 
-def test_chosen_frames(tmp_path):
+def test_only_the_chosen_frames_are_found(tmp_path):
     touch(tmp_path, *(f"p.{number:04d}.png" for number in (1, 2, 3, 5, 8)))
     sequence = find_frames(tmp_path / "p.####.png", "2-6,20")
     assert sequence.numbers == (2, 3, 5)
@@ -125,34 +123,34 @@ def test_chosen_frames(tmp_path):
         (np.array([4, 2]), (2, 4)),
     ],
 )
-def test_parse_frames(frames, numbers):
+def test_a_specification_stands_for_ascending_numbers(frames, numbers):
     assert parse_frames(frames) == numbers
 
 
 @pytest.mark.parametrize("frames", ["", "a", "1-", "-", "1-2-3", "1-5x", "1..5", "1;2", "1,,2", "1.5", "x2", "٣"])
-def test_malformed_specification(frames):
+def test_a_malformed_specification_is_refused(frames):
     with pytest.raises(PlateError, match="is no frame or range; give, say, 1001-1100") as caught:
         parse_frames(frames)
     assert "\n" not in str(caught.value)
 
 
 @pytest.mark.parametrize("frames", ["5-1", "1-5x0"])
-def test_range_that_goes_nowhere(frames):
+def test_a_range_that_goes_nowhere_is_refused(frames):
     with pytest.raises(PlateError, match="runs backwards or stands still"):
         parse_frames(frames)
 
 
-def test_endless_range_is_refused_at_once():
+def test_an_endless_range_is_refused_at_once():
     with pytest.raises(PlateError, match=f"more than {MAX_FRAMES} frames; give fewer"):
         parse_frames("0-999999999")
 
 
-def test_frames_that_are_no_integers():
+def test_frames_that_are_no_integers_are_refused():
     with pytest.raises(TypeError):
         parse_frames([1.5])
 
 
-def test_frames_that_are_years_apart(tmp_path):
+def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
     with pytest.raises(PlateError, match="frames 1 to 20261121 are too far apart; say which"):
         find_frames(tmp_path / "p.%d.png")
@@ -172,7 +170,7 @@ def test_frames_that_are_years_apart(tmp_path):
         ("p.*.png", None, "there is no such file; check the name, or give a sequence such as plate.%04d.png"),
     ],
 )
-def test_nothing_found(tmp_path, name, frames, message):
+def test_what_cannot_be_found_is_named_with_a_remedy(tmp_path, name, frames, message):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     with pytest.raises(PlateError, match=message) as caught:
         find_frames(tmp_path / name, frames)
@@ -205,73 +203,5 @@ def test_samples_are_evenly_spread(tmp_path, total, count, places):
         ([1, 3, 5, 7, 9, 11], "1, 3, 5, 7, 9, …"),
     ],
 )
-def test_format_frames(numbers, text):
+def test_numbers_are_shown_as_ranges(numbers, text):
     assert format_frames(numbers) == text
-
-
-def write_exr(path, values, names, **attributes):
-    spec = oiio.ImageSpec(values.shape[1], values.shape[0], values.shape[2], "float")
-    spec.channelnames = names
-    for name, value in attributes.items():
-        spec.attribute(name, value)
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec), output.geterror()
-    assert output.write_image(values.astype(np.float32))
-    output.close()
-    return path
-
-
-def test_encoded_exr_keeps_its_values(tmp_path):
-    values = np.array([[[-0.5, 0.25, 1.5], [0, 1, 2]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B")))
-    assert frame.samples.dtype == np.float32
-    assert frame.alpha is None
-    np.testing.assert_array_equal(frame.samples, values)
-
-
-def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
-    values = np.array([[[0.25, 0.5, 0, 0.5], [3, 2, 1, 0], [0.1, 0.2, 0.3, 1]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "A")))
-    np.testing.assert_allclose(frame.samples, [[[0.5, 1, 0], [0, 0, 0], [0.1, 0.2, 0.3]]], rtol=1e-6)
-    np.testing.assert_array_equal(frame.alpha, np.float32([[0.5, 0, 1]]))
-
-
-@pytest.mark.parametrize("channels", [("Y",), ("R",), ("Y", "A")])
-def test_gray_encoded_exr_is_replicated(tmp_path, channels):
-    values = np.array([[[0.25, 1.0][: len(channels)]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, channels))
-    np.testing.assert_array_equal(frame.samples, [[[0.25] * 3]])
-
-
-@pytest.mark.parametrize(
-    ("channels", "attributes", "message"),
-    [
-        (("R", "G", "B"), {"colorInteropID": "lin_ap1_scene"}, r"is scene-linear already \(lin_ap1_scene\); give the"),
-        (("R", "G"), {}, "needs channels R, G and B, or a gray one; found R, G"),
-        (("left.R", "left.G", "left.B"), {}, "needs channels R, G and B, or a gray one; found"),
-        (("A",), {}, "needs channels R, G and B, or a gray one; found A"),
-    ],
-)
-def test_exr_that_is_no_encoded_plate(tmp_path, channels, attributes, message):
-    path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
-    with pytest.raises(PlateError, match=message) as caught:
-        read_frame(path)
-    assert str(caught.value).startswith(str(path))
-
-
-def test_cut_exr_is_refused(tmp_path):
-    path = write_exr(tmp_path / "a.exr", np.random.default_rng(0).random((64, 64, 3)), ("R", "G", "B"))
-    whole = path.read_bytes()
-    for size in (0, 100, len(whole) // 2):
-        path.write_bytes(whole[:size])
-        with pytest.raises(PlateError) as caught:
-            read_frame(path)
-        assert str(caught.value).startswith(f"{path}: ")
-        assert "\n" not in str(caught.value)
-        assert not oiio.geterror()
-
-
-def test_other_files_are_read_as_photographs(tmp_path):
-    (tmp_path / "a.png").write_text("no picture")
-    with pytest.raises(PhotoError, match="is no JPEG, PNG"):
-        read_frame(tmp_path / "a.png")

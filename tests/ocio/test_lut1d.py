@@ -1,4 +1,4 @@
-"""The lookup table's arithmetic, and the inverse response as one."""
+"""The lookup table: its interpolation in both directions, and the inverse response as a table."""
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -25,8 +25,8 @@ def codes(bits):
 def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
     """Values through OpenColorIO's own 1D LUT.
 
-    Each in a config of its own, because configs mix up LUTs in their cache; not optimized, because OpenColorIO takes
-    a LUT that is within 1e-5 of the identity for the identity.
+    Each LUT gets a config of its own, because a config mixes up LUTs in its cache. Nothing is optimised, because
+    OpenColorIO would replace a LUT within 1e-5 of the identity by the identity.
     """
     table = OCIO.Lut1DTransform(length=lut.values.size, inputHalfDomain=False)
     table.setData(np.repeat(lut.values, 3).astype(np.float32))

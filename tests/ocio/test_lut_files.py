@@ -71,7 +71,7 @@ class TestRoundTrip:
         path = tmp_path / f"a{suffix}"
         write_lut(path, inverse_response_lut(CURVES[name], length=length))
         linear = ocio_applied(path, codes(bits))
-        # Hosts take the default, whose inverse is an approximation; it must still hit every code.
+        # Hosts use the default optimisation, whose inverse is approximate; it must still give every code back.
         for optimization in (OCIO.OPTIMIZATION_LOSSLESS, OCIO.OPTIMIZATION_DEFAULT):
             back = ocio_applied(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)
             assert np.rint(back * (2**bits - 1)).tolist() == list(range(2**bits))
@@ -167,7 +167,7 @@ def test_other_suffixes_are_refused(tmp_path, name):
 
 
 def comma_locale(folder):
-    """An environment whose locale has decimal commas; a skip where it cannot be made."""
+    """An environment whose locale has decimal commas; skips the test where the locale cannot be made."""
     command = ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")]
     try:
         made = subprocess.run(command, capture_output=True, check=False).returncode == 0

@@ -3,7 +3,6 @@
 import dataclasses
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PlateError
@@ -11,6 +10,7 @@ from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
+from tests.helpers.images import read_image
 
 sheet = pytest.importorskip("ocio.sheet", reason="needs matplotlib, of the plot extra")
 
@@ -26,7 +26,7 @@ def estimate(photo, fixed_model):
 
 
 def read_codes(path):
-    return np.asarray(oiio.ImageBuf(str(path)).get_pixels(oiio.UINT8)).astype(int)
+    return read_image(path, kind="uint8").astype(int)
 
 
 def test_is_a_picture_of_the_stated_size(photo, estimate, tmp_path):
@@ -52,7 +52,7 @@ def test_shows_the_curve_in_its_colour(photo, estimate, tmp_path):
 
 
 def test_the_windows_lie_where_they_were_whatever_the_preview(photo, estimate, tmp_path):
-    """A preview of every second pixel moves no window: the pictures differ in their grain only."""
+    """A preview of every second pixel moves no window: the two pictures differ in sharpness only."""
     sheet.draw_sheet(tmp_path / "all.png", photo.pixels, estimate)
     sheet.draw_sheet(tmp_path / "half.png", photo.pixels[::2, ::2], estimate, stride=2)
     difference = np.abs(read_codes(tmp_path / "all.png") - read_codes(tmp_path / "half.png"))

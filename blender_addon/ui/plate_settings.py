@@ -1,0 +1,84 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The settings of one plate, stored on its image or clip and so in the .blend file."""
+
+import bpy
+
+from .preferences import APPLY_MODES, preferences
+
+#: The anchors of the exposure, `work.job.Anchor`.
+ANCHORS = (
+    ("WHITE", "White", "The plate's white, code value 1, becomes a linear 1"),
+    ("GRAY", "Middle Gray", "The brightness given becomes a linear 0.18"),
+)
+
+#: The samples of linear EXR files.
+DEPTHS = (
+    ("half", "Half", "16-bit floats: smaller files, 11 bits of precision"),
+    ("float", "Float", "32-bit floats: exact"),
+)
+
+#: The number of each way to apply a response, as its enumeration property stores it.
+_NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
+
+
+class PlateChoices:
+    """The choices for a plate that the panel offers and the operators take as arguments."""
+
+    anchor: bpy.props.EnumProperty(
+        name="Exposure Anchor",
+        description="Which brightness keeps its place; a response alone leaves the exposure open",
+        items=ANCHORS,
+    )
+    gray: bpy.props.FloatProperty(
+        name="Gray Brightness",
+        description="The encoded brightness, as seen in the plate, of something that reflects 18 % of the light",
+        default=118 / 255,
+        min=0.01,
+        max=1.0,
+        precision=3,
+    )
+    exposure: bpy.props.FloatProperty(
+        name="Exposure", description="Stops added on top of the anchor", soft_min=-6, soft_max=6, min=-15, max=15
+    )
+    folder: bpy.props.StringProperty(
+        name="Folder",
+        description="Where files go; empty for the preferences' folder or the plate's own, and for Blender's own"
+        " colour management folder",
+        subtype="DIR_PATH",
+    )
+    depth: bpy.props.EnumProperty(name="Depth", description="Of the baked files", items=DEPTHS)
+    overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files of an earlier run")
+    force: bpy.props.BoolProperty(
+        name="Estimate Anyway", description="Although the colour space or the metadata says log or linear"
+    )
+
+
+#: The names of all choices; the panel and the operators differ in how they define `apply`.
+CHOICES = ("apply", *PlateChoices.__annotations__)
+
+
+class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
+    """The settings of one plate; until `apply` is set, it is that of the preferences."""
+
+    chosen: bpy.props.StringProperty(options={"HIDDEN"})
+    apply: bpy.props.EnumProperty(
+        name="Apply As",
+        description="What becomes of the response",
+        items=APPLY_MODES,
+        get=lambda self: _NUMBERS[self.chosen or preferences().apply],
+        set=lambda self, number: setattr(self, "chosen", APPLY_MODES[number][0]),
+    )
+
+
+def register() -> None:
+    """Add the settings to images and clips."""
+    bpy.utils.register_class(CRF_PlateSettings)
+    for kind in (bpy.types.Image, bpy.types.MovieClip):
+        kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
+
+
+def unregister() -> None:
+    """Remove the settings from images and clips."""
+    for kind in (bpy.types.Image, bpy.types.MovieClip):
+        del kind.camera_response_settings
+    bpy.utils.unregister_class(CRF_PlateSettings)

@@ -1,0 +1,126 @@
+"""OpenColorIO config files: load one, and write one after OpenColorIO has checked it against its LUTs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from pathlib import Path
+
+import numpy as np
+import PyOpenColorIO as OCIO
+from numpy.typing import NDArray
+
+from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.files import atomic_write
+from crfnet_core.types import Float32Array
+from ocio.configs.plate_color_space import rec709_to_reference
+from ocio.luts.lut1d import Lut1D
+
+#: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
+TOLERANCE = 1e-5
+
+#: Brightnesses at which a config and its LUT are compared.
+CHECKED_VALUES = 4096
+
+
+def load_config(path: str | Path) -> OCIO.Config:
+    """Return the config in a file.
+
+    Raises
+    ------
+    ConfigError
+        If OpenColorIO refuses it.
+    """
+    try:
+        return OCIO.Config.CreateFromFile(str(path))
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
+        raise ConfigError(
+            f"{path}: OpenColorIO refuses this config ({one_line(problem)}); mend it or choose a folder"
+        ) from None
+
+
+def role_name(path: str | Path, role: str) -> str:
+    """Return the name of the colour space that has a role in a config file.
+
+    Raises
+    ------
+    ConfigError
+        If there is none, or OpenColorIO refuses the config.
+    """
+    space = load_config(path).getColorSpace(role)
+    if space is None:
+        raise ConfigError(f"{path}: has no role {role}; use another config")
+    return str(space.getName())
+
+
+def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, Lut1D], overwrite: bool = False) -> None:
+    """Write a config; the file gets its name only after OpenColorIO has loaded it and converts as its LUTs do.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file to be written, in the folder that holds the LUTs.
+    config : PyOpenColorIO.Config
+        The config.
+    check : mapping of str to Lut1D
+        The LUT of each plate's colour space, by the name of the space. OpenColorIO's processor must equal the LUT,
+        times the exposure that the config gives the plate, in both directions to `TOLERANCE`.
+    overwrite : bool
+        Whether an existing file may be replaced.
+
+    Raises
+    ------
+    ConfigError
+        If the config does not load, is not valid, converts otherwise, or cannot be written; no file is left behind.
+    """
+    OCIO.ClearAllCaches()
+    try:
+        with atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
+            temporary.write_text(config.serialize(), encoding="utf-8", newline="\n")
+            loaded = OCIO.Config.CreateFromFile(str(temporary))
+            loaded.validate()
+            for name, lut in check.items():
+                _check_conversion(loaded, name, lut)
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
+        raise ConfigError(f"{path}: not written, OpenColorIO refuses it ({one_line(problem)})") from problem
+
+
+def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
+    """Raise a ConfigError unless a colour space converts as its LUT does."""
+    space = config.getColorSpace(name)
+    if space is None:
+        raise ConfigError(f"{name}: the config has no such colour space; add it before writing")
+    worst = _conversion_error(config, space, lut)
+    if not worst <= TOLERANCE:
+        raise ConfigError(f"{name}: converts other than its LUT by {worst:.2g}; write the LUT and the config again")
+
+
+def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -> float:
+    """Return the largest difference between a colour space and its LUT, in both directions and beyond both ends."""
+    low, high = lut.domain
+    margin = (high - low) / 8
+    brightness = np.linspace(low - margin, high + margin, CHECKED_VALUES, dtype=np.float32)
+    linear = OCIO.ColorSpace(name="crfnet check", toReference=OCIO.GroupTransform(rec709_to_reference(config)))
+    config.addColorSpace(linear)
+    gain = np.float32(2 ** _exposure(space))
+    expected = lut.apply(brightness) * gain
+    irradiance = _converted(config, space.getName(), linear.getName(), brightness)
+    back = _converted(config, linear.getName(), space.getName(), expected)
+    scale = np.maximum(np.abs(expected), 1)
+    forward = np.abs(irradiance - expected) / scale
+    # The inverse of a flat part is not determined in float32, so a brightness also passes if it gives the irradiance.
+    backward = np.minimum(np.abs(back - lut.apply_inverse(expected / gain)), np.abs(lut.apply(back) * gain - expected))
+    return max(float(forward.max()), float((backward / scale).max()))
+
+
+def _exposure(space: OCIO.ColorSpace) -> float:
+    """Return the stops that a plate's colour space adds after its LUT."""
+    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    steps = list(transform) if isinstance(transform, OCIO.GroupTransform) else [transform]
+    return sum(float(step.getExposure()) for step in steps if isinstance(step, OCIO.ExposureContrastTransform))
+
+
+def _converted(config: OCIO.Config, source: str, target: str, values: NDArray[np.floating]) -> Float32Array:
+    """Return gray pixels, shape (N,), converted from one colour space to another."""
+    pixels = np.repeat(values.astype(np.float32), 3)
+    config.getProcessor(source, target).getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
+    return pixels[::3]

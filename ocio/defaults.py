@@ -1,0 +1,25 @@
+"""Constants that several modules share. Nothing is imported here, so that `crfnet --help` loads fast."""
+
+#: File name of the OpenColorIO config that is written beside the LUTs; Blender looks for the same name.
+CONFIG_NAME = "config.ocio"
+
+#: Entries of a LUT: 255 * 16 + 1, so that every 8-bit code lies on an entry and is converted exactly.
+LUT_LENGTH = 4081
+
+#: Windows cut from each photograph, as in `crfnet_core.estimate_response`.
+WINDOWS = 10
+
+#: Frames of a sequence from which its one response is estimated.
+FRAMES_ANALYSED = 8
+
+#: Largest exposure in either direction, in stops: 2 ** 15 times white still fits into a half float.
+MAX_EXPOSURE = 15
+
+#: The sample types of linear EXR files; the first is the default.
+DEPTHS = ("half", "float")
+
+#: Scene-linear value of a surface that reflects 18 % of the light.
+MIDDLE_GRAY = 0.18
+
+#: Estimation error (E_est) that gamma 2.2 usually makes: 3.14 on the 201 curves of DoRF, 3.57 on 22 camera bodies.
+GAMMA_ERROR = 3.3

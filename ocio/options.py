@@ -1,0 +1,49 @@
+"""The options of the pipeline: plain, frozen, and the same for the command and for the add-on."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+from ocio.defaults import DEPTHS, WINDOWS
+
+
+@dataclass(frozen=True, kw_only=True)
+class EstimateOptions:
+    """How responses are estimated.
+
+    Parameters
+    ----------
+    model : Path or None
+        The folder or the name of the model; None for the default model.
+    threads : int
+        Threads of the network; 0 for as many as there are cores.
+    windows : int
+        Windows cut from each photograph.
+    seed : int
+        Seed of the choice of windows.
+    """
+
+    model: Path | None = None
+    threads: int = 0
+    windows: int = WINDOWS
+    seed: int = 0
+
+
+@dataclass(frozen=True, kw_only=True)
+class PlateOptions:
+    """How linear plates are written.
+
+    Parameters
+    ----------
+    depth : {"half", "float"}
+        Sample type of the EXR files.
+    exposure : float
+        Stops by which the linear values are raised.
+    overwrite : bool
+        Whether existing files may be replaced.
+    """
+
+    depth: str = DEPTHS[0]
+    exposure: float = 0.0
+    overwrite: bool = False

@@ -1,0 +1,35 @@
+"""The one way from photographs to files, for the command and for the add-on.
+
+estimates  photographs or frames to the response estimated from them, its LUT and its exposure
+folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheets, documents and config
+delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
+
+Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
+called with (done, total); whatever it raises ends the step, which first removes its unfinished files. To put a colour
+space into the config that a program reads at its start, see `ocio.configs.installed`.
+"""
+
+from ocio.pipeline.delivery import bake_plates, export_luts
+from ocio.pipeline.estimates import (
+    PhotographEstimate,
+    anchored_exposure,
+    estimate_frames,
+    estimate_photographs,
+    load_network,
+    response_lut,
+)
+from ocio.pipeline.folders import OutputPlan, plan_outputs, write_estimates
+
+__all__ = [
+    "OutputPlan",
+    "PhotographEstimate",
+    "anchored_exposure",
+    "bake_plates",
+    "estimate_frames",
+    "estimate_photographs",
+    "export_luts",
+    "load_network",
+    "plan_outputs",
+    "response_lut",
+    "write_estimates",
+]

@@ -1,0 +1,181 @@
+"""From photographs or frames to the response that is estimated from them, its LUT and its exposure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.estimate import ResponseEstimate, estimate_response
+from crfnet_core.image_io import read_photo
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.photo import Photo
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float32Array, Progress
+from ocio.defaults import LUT_LENGTH, MIDDLE_GRAY
+from ocio.luts.lut1d import Lut1D, inverse_response_lut
+from ocio.options import EstimateOptions
+from ocio.plates.frames import FrameSequence, sample_frames
+from ocio.report import PhotoFacts, provenance
+
+#: Longer side in pixels of the photograph as the sheet shows it.
+PREVIEW_SIDE = 960
+
+
+@dataclass(frozen=True, eq=False)
+class PhotographEstimate:
+    """An estimate, and what its files still need of the photographs once their pixels are gone.
+
+    Parameters
+    ----------
+    paths : tuple of Path
+        The photographs.
+    facts : tuple of PhotoFacts
+        What the report says of each photograph.
+    preview : ndarray, float32, shape (h, w, 3)
+        Every `stride`-th pixel of the first photograph, code values in [0, 1].
+    stride : int
+        Distance between the pixels of `preview` in the photograph.
+    estimate : ResponseEstimate
+        The response that they have in common.
+    """
+
+    paths: tuple[Path, ...]
+    facts: tuple[PhotoFacts, ...]
+    preview: Float32Array
+    stride: int
+    estimate: ResponseEstimate
+
+
+def load_network(options: EstimateOptions) -> ResponseNetwork:
+    """Return the network that the options name; a caller with several estimates loads it once.
+
+    Raises
+    ------
+    ModelError
+        If the model folder is absent, incomplete or altered.
+    """
+    return ResponseNetwork.load(options.model, threads=options.threads)
+
+
+def estimate_photographs(
+    paths: Sequence[Path],
+    network: ResponseNetwork,
+    options: EstimateOptions,
+    *,
+    progress: Progress | None = None,
+) -> PhotographEstimate:
+    """Read photographs one by one and estimate the response that they have in common.
+
+    Only one photograph is in memory at a time; a preview of the first remains. `write_estimates` therefore reads each
+    photograph a second time for its linear plate: the pixels of many photographs do not fit into memory, and all
+    estimates have to succeed before anything is written.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        Photographs of one camera with the same settings; at least one.
+    network : ResponseNetwork
+        See `load_network`.
+    options : EstimateOptions
+        Windows and seed.
+    progress : callable or None
+        Called with (done, total) after every window.
+
+    Raises
+    ------
+    PhotoError
+        If a photograph cannot be read or is smaller than a window.
+    """
+    facts: list[PhotoFacts] = []
+    previews: list[Float32Array] = []
+
+    def photos() -> Iterator[Photo]:
+        for path in paths:
+            photo = read_photo(path)
+            facts.append(PhotoFacts.of(photo))
+            if not previews:
+                stride = _stride(facts[0])
+                previews.append(photo.pixels[::stride, ::stride].copy())
+            yield photo
+
+    estimate = estimate_response(
+        photos(), network=network, windows=options.windows, seed=options.seed, progress=progress
+    )
+    return PhotographEstimate(tuple(paths), tuple(facts), previews[0], _stride(facts[0]), estimate)
+
+
+def estimate_frames(
+    sequence: FrameSequence,
+    network: ResponseNetwork,
+    options: EstimateOptions,
+    *,
+    progress: Progress | None = None,
+) -> ResponseEstimate:
+    """Estimate the one response of a sequence from up to `FRAMES_ANALYSED` of its frames, evenly spread.
+
+    Only one frame is in memory at a time, so these few frames are read again when the sequence is linearised.
+
+    Parameters
+    ----------
+    sequence : FrameSequence
+        The frames, or a single file, as `find_frames` returns them.
+    network : ResponseNetwork
+        See `load_network`.
+    options : EstimateOptions
+        Windows of each frame, and seed.
+    progress : callable or None
+        Called with (done, total) after every window.
+
+    Raises
+    ------
+    PhotoError
+        If a frame cannot be read or is smaller than a window.
+    """
+    frames = map(read_photo, sample_frames(sequence))
+    return estimate_response(frames, network=network, windows=options.windows, seed=options.seed, progress=progress)
+
+
+def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
+    """Return the inverse of an estimated response as a LUT with its provenance.
+
+    Raises
+    ------
+    LutError
+        If the length is not 2 to 65536.
+    """
+    return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))
+
+
+def anchored_exposure(curve: ResponseCurve, *, gray: float | None = None, stops: float = 0.0) -> float:
+    """Return the stops to add after the inverse response; a response alone leaves the exposure open.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response.
+    gray : float or None
+        The encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18.
+        By default white is the anchor: brightness 1 becomes a linear 1.
+    stops : float
+        Stops added on top of the anchor.
+
+    Raises
+    ------
+    CRFNetError
+        If the gray is black in this response.
+    """
+    if gray is None:
+        return stops
+    irradiance = float(curve.inverse(gray))
+    if irradiance <= 0:
+        raise CRFNetError(f"a brightness of {gray:g} is black in this response; anchor a brighter gray")
+    return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
+
+
+def _stride(facts: PhotoFacts) -> int:
+    """Return how many pixels apart the samples of a photograph's preview lie."""
+    return max(1, -(-max(facts.width, facts.height) // PREVIEW_SIDE))

@@ -1,0 +1,97 @@
+"""The OpenEXR file of a linear plate: its header and its pixels."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PlateError
+from crfnet_core.image_io import first_line
+
+#: Colour space that linear plates declare: linear, with Rec.709 primaries, which the plate is assumed to have.
+COLOR_INTEROP_ID = "lin_rec709_scene"
+
+#: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
+KEPT_METADATA = (
+    "DateTime",
+    "Exif:ExposureBiasValue",
+    "Exif:FocalLength",
+    "Exif:ISOSpeedRatings",
+    "Exif:LensModel",
+    "Exif:PhotographicSensitivity",
+    "ExposureTime",
+    "FNumber",
+    "FramesPerSecond",
+    "Make",
+    "Model",
+    "Orientation",
+    "PixelAspectRatio",
+    "smpte:KeyCode",
+    "smpte:TimeCode",
+)
+
+#: NumPy's types of the two depths.
+SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
+
+
+def linear_header(source: Any, *, channels: int, depth: str, comments: Sequence[str]) -> Any:
+    """Return the header of a linear plate.
+
+    Parameters
+    ----------
+    source : OpenImageIO.ImageSpec
+        The header of the encoded plate; its size, its windows and its `KEPT_METADATA` are taken over.
+    channels : int
+        3, or 4 with alpha.
+    depth : {"half", "float"}
+        Sample type.
+    comments : sequence of str
+        Provenance of the LUT, kept as the attribute `crfnet:response`.
+    """
+    header = oiio.ImageSpec(source.width, source.height, channels, depth)
+    for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
+        setattr(header, name, getattr(source, name))
+    header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
+    for attribute in source.extra_attribs:
+        if attribute.name in KEPT_METADATA:
+            header.attribute(attribute.name, attribute.type, attribute.value)
+    header.attribute("compression", "zips")
+    header.attribute("colorInteropID", COLOR_INTEROP_ID)
+    if comments:
+        header.attribute("crfnet:response", " | ".join(comments))
+    return header
+
+
+def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:
+    """Write an OpenEXR file.
+
+    Parameters
+    ----------
+    path : Path
+        The file to be written, usually a temporary one.
+    header : OpenImageIO.ImageSpec
+        See `linear_header`.
+    pixels : ndarray, float16 or float32, shape (H, W, 3 or 4)
+        Linear values, multiplied by alpha if there is one.
+    name : Path
+        What errors call the file.
+
+    Raises
+    ------
+    PlateError
+        If OpenImageIO cannot write it, for example because the disk is full.
+    """
+    output = oiio.ImageOutput.create(str(path))
+    problem = oiio.geterror()
+    if output is None:
+        raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the OpenImageIO installation")
+    is_written = output.open(str(path), header) and output.write_image(pixels)
+    is_closed = output.close()
+    problem = output.geterror()
+    if problem or not (is_written and is_closed):
+        raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the disk")

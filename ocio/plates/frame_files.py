@@ -1,0 +1,98 @@
+"""Read one frame of a plate: its encoded samples, its alpha and its header."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PlateError
+from crfnet_core.image_io import MAX_PIXELS, first_line, read_codes
+from crfnet_core.types import Float32Array
+
+
+@dataclass(frozen=True, eq=False)
+class EncodedFrame:
+    """The samples of a frame before its linearisation.
+
+    Parameters
+    ----------
+    samples : ndarray, shape (H, W, 3)
+        Code values (unsigned integers), or encoded values in [0, 1] and beyond as float32; not multiplied by alpha.
+    largest : int
+        The code that stands for brightness 1; 1 for floats.
+    alpha : ndarray, float32, shape (H, W), or None
+        Coverage in [0, 1].
+    header : OpenImageIO.ImageSpec
+        The header of the file.
+    """
+
+    samples: NDArray[Any]
+    largest: int
+    alpha: Float32Array | None
+    header: Any
+
+
+def read_frame(path: Path) -> EncodedFrame:
+    """Return the encoded samples of one frame.
+
+    Parameters
+    ----------
+    path : Path
+        A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
+
+    Raises
+    ------
+    PhotoError, PlateError
+        If the file is damaged, too large, of another format, or scene-linear already.
+    """
+    if path.suffix.lower() == ".exr":
+        return _read_encoded_exr(path)
+    values = read_codes(path)
+    alpha = None
+    if values.alpha is not None:
+        alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
+    samples = values.pixels() if values.is_associated else values.codes
+    return EncodedFrame(samples, values.largest, alpha, values.header)
+
+
+def _read_encoded_exr(path: Path) -> EncodedFrame:
+    """Return the encoded values in an OpenEXR file, divided by its alpha."""
+    source = oiio.ImageInput.open(str(path))
+    problem = oiio.geterror()
+    if source is None:
+        raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
+    try:
+        header = source.spec()
+        _check_encoded_exr(path, header)
+        values = source.read_image(0, 0, 0, header.nchannels, "float")
+        problem = source.geterror()
+    finally:
+        source.close()
+    if values is None or problem:
+        raise PlateError(f"{path}: this EXR file is damaged or cut short ({first_line(problem)}); write it again")
+    gray = next(index for index, name in enumerate(header.channelnames) if name != "A")
+    channels = [header.channelindex(name) for name in "RGB"]  # -1 where a channel is absent
+    samples = values[..., [gray if index < 0 else index for index in channels]]  # (H, W, 3)
+    if header.alpha_channel < 0:
+        return EncodedFrame(samples, 1, None, header)
+    alpha = values[..., header.alpha_channel]  # (H, W)
+    covered = alpha[..., None] != 0
+    samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
+    return EncodedFrame(samples, 1, alpha, header)
+
+
+def _check_encoded_exr(path: Path, header: Any) -> None:
+    """Refuse an OpenEXR file that is linear already, too large or deep, or that holds no RGB or gray picture."""
+    space = header.get_string_attribute("colorInteropID")
+    if space.startswith("lin_"):
+        raise PlateError(f"{path}: is scene-linear already ({space}); give the encoded plate")
+    if header.image_pixels() > MAX_PIXELS:
+        raise PlateError(f"{path}: claims {header.width} x {header.height} pixels; crop it to {MAX_PIXELS} pixels")
+    names = set(header.channelnames)
+    if header.deep or not (names >= set("RGB") or len(names - {"A"}) == 1):
+        raise PlateError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")

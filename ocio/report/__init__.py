@@ -1,0 +1,41 @@
+"""What is said of an estimate and of files.
+
+facts      what is said everywhere, among it the provenance that LUT files carry
+words      lines for people: of the command and of the add-on
+documents  the same for machines, ready for JSON
+"""
+
+from ocio.report.documents import estimate_document, json_text, lut_document, model_document, plate_document
+from ocio.report.facts import PhotoFacts, agreeing, brightness_percent, provenance
+from ocio.report.words import (
+    VERDICTS,
+    file_lines,
+    lut_lines,
+    model_lines,
+    oiiotool_lines,
+    plate_lines,
+    result_line,
+    source_line,
+    verdict_lines,
+)
+
+__all__ = [
+    "VERDICTS",
+    "PhotoFacts",
+    "agreeing",
+    "brightness_percent",
+    "estimate_document",
+    "file_lines",
+    "json_text",
+    "lut_document",
+    "lut_lines",
+    "model_document",
+    "model_lines",
+    "oiiotool_lines",
+    "plate_document",
+    "plate_lines",
+    "provenance",
+    "result_line",
+    "source_line",
+    "verdict_lines",
+]

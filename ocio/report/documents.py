@@ -1,0 +1,115 @@
+"""Estimates, plates, LUTs and models as documents: mappings ready for JSON, and their text."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crfnet_core.estimate import ResponseEstimate, WindowEstimate
+from crfnet_core.network import ModelConfig
+from ocio.luts.lut1d import Lut1D
+from ocio.output_files import OutputFiles
+from ocio.plates.linear import PlateReport
+from ocio.report.facts import PhotoFacts, brightness_percent
+
+#: Decimals kept in documents.
+DECIMALS = 6
+
+#: Brightnesses whose irradiance is shown of a LUT.
+QUARTERS = (0.25, 0.5, 0.75)
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
+    text = json.dumps(document, indent=1, ensure_ascii=False)
+    return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
+
+
+def estimate_document(estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles) -> dict[str, Any]:
+    """Return everything known about an estimate, ready for JSON; file names are relative to the folder."""
+    return {
+        "photographs": [vars(photo) for photo in photos],
+        **_trust(estimate),
+        "weights": _rounded(estimate.weights),
+        "windows": [_window_document(window) for window in estimate.windows],
+        "response": {
+            "brightness": _rounded(estimate.curve.brightness),
+            "lower": _rounded(estimate.band[0]),
+            "upper": _rounded(estimate.band[1]),
+        },
+        "color_space": files.color_space,
+        "files": _file_names(files),
+    }
+
+
+def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> dict[str, Any]:
+    """Return which frames were written, and the estimate if one was made from them, ready for JSON."""
+    return {
+        "written": [str(path) for path in report.written],
+        "skipped": [str(path) for path in report.skipped],
+        "missing": list(report.missing),
+        "estimate": {"photographs": list(estimate.photos), **_trust(estimate)} if estimate else None,
+    }
+
+
+def lut_document(path: Path, lut: Lut1D) -> dict[str, Any]:
+    """Return what a LUT file holds, ready for JSON."""
+    first, last = lut.domain
+    return {
+        "kind": "lut",
+        "file": path.name,
+        "length": len(lut.values),
+        "domain": [_rounded(first), _rounded(last)],
+        "range": [_rounded(lut.values[0]), _rounded(lut.values[-1])],
+        "at_quarters": _rounded(lut.apply(np.array(QUARTERS))),
+        "provenance": list(lut.comments),
+    }
+
+
+def model_document(config: ModelConfig) -> dict[str, Any]:
+    """Return what a model's configuration says, ready for JSON."""
+    return {"kind": "model", **asdict(config)}
+
+
+def _trust(estimate: ResponseEstimate) -> dict[str, Any]:
+    """Return the verdict, the uncertainty and their reasons, ready for JSON."""
+    return {
+        "verdict": estimate.verdict,
+        "uncertainty": _rounded(estimate.uncertainty),
+        "uncertainty_percent": _rounded(brightness_percent(estimate.uncertainty)),
+        "spread": _rounded(estimate.spread),
+        "warnings": list(estimate.warnings),
+        "model": estimate.model,
+    }
+
+
+def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
+    """Return where a window lies and what the network said of it."""
+    window = estimate.window
+    place = {"photo": estimate.photo, "x": window.x, "y": window.y, "extent": window.extent, "filled": window.filled}
+    return {**place, "expected_error": _rounded(estimate.expected_error), "kept": estimate.kept}
+
+
+def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
+    """Return the file names by kind."""
+    return {
+        "spi1d": files.spi1d.name,
+        "cube": files.cube.name,
+        "clf": files.clf.name,
+        "config": files.config.name,
+        "linear": [path.name for path in files.linear],
+        "sheet": files.sheet.name if files.sheet else None,
+        "report": files.report.name,
+    }
+
+
+def _rounded(values: ArrayLike) -> Any:
+    """Return a number, or nested lists of numbers, rounded to `DECIMALS` decimals."""
+    return np.round(np.asarray(values, dtype=np.float64), DECIMALS).tolist()

@@ -1,0 +1,42 @@
+"""A plate's colour space, and pixels through OpenColorIO."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import PyOpenColorIO as OCIO
+from numpy.typing import ArrayLike, NDArray
+
+from crfnet_core.response import ResponseCurve
+from ocio.configs.plate_color_space import PlateColorSpace
+from ocio.luts.lut1d import inverse_response_lut
+
+#: A plate's colour space, and a LUT for it that goes beyond [0, 1].
+SPACE = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",), description="from a.jpg")
+LUT = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))
+
+#: Linear Rec.709 to ACEScg, as published by colour-science and others.
+REC709_TO_AP1 = np.array(
+    [[0.6130974, 0.3395231, 0.0473795], [0.0701937, 0.9163539, 0.0134524], [0.0206156, 0.1095698, 0.8698147]]
+)
+
+
+def converted(config: OCIO.Config, source: str, target: str, pixels: ArrayLike) -> NDArray[np.float32]:
+    """Return pixels, shape (N, 3), converted by OpenColorIO's CPU processor."""
+    pixels = np.array(pixels, dtype=np.float32)
+    processor = config.getProcessor(source, target)
+    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB(pixels)
+    return pixels
+
+
+def loaded(path: Path) -> OCIO.Config:
+    """Return the config in a file, and read LUTs anew."""
+    OCIO.ClearAllCaches()
+    return OCIO.Config.CreateFromFile(str(path))
+
+
+def rule_names(config: OCIO.Config) -> list[str]:
+    """Return the names of the file rules, the first one first."""
+    rules = config.getFileRules()
+    return [rules.getName(index) for index in range(rules.getNumEntries())]

@@ -1,0 +1,169 @@
+"""`crfnet estimate`: what it writes and what it says."""
+
+import json
+import shutil
+from pathlib import Path, PurePosixPath
+
+import numpy as np
+import pytest
+
+from ocio import commands
+from ocio.cli import BAD_INPUT
+from ocio.luts.spi1d import read_spi1d
+from tests.helpers.folders import listed, tree
+from tests.helpers.images import read_image
+
+FILES = {
+    "plate.spi1d",
+    "plate.cube",
+    "plate.clf",
+    "config.ocio",
+    "plate_linear.exr",
+    "plate_sheet.png",
+    "plate.json",
+}
+
+
+def test_writes_what_it_says(look):
+    assert set(listed(look)) == FILES
+
+
+def test_says_what_it_read_found_and_wrote(crfnet, plate, fixed_model, tmp_path):
+    out = crfnet("estimate", plate, "--out", tmp_path / "look", "--model", fixed_model).out
+    assert "plate.jpg: 672 x 378, 8 bits" in out
+    assert "The estimate is good." in out
+    assert "% of the brightness range" in out
+    assert "--ociofiletransform" in out
+    assert all(name in out for name in FILES)
+
+
+def test_prints_one_json_document(estimate, plate, tmp_path):
+    document = json.loads(estimate(plate, "--json").out)
+    found = document["estimates"][0]
+    assert document["folder"] == str(tmp_path / "out")
+    assert found == json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))
+    assert set(found) == {
+        *("photographs", "verdict", "uncertainty", "uncertainty_percent", "spread", "warnings", "model", "weights"),
+        *("windows", "response", "color_space", "files"),
+    }
+    assert found["photographs"] == [{"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8}]
+    assert len(found["response"]["brightness"]) == 1024
+    assert len(found["windows"]) == 10
+    assert found["files"]["sheet"] is None
+    assert found["color_space"] == "CRF plate"
+
+
+def test_the_luts_hold_the_inverse_of_the_response(look, true_response):
+    lut = read_spi1d(look / "plate.spi1d")
+    np.testing.assert_allclose(lut.values, true_response.inverse(np.linspace(0, 1, 4081)), atol=5e-3)
+    assert any("plate.jpg" in comment for comment in lut.comments)
+    assert any("fixed" in comment for comment in lut.comments)
+
+
+def test_the_same_photograph_gives_the_same_bytes(crfnet, look, plate, fixed_model, tmp_path):
+    crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model, "--depth", "float")
+    assert tree(tmp_path) == tree(look)
+
+
+def test_writes_nothing_outside_the_output_folder(crfnet, plate, fixed_model, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("TMPDIR", str(tmp_path))
+    photo = shutil.copy(plate, tmp_path / "photo.jpg")
+    before = tree(tmp_path)
+    assert crfnet("estimate", "photo.jpg", "--out", "deep/look", "--model", fixed_model).code == 0
+    written = {path for path in tree(tmp_path) if path not in before}
+    assert {str(PurePosixPath(path).parent) for path in written} == {"deep/look"}
+    assert Path(photo).read_bytes() == plate.read_bytes()
+
+
+def test_several_photographs_make_one_response(estimate, plate, tmp_path):
+    other = shutil.copy(plate, tmp_path / "other.jpg")
+    out = estimate(plate, other).out
+    names = set(listed(tmp_path / "out"))
+    assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
+    assert "20 windows agree" in out
+
+
+def test_each_photograph_makes_its_own(estimate, plate, tmp_path):
+    other = shutil.copy(plate, tmp_path / "other.jpg")
+    done = estimate(plate, other, "--each")
+    assert done.code == 0
+    lines = [line for line in done.out.splitlines() if ": good, expected error 0." in line]
+    assert [line.partition(":")[0] for line in lines] == ["plate.jpg", other.name]
+    names = set(listed(tmp_path / "out"))
+    own = FILES - {"plate_sheet.png"}
+    assert names == own | {name.replace("plate", "other") for name in own}
+    config = (tmp_path / "out" / "config.ocio").read_text(encoding="utf-8")
+    assert "name: CRF plate" in config
+    assert "name: CRF other" in config
+
+
+@pytest.mark.parametrize(
+    "name",
+    ["two words.jpg", "été 写真.jpg", "a$b%20#1.jpg", "-x.jpg", "no.dots.in.jpg", "q'u\"o.jpg", "[1,  2].jpg"],
+)
+def test_any_file_name_works(estimate, plate, tmp_path, name):
+    photo = shutil.copy(plate, tmp_path / name)
+    done = estimate(photo)
+    assert (done.code, done.err) == (0, "")
+    assert len(listed(tmp_path / "out")) == len(FILES) - 1
+
+
+def test_what_is_there_stays_there(estimate, plate, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "plate.cube").write_text("mine")
+    done = estimate(plate)
+    assert done.code == BAD_INPUT
+    assert "plate.cube exists already; add --overwrite" in done.err
+    assert tree(tmp_path / "out") == {"plate.cube": b"mine"}
+
+
+def test_overwrite_replaces(estimate, plate, tmp_path):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / "plate.cube").write_text("mine")
+    assert estimate(plate, "--overwrite").code == 0
+    assert "LUT_1D_SIZE 4081" in (tmp_path / "out" / "plate.cube").read_text()
+
+
+def test_a_photograph_is_never_replaced(crfnet, plate, fixed_model, tmp_path):
+    for name in ("a.png", "a_sheet.png"):
+        shutil.copy(plate, tmp_path / name)
+    before = tree(tmp_path)
+    done = crfnet(
+        *("estimate", tmp_path / "a.png", tmp_path / "a_sheet.png", "--out", tmp_path, "--overwrite"),
+        *("--model", fixed_model),
+    )
+    assert done.code == BAD_INPUT
+    assert "is one of the photographs" in done.err
+    assert tree(tmp_path) == before
+
+
+def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
+    (tmp_path / "b").mkdir()
+    done = estimate(plate, shutil.copy(plate, tmp_path / "b"), "--each")
+    assert done.code == BAD_INPUT
+    assert "two photographs would both be written as" in done.err
+
+
+def test_a_bad_photograph_among_good_ones_stops_everything(estimate, plate, tmp_path):
+    assert estimate(plate, tmp_path / "none.jpg", "--each").code == BAD_INPUT
+    assert not (tmp_path / "out").exists()
+
+
+def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model, tmp_path, monkeypatch):
+    monkeypatch.setattr(commands, "find_spec", lambda name: None)
+    done = crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model)
+    assert done.code == 0
+    assert done.err.splitlines() == [commands.NO_MATPLOTLIB]
+    assert not (tmp_path / "plate_sheet.png").exists()
+
+
+def test_exposure_goes_into_the_plate_and_the_config(estimate, plate, tmp_path, look, oiiotool, tolerance):
+    assert estimate(plate, "--exposure", "2", "--depth", "float").code == 0
+    brighter = read_image(tmp_path / "out" / "plate_linear.exr")
+    np.testing.assert_allclose(brighter, 4 * read_image(look / "plate_linear.exr"), rtol=1e-6)
+    converted = tmp_path / "converted.exr"
+    config = tmp_path / "out" / "config.ocio"
+    convert = ("--colorconvert", "CRF plate", "scene_linear")
+    oiiotool("--colorconfig", config, plate, *convert, "-d", "float", "-o", converted)
+    np.testing.assert_allclose(read_image(converted), brighter, atol=4 * tolerance.plate)

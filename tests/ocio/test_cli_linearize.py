@@ -1,0 +1,45 @@
+"""`crfnet linearize`: a plate or a sequence, with a LUT or with an estimate."""
+
+import json
+
+import numpy as np
+
+from tests.helpers.images import read_image
+
+
+def test_a_sequence_with_a_gap(crfnet, look, frames):
+    done = crfnet(
+        *("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d"),
+        *("--out", frames / "linear" / "shot.%04d.exr"),
+    )
+    assert done.code == 0
+    assert "4 frames" in done.out
+    assert "Missing frames: 4." in done.out
+    assert len(list((frames / "linear").iterdir())) == 4
+
+
+def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
+    arguments = ("linearize", frames / "shot.####.jpg", "--out", frames / "l.####.exr", "--model", fixed_model)
+    done = crfnet(*arguments)
+    assert done.code == 0
+    assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
+    pixels = [read_image(frames / f"l.{number:04d}.exr") for number in (1, 5)]
+    np.testing.assert_array_equal(*pixels)
+
+
+def test_goes_on_where_it_stopped(crfnet, look, frames):
+    arguments = ("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d", "--json")
+    out = ("--out", frames / "l.####.exr")
+    crfnet(*arguments, *out, "--frames", "1-2")
+    document = json.loads(crfnet(*arguments, *out).out)
+    assert document["skipped"] == [str(frames / f"l.000{number}.exr") for number in (1, 2)]
+    assert document["written"] == [str(frames / f"l.000{number}.exr") for number in (3, 5)]
+    assert document["missing"] == [4]
+    assert document["estimate"] is None
+
+
+def test_says_what_was_left_alone(crfnet, look, plate, tmp_path):
+    arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "a.exr")
+    crfnet(*arguments)
+    assert "left alone (add --overwrite otherwise)" in crfnet(*arguments).out
+    assert crfnet(*arguments, "--overwrite").out == f"Written: {tmp_path / 'a.exr'}.\n"

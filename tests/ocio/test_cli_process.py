@@ -1,0 +1,68 @@
+"""The installed command, in a process of its own."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from ocio.cli import BAD_INPUT, INTERRUPTED
+from tests.helpers.folders import listed
+from tests.helpers.processes import start_interruptible
+
+CRFNET = Path(sys.executable).with_name("crfnet")
+
+
+def test_runs(look, plate, fixed_model, tmp_path):
+    command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, cwd=tmp_path)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert listed(tmp_path / "out") == listed(look)
+
+
+def test_prints_names_that_the_encoding_lacks(plate, fixed_model, tmp_path):
+    photo = shutil.copy(plate, tmp_path / "写真.jpg")
+    command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model, "--json"]
+    environment = {**os.environ, "PYTHONIOENCODING": "ascii"}
+    done = subprocess.run(command, capture_output=True, text=True, check=True, env=environment)
+    assert json.loads(done.stdout)["estimates"][0]["photographs"][0]["name"] == "写真.jpg"
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
+    photo = tmp_path / os.fsdecode(b"\xff.jpg")
+    shutil.copy(plate, photo)
+    command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == BAD_INPUT
+    assert done.stderr == "crfnet: error: a file's name is no valid Unicode; rename it\n"
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_reader_that_leaves_is_no_error_message(look):
+    command = f"'{CRFNET}' info '{look / 'plate.spi1d'}' | true"
+    done = subprocess.run(command, shell=True, capture_output=True, text=True, check=False)
+    assert done.stderr == ""
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_control_c_leaves_no_traceback(plate, fixed_model, tmp_path):
+    code = (
+        "import sys, time, ocio.pipeline.estimates as e, ocio.cli;"
+        "e.estimate_response = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
+        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+    )
+    command = [sys.executable, "-c", code, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+    with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        time.sleep(0.1)
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=20)
+    assert process.returncode == INTERRUPTED
+    assert err == "crfnet: interrupted\n"
+    assert not (tmp_path / "out").exists()

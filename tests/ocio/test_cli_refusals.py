@@ -1,0 +1,142 @@
+"""The command refuses bad input on one line, and leaves everything as it was."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.response import ResponseCurve
+from ocio.cli import BAD_INPUT, INTERRUPTED
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.spi1d import write_spi1d
+from ocio.pipeline import estimates
+from tests.helpers.folders import tree
+from tests.helpers.images import write_image
+
+
+def make_bad_inputs(folder):
+    """Write one file of each kind that is no photograph."""
+    (folder / "empty.jpg").write_bytes(b"")
+    (folder / "text.jpg").write_text("not a photograph")
+    (folder / "folder.jpg").mkdir()
+    write_image(folder / "small.png", np.zeros((100, 100, 3), np.uint8))
+    write_image(folder / "linear.exr", np.zeros((100, 100, 3), np.float16))
+    write_spi1d(folder / "good.spi1d", inverse_response_lut(ResponseCurve.gamma()))
+    (folder / "bad.spi1d").write_text("Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n1\n0\n}\n")
+    (folder / "bad_model").mkdir()
+    (folder / "bad_model" / "model.json").write_text("{}")
+    (folder / "file").write_text("in the way")
+
+
+BAD_ESTIMATES = {
+    "absent": ["{in}/none.jpg"],
+    "empty": ["{in}/empty.jpg"],
+    "text": ["{in}/text.jpg"],
+    "folder": ["{in}/folder.jpg"],
+    "truncated": ["{in}/truncated.jpg"],
+    "too small": ["{in}/small.png"],
+    "scene-linear": ["{in}/linear.exr"],
+    "absent model": ["{plate}", "--model", "{in}/none"],
+    "empty model": ["{plate}", "--model", "{in}/bad_model"],
+    "model is a file": ["{plate}", "--model", "{in}/file"],
+    "output is a file": ["{plate}", "--out", "{in}/file"],
+    "output below a file": ["{plate}", "--out", "{in}/file/deep"],
+    "length 1": ["{plate}", "--length", "1"],
+    "length too large": ["{plate}", "--length", "99999999"],
+    "no windows": ["{plate}", "--windows", "0"],
+    "words for a number": ["{plate}", "--windows", "many"],
+    "negative threads": ["{plate}", "--threads", "-1"],
+    "unknown depth": ["{plate}", "--depth", "double"],
+    "endless exposure": ["{plate}", "--exposure", "inf"],
+    "no exposure": ["{plate}", "--exposure", "nan"],
+    "huge exposure": ["{plate}", "--exposure", "1e6"],
+    "unknown option": ["{plate}", "--nonsense"],
+    "no photograph": [],
+}
+
+BAD_LINEARIZES = {
+    "absent plate": ["{in}/none.jpg", "--lut", "{in}/good.spi1d"],
+    "absent frames": ["{in}/none.%04d.jpg", "--lut", "{in}/good.spi1d"],
+    "broken plate": ["{in}/text.jpg", "--lut", "{in}/good.spi1d"],
+    "folder": ["{in}", "--lut", "{in}/good.spi1d"],
+    "absent LUT": ["{plate}", "--lut", "{in}/none.spi1d"],
+    "falling LUT": ["{plate}", "--lut", "{in}/bad.spi1d"],
+    "photograph for a LUT": ["{plate}", "--lut", "{plate}"],
+    "frames of a file": ["{plate}", "--lut", "{in}/good.spi1d", "--frames", "1-2"],
+    "bad frames": ["{in}/a.%04d.jpg", "--lut", "{in}/good.spi1d", "--frames", "one"],
+    "bad output": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{out}/plate.png"],
+    "output below a file": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{in}/file/a.exr"],
+    "onto itself": ["{in}/linear.exr", "--lut", "{in}/good.spi1d", "--out", "{in}/linear.exr", "--overwrite"],
+}
+
+BAD_INFOS = {
+    "absent LUT": ["{in}/none.spi1d"],
+    "falling LUT": ["{in}/bad.spi1d"],
+    "photograph": ["{plate}"],
+    "absent": ["{in}/none"],
+    "folder without a model": ["{in}"],
+    "config": ["{in}/config.ocio"],
+}
+
+
+@pytest.mark.parametrize(
+    ("command", "arguments"),
+    [
+        pytest.param(command, arguments, id=f"{command}: {name}")
+        for command, cases in (("estimate", BAD_ESTIMATES), ("linearize", BAD_LINEARIZES), ("info", BAD_INFOS))
+        for name, arguments in cases.items()
+    ],
+)
+def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, command, arguments):
+    (tmp_path / "in").mkdir()
+    make_bad_inputs(tmp_path / "in")
+    (tmp_path / "in" / "truncated.jpg").write_bytes(plate.read_bytes()[:30000])
+    before = tree(tmp_path)
+    places = {"in": tmp_path / "in", "out": tmp_path / "out", "plate": plate}
+    given = [argument.format(**places) for argument in arguments]
+    if command != "info" and "--out" not in given:
+        given += ["--out", str(tmp_path / "out" / ("a.exr" if command == "linearize" else ""))]
+    if command != "info" and "--model" not in given:
+        given += ["--model", str(fixed_model)]
+    done = crfnet(command, *given)
+    assert done.code == BAD_INPUT
+    assert done.out == ""
+    assert done.err.startswith("crfnet: error: ")
+    assert done.err.count("\n") == 1
+    assert tree(tmp_path) == before
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("arguments", [(), ("nonsense",), ("completion", "dos")])
+def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
+    done = crfnet(*arguments)
+    assert done.code == BAD_INPUT
+    assert done.err.startswith("crfnet: error: ")
+    assert done.err.count("\n") == 1
+
+
+@pytest.mark.parametrize(
+    ("problem", "code", "line"),
+    [
+        (KeyboardInterrupt(), INTERRUPTED, "crfnet: interrupted"),
+        (MemoryError(), BAD_INPUT, "crfnet: error: not enough memory"),
+        (OSError(28, "No space left on device", "x.exr"), BAD_INPUT, "crfnet: error: [Errno 28] No space left"),
+    ],
+)
+def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, problem, code, line):
+    def fail(*arguments, **options):
+        raise problem
+
+    monkeypatch.setattr(estimates, "estimate_response", fail)
+    done = estimate(plate)
+    assert done.code == code
+    assert done.err.startswith(line)
+    assert done.err.count("\n") == 1
+
+
+def test_the_name_of_the_linear_plate_is_checked_before_the_estimate(crfnet, plate, fixed_model, tmp_path, monkeypatch):
+    def fail(*arguments, **options):
+        raise AssertionError("estimated although nothing can be written")
+
+    monkeypatch.setattr(estimates, "estimate_response", fail)
+    done = crfnet("linearize", plate, "--out", tmp_path / "plate.png", "--model", fixed_model)
+    assert done.code == BAD_INPUT
+    assert "linear plates are OpenEXR" in done.err

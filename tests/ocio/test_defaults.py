@@ -1,0 +1,30 @@
+"""The shared constants agree with those of the core and of the formats."""
+
+import inspect
+
+import numpy as np
+
+from crfnet_core import estimate_response
+from crfnet_core.network import Verdict
+from ocio import defaults, report
+from ocio.plates.exr import SAMPLE_TYPES
+
+
+def test_windows_are_those_of_the_core():
+    assert inspect.signature(estimate_response).parameters["windows"].default == defaults.WINDOWS
+
+
+def test_the_lut_length_is_exact_on_8_bit_codes():
+    assert (defaults.LUT_LENGTH - 1) % 255 == 0
+
+
+def test_the_largest_exposure_of_white_fits_into_half_floats():
+    assert np.finfo(np.float16).max > 2**defaults.MAX_EXPOSURE
+
+
+def test_every_depth_has_a_sample_type():
+    assert set(defaults.DEPTHS) == set(SAMPLE_TYPES)
+
+
+def test_every_verdict_has_words():
+    assert set(report.VERDICTS) == set(Verdict)

@@ -1,0 +1,69 @@
+"""Read one frame: encoded EXR files, and everything else as a photograph."""
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from crfnet_core.errors import PhotoError, PlateError
+from ocio.plates.frame_files import read_frame
+from tests.helpers.images import write_image
+
+
+def write_exr(path, values, names, **attributes):
+    return write_image(path, values.astype(np.float32), names=names, **attributes)
+
+
+def test_encoded_exr_keeps_its_values(tmp_path):
+    values = np.array([[[-0.5, 0.25, 1.5], [0, 1, 2]]])
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B")))
+    assert frame.samples.dtype == np.float32
+    assert frame.alpha is None
+    np.testing.assert_array_equal(frame.samples, values)
+
+
+def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
+    values = np.array([[[0.25, 0.5, 0, 0.5], [3, 2, 1, 0], [0.1, 0.2, 0.3, 1]]])
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "A")))
+    np.testing.assert_allclose(frame.samples, [[[0.5, 1, 0], [0, 0, 0], [0.1, 0.2, 0.3]]], rtol=1e-6)
+    np.testing.assert_array_equal(frame.alpha, np.float32([[0.5, 0, 1]]))
+
+
+@pytest.mark.parametrize("channels", [("Y",), ("R",), ("Y", "A")])
+def test_gray_encoded_exr_is_replicated(tmp_path, channels):
+    values = np.array([[[0.25, 1.0][: len(channels)]]])
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, channels))
+    np.testing.assert_array_equal(frame.samples, [[[0.25] * 3]])
+
+
+@pytest.mark.parametrize(
+    ("channels", "attributes", "message"),
+    [
+        (("R", "G", "B"), {"colorInteropID": "lin_ap1_scene"}, r"is scene-linear already \(lin_ap1_scene\); give the"),
+        (("R", "G"), {}, "needs channels R, G and B, or a gray one; found R, G"),
+        (("left.R", "left.G", "left.B"), {}, "needs channels R, G and B, or a gray one; found"),
+        (("A",), {}, "needs channels R, G and B, or a gray one; found A"),
+    ],
+)
+def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, message):
+    path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
+    with pytest.raises(PlateError, match=message) as caught:
+        read_frame(path)
+    assert str(caught.value).startswith(str(path))
+
+
+def test_a_cut_exr_is_refused(tmp_path):
+    path = write_exr(tmp_path / "a.exr", np.random.default_rng(0).random((64, 64, 3)), ("R", "G", "B"))
+    whole = path.read_bytes()
+    for size in (0, 100, len(whole) // 2):
+        path.write_bytes(whole[:size])
+        with pytest.raises(PlateError) as caught:
+            read_frame(path)
+        assert str(caught.value).startswith(f"{path}: ")
+        assert "\n" not in str(caught.value)
+        assert not oiio.geterror()
+
+
+def test_other_files_are_read_as_photographs(tmp_path):
+    (tmp_path / "a.png").write_text("no picture")
+    with pytest.raises(PhotoError, match="is no JPEG, PNG"):
+        read_frame(tmp_path / "a.png")

@@ -1,0 +1,161 @@
+"""A plate's colour space in the config that a program reads at its start, and the way back."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import ConfigError, PlateError
+from crfnet_core.response import ResponseCurve
+from ocio.configs import installed
+from ocio.configs.installed import FOLDER, install, restore
+from ocio.configs.plate_color_space import PlateColorSpace
+from ocio.configs.portable import portable_config
+from ocio.defaults import CONFIG_NAME
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.spi1d import read_spi1d
+from tests.helpers.configs import converted, loaded
+from tests.helpers.folders import listed, tree
+
+SPACE = PlateColorSpace("CRF plate", "plate.spi1d", file_pattern="plate.*")
+LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
+OTHER_LUT = inverse_response_lut(ResponseCurve.gamma(1.8))
+
+
+@pytest.fixture
+def base(tmp_path):
+    """The config that a program comes with, with a folder of LUTs."""
+    config = portable_config([])
+    config.addSearchPath("luts")
+    (tmp_path / "program" / "luts").mkdir(parents=True)
+    (tmp_path / "program" / "luts" / "film.spi1d").write_text("a LUT")
+    (tmp_path / "program" / CONFIG_NAME).write_text(config.serialize())
+    return tmp_path / "program" / CONFIG_NAME
+
+
+@pytest.fixture
+def folder(tmp_path):
+    """The folder in which the program looks for the user's config; it does not exist yet."""
+    return tmp_path / "user"
+
+
+def irradiance(config, brightness, space="CRF plate"):
+    """Gray brightnesses, shape (N,), converted by a config file."""
+    pixels = np.repeat(np.float32(brightness)[:, None], 3, axis=1)
+    return converted(loaded(config), space, "scene_linear", pixels)[:, 0]
+
+
+def space_names(config):
+    return [space.getName() for space in loaded(config).getColorSpaces()]
+
+
+def test_a_new_folder_is_complete_in_itself(folder, base, tolerance):
+    before = tree(base.parent)
+    done = install(folder, base, SPACE, LUT)
+    assert (done.config, done.color_space) == (folder / CONFIG_NAME, "CRF plate")
+    assert (done.is_changed, done.backup) == (True, None)
+    assert set(tree(folder)) == {
+        *(CONFIG_NAME, "luts/film.spi1d", f"{FOLDER}/plate.spi1d", f"{FOLDER}/{installed.RECORD_NAME}")
+    }
+    assert list(loaded(done.config).getSearchPaths()) == ["luts", "."]
+    values = np.linspace(0, 1, 99)
+    np.testing.assert_allclose(irradiance(done.config, values), LUT.apply(values), atol=tolerance.lut)
+    assert tree(base.parent) == before
+
+
+def test_restoring_leaves_an_empty_folder_empty(folder, base):
+    install(folder, base, SPACE, LUT)
+    done = restore(folder)
+    assert (done.config, done.is_removed) == (folder / CONFIG_NAME, True)
+    assert tree(folder) == {}
+
+
+def test_the_same_again_changes_nothing(folder, base):
+    install(folder, base, SPACE, LUT)
+    before = tree(folder)
+    assert not install(folder, base, SPACE, LUT).is_changed
+    assert tree(folder) == before
+
+
+def test_another_response_of_the_same_plate_is_a_change(folder, base):
+    install(folder, base, SPACE, LUT)
+    assert install(folder, base, SPACE, OTHER_LUT).is_changed
+    assert space_names(folder / CONFIG_NAME).count("CRF plate") == 1
+    np.testing.assert_array_equal(read_spi1d(folder / FOLDER / "plate.spi1d").values, OTHER_LUT.values)
+
+
+def test_several_plates_share_the_config(folder, base, tolerance):
+    install(folder, base, SPACE, LUT)
+    install(folder, base, PlateColorSpace("CRF other", "other.spi1d"), OTHER_LUT)
+    config = folder / CONFIG_NAME
+    np.testing.assert_allclose(irradiance(config, [0.5]), LUT.apply([0.5]), atol=tolerance.lut)
+    np.testing.assert_allclose(irradiance(config, [0.5], "CRF other"), OTHER_LUT.apply([0.5]), atol=tolerance.lut)
+    assert restore(folder).is_removed
+    assert tree(folder) == {}
+
+
+def test_a_config_of_somebody_else_is_kept_and_restored(folder, base):
+    folder.mkdir()
+    (folder / CONFIG_NAME).write_text(portable_config([]).serialize() + "\n# mine\n")
+    before = tree(folder)
+    done = install(folder, base, SPACE, LUT)
+    assert done.backup is not None
+    assert done.backup.read_bytes() == before[CONFIG_NAME]
+    assert install(folder, base, SPACE, OTHER_LUT).backup == done.backup
+    assert not (folder / "luts").exists(), "the folders of the base are not needed"
+    assert not restore(folder).is_removed
+    assert (folder / CONFIG_NAME).read_bytes() == before[CONFIG_NAME]
+    with pytest.raises(ConfigError, match="there is nothing to restore"):
+        restore(folder)
+
+
+def test_a_config_changed_since_gets_a_backup_of_its_own(folder, base):
+    install(folder, base, SPACE, LUT)
+    config = folder / CONFIG_NAME
+    config.write_text(config.read_text() + "\n# mine\n")
+    with pytest.raises(ConfigError, match="changed by another program"):
+        restore(folder)
+    mine = config.read_bytes()
+    first = install(folder, base, SPACE, LUT).backup
+    assert first.read_bytes() == mine
+    config.write_text(config.read_text() + "\n# mine again\n")
+    second = install(folder, base, SPACE, LUT).backup
+    assert second != first
+    assert second.read_bytes().endswith(b"# mine again\n")
+
+
+def test_a_damaged_record_counts_as_none(folder, base):
+    install(folder, base, SPACE, LUT)
+    (folder / FOLDER / installed.RECORD_NAME).write_text("{}")
+    with pytest.raises(ConfigError, match="there is nothing to restore"):
+        restore(folder)
+    assert install(folder, base, SPACE, LUT).backup is not None
+
+
+def test_a_config_that_does_not_load_is_left_alone(folder, base):
+    folder.mkdir()
+    (folder / CONFIG_NAME).write_text("no config")
+    with pytest.raises(ConfigError, match="refuses this config"):
+        install(folder, base, SPACE, LUT)
+    assert tree(folder) == {CONFIG_NAME: b"no config"}
+    assert listed(folder) == [CONFIG_NAME]
+
+
+def test_what_was_written_goes_again_after_a_failure(folder, base, monkeypatch):
+    def fail(*arguments, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr(installed, "write_config", fail)
+    with pytest.raises(KeyboardInterrupt):
+        install(folder, base, SPACE, LUT)
+    assert not folder.exists()
+
+
+def test_a_name_that_the_config_uses_is_refused(folder, base):
+    with pytest.raises(ConfigError, match="choose another name"):
+        install(folder, base, PlateColorSpace("sRGB", "plate.spi1d"), LUT)
+    assert not folder.exists()
+
+
+def test_a_folder_that_cannot_be_made_is_refused(tmp_path, base):
+    (tmp_path / "file").touch()
+    with pytest.raises(PlateError, match="is not a folder"):
+        install(tmp_path / "file" / "user", base, SPACE, LUT)

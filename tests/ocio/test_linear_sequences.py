@@ -1,0 +1,164 @@
+"""linearize_plates on sequences: which frames are written, and how an interrupted run goes on."""
+
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import PlateError
+from crfnet_core.files import atomic_write
+from crfnet_core.image_io import read_photo
+from ocio.luts.lut1d import Lut1D
+from ocio.plates import linear
+from ocio.plates.linear import STALE_SECONDS
+from tests.helpers.folders import listed, tree
+from tests.helpers.images import write_image
+from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
+from tests.helpers.processes import start_interruptible
+
+ROOT = Path(__file__).parents[2]
+
+RUN = """
+import sys
+from ocio.luts.lut1d import Lut1D
+from ocio.options import PlateOptions
+from ocio.plates.frames import find_frames
+from ocio.plates.linear import linear_targets, linearize_plates
+sequence = find_frames(sys.argv[1])
+targets = linear_targets(sys.argv[2], sequence)
+lut, options = Lut1D([0, 0.2, 1]), PlateOptions(depth="float")
+linearize_plates(sequence, targets, lut, options, progress=lambda *_: print(flush=True))
+"""
+
+
+def test_every_frame_of_a_sequence_is_written(tmp_path, out):
+    pattern = write_sequence(tmp_path, (1, 2, 4, 7))
+    calls = []
+    report = linearize(pattern, out / "lin_###.exr", LUT, progress=lambda *call: calls.append(call))
+    assert [path.name for path in report.written] == ["lin_001.exr", "lin_002.exr", "lin_004.exr", "lin_007.exr"]
+    assert (report.skipped, report.missing) == ((), (3, 5, 6))
+    assert calls == [(0, 4), (1, 4), (2, 4), (3, 4), (4, 4)]
+    assert listed(out) == [path.name for path in report.written]
+    for number, path in zip((1, 2, 4, 7), report.written, strict=True):
+        expected = LUT.apply(read_photo(tmp_path / f"plate.{number:04d}.png").pixels).astype(np.float16)
+        np.testing.assert_array_equal(read_exr(path)[0], expected)
+
+
+def test_only_the_chosen_frames_are_written(tmp_path, out):
+    pattern = write_sequence(tmp_path, range(1, 7))
+    report = linearize(str(pattern), str(out / "a.%d.exr"), LUT, frames="2-8x2")
+    assert [path.name for path in report.written] == ["a.2.exr", "a.4.exr", "a.6.exr"]
+    assert report.missing == (8,)
+
+
+@pytest.mark.parametrize("workers", [1, 2, 7])
+def test_workers_change_nothing(tmp_path, out, workers):
+    pattern = write_sequence(tmp_path, range(5))
+    linearize(pattern, out / "a.%d.exr", LUT, workers=workers)
+    expected = tmp_path / "expected"
+    expected.mkdir()
+    linearize(pattern, expected / "a.%d.exr", LUT)
+    assert tree(out) == tree(expected)
+
+
+def test_finished_frames_are_left_alone(tmp_path, out):
+    pattern = write_sequence(tmp_path, range(4))
+    linearize(pattern, out / "a.%d.exr", LUT)
+    complete = tree(out)
+    (out / "a.2.exr").unlink()
+    (out / "a.3.exr").write_bytes(b"finished elsewhere")
+    calls = []
+    report = linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
+    assert report.written == (out / "a.2.exr",)
+    assert report.skipped == (out / "a.0.exr", out / "a.1.exr", out / "a.3.exr")
+    assert calls == [(3, 4), (4, 4)]
+    assert tree(out) == complete | {"a.3.exr": b"finished elsewhere"}
+
+
+def test_overwrite_writes_everything_again(tmp_path, out):
+    pattern = write_sequence(tmp_path, range(3))
+    (out / "a.1.exr").write_bytes(b"old")
+    report = linearize(pattern, out / "a.%d.exr", LUT, overwrite=True)
+    assert (len(report.written), report.skipped) == (3, ())
+    assert read_exr(out / "a.1.exr")[0].shape == (70, 90, 3)
+
+
+def test_bad_frames_are_named_and_the_others_written(tmp_path, out):
+    pattern = write_sequence(tmp_path, range(1, 6))
+    for number in (2, 3):
+        whole = (tmp_path / f"plate.{number:04d}.png").read_bytes()
+        (tmp_path / f"plate.{number:04d}.png").write_bytes(whole[: len(whole) // 2])
+    calls = []
+    with pytest.raises(PlateError) as caught:
+        linearize(pattern, out / "a.%d.exr", LUT, progress=lambda *call: calls.append(call))
+    message = str(caught.value)
+    assert message.startswith("2 of 5 frames failed (2-3) and the others are written; the first: ")
+    assert "plate.0002.png: this PNG file is damaged or cut short" in message
+    assert "\n" not in message
+    assert listed(out) == ["a.1.exr", "a.4.exr", "a.5.exr"]
+    assert calls[-1] == (5, 5)
+    write_sequence(tmp_path, (2, 3))
+    assert len(linearize(pattern, out / "a.%d.exr", LUT).written) == 2
+
+
+def test_old_leftovers_of_these_frames_are_removed(tmp_path, out):
+    pattern = write_sequence(tmp_path, (1, 2))
+    old = time.time() - STALE_SECONDS - 60
+    with atomic_write(out / "a.0001.exr") as temporary:
+        assert linear._LEFTOVER.fullmatch(temporary.name)
+        names = [temporary.name, ".b.0001.abcdefgh.exr", ".a.0009.abcdefgh.exr", ".a.0001.exr", "a.0001.abcdefgh.exr"]
+    (out / "a.0001.exr").unlink()
+    for name in [*names, ".a.0002.abcdefgh.exr"]:
+        (out / name).touch()
+    for name in names:
+        os.utime(out / name, (old, old))
+    linearize(pattern, out / "a.####.exr", LUT)
+    expected = {*names[1:], ".a.0002.abcdefgh.exr", "a.0001.exr", "a.0002.exr"}
+    assert set(listed(out)) == expected, "only what is old and belongs to a frame of this run goes"
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+@pytest.mark.parametrize("stop", [signal.SIGKILL, signal.SIGINT])
+def test_an_interrupted_run_leaves_whole_frames_and_is_resumed(tmp_path, out, stop):
+    total = 24
+    large = np.tile(SMALL[..., :3], (10, 8, 1))
+    write_image(tmp_path / "plate.0000.png", large, png__compressionLevel=1)
+    for number in range(1, total):
+        shutil.copy(tmp_path / "plate.0000.png", tmp_path / f"plate.{number:04d}.png")
+    arguments = [sys.executable, "-c", RUN, tmp_path / "plate.%04d.png", out / "a.%d.exr"]
+    process = start_interruptible(arguments, cwd=ROOT, stdout=subprocess.PIPE, stderr=subprocess.DEVNULL)
+    for _ in range(3):
+        assert process.stdout.readline()
+    process.send_signal(stop)
+    process.stdout.close()
+    assert process.wait(timeout=30) != 0
+    finished = [path for path in out.iterdir() if not path.name.startswith(".")]
+    assert 2 <= len(finished) < total
+    if stop == signal.SIGINT:
+        assert len(finished) == len(listed(out))
+    lut = Lut1D([0, 0.2, 1])
+    expected = lut.apply(large / 255).astype(np.float32)
+    for path in finished:
+        np.testing.assert_array_equal(read_exr(path)[0], expected)
+    report = linearize(tmp_path / "plate.%04d.png", out / "a.%d.exr", lut, depth="float")
+    assert set(report.skipped) == set(finished)
+    assert len(report.written) == total - len(finished)
+    np.testing.assert_array_equal(read_exr(report.written[-1])[0], expected)
+
+
+def test_a_failing_callback_stops_the_run_cleanly(tmp_path, out):
+    def stop(done, total):
+        if done == 1:
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        linearize(write_sequence(tmp_path, range(40)), out / "a.%d.exr", LUT, workers=1, progress=stop)
+    names = listed(out)
+    assert 1 <= len(names) < 40
+    assert not any(name.startswith(".") for name in names)

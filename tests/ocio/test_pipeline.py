@@ -1,0 +1,179 @@
+"""The steps that command and add-on share: estimates, exposure, and files that are written together or not at all."""
+
+import shutil
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet_core.errors import CRFNetError, PhotoError, PlateError
+from crfnet_core.response import ResponseCurve
+from ocio import pipeline
+from ocio.defaults import FRAMES_ANALYSED, LUT_LENGTH
+from ocio.luts.files import read_lut
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.options import EstimateOptions, PlateOptions
+from ocio.output_files import OutputFiles
+from ocio.plates.frames import FrameSequence, find_frames
+from ocio.plates.linear import linear_targets
+from tests.helpers.folders import listed
+
+LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
+
+
+class CancelledError(Exception):
+    """What a program of its own raises in a progress callback."""
+
+
+def cancel_after(frames):
+    """A progress callback that cancels once so many frames are finished."""
+
+    def progress(done, total):
+        if done >= frames:
+            raise CancelledError
+
+    return progress
+
+
+@pytest.fixture(scope="module")
+def options(fixed_model):
+    return EstimateOptions(model=fixed_model, windows=2)
+
+
+@pytest.fixture(scope="module")
+def network(options):
+    return pipeline.load_network(options)
+
+
+@pytest.fixture
+def sequence(plate, tmp_path):
+    """Twelve frames of a plate."""
+    for number in range(1, 13):
+        shutil.copy(plate, tmp_path / f"shot.{number:04d}.jpg")
+    return find_frames(tmp_path / "shot.####.jpg")
+
+
+class TestEstimates:
+    def test_several_frames_stand_for_a_sequence(self, sequence, network, options):
+        calls = []
+        estimate = pipeline.estimate_frames(sequence, network, options, progress=lambda *call: calls.append(call))
+        assert len(estimate.photos) == FRAMES_ANALYSED
+        assert (estimate.photos[0], estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
+        assert len(estimate.windows) == 2 * FRAMES_ANALYSED
+        assert calls[-1][0] == calls[-1][1]
+
+    def test_a_single_file_stands_for_itself(self, plate, network, options):
+        estimate = pipeline.estimate_frames(FrameSequence((plate,)), network, options)
+        assert estimate.photos == ("plate.jpg",)
+
+    def test_a_file_and_its_photograph_give_the_same_response(self, plate, network, options):
+        frame = pipeline.estimate_frames(FrameSequence((plate,)), network, options)
+        photograph = pipeline.estimate_photographs([plate], network, options)
+        np.testing.assert_array_equal(photograph.estimate.curve.brightness, frame.curve.brightness)
+        assert [str(facts) for facts in photograph.facts] == ["plate.jpg: 672 x 378, 8 bits"]
+        assert (photograph.preview.shape, photograph.stride) == ((378, 672, 3), 1)
+
+    def test_what_the_callback_raises_ends_the_estimate(self, plate, network, options):
+        with pytest.raises(CancelledError):
+            pipeline.estimate_frames(FrameSequence((plate,)), network, options, progress=cancel_after(1))
+
+    def test_a_frame_that_has_gone_is_named(self, tmp_path, network, options):
+        with pytest.raises(PhotoError, match=r"gone\.jpg: there is no such file"):
+            pipeline.estimate_frames(FrameSequence((tmp_path / "gone.jpg",)), network, options)
+
+    def test_the_lut_carries_its_provenance(self, plate, network, options, true_response):
+        lut = pipeline.response_lut(pipeline.estimate_frames(FrameSequence((plate,)), network, options))
+        assert len(lut.values) == LUT_LENGTH
+        assert "Photographs: plate.jpg" in lut.comments
+        np.testing.assert_allclose(lut.values, true_response.inverse(np.linspace(0, 1, LUT_LENGTH)), atol=5e-3)
+
+
+class TestExposure:
+    def test_white_is_the_anchor_unless_a_gray_is_given(self):
+        assert pipeline.anchored_exposure(ResponseCurve.gamma(2.2)) == 0
+        assert pipeline.anchored_exposure(ResponseCurve.gamma(2.2), stops=1.5) == 1.5
+
+    def test_a_gray_becomes_018(self):
+        curve = ResponseCurve.gamma(2.2)
+        stops = pipeline.anchored_exposure(curve, gray=0.5, stops=1)
+        assert curve.inverse(0.5) * 2 ** (stops - 1) == pytest.approx(0.18)
+
+    def test_black_is_no_anchor(self):
+        with pytest.raises(CRFNetError, match="a brightness of 0 is black in this response"):
+            pipeline.anchored_exposure(ResponseCurve.gamma(2.2), gray=0.0)
+
+
+class TestBake:
+    def test_writes_every_frame_into_a_new_folder(self, sequence, tmp_path):
+        calls = []
+        targets = linear_targets(tmp_path / "new" / "deep" / "lin.%04d.exr", sequence)
+        pipeline.bake_plates(sequence, targets, LUT, PlateOptions(), progress=lambda *call: calls.append(call))
+        assert listed(tmp_path / "new" / "deep") == [f"lin.{number:04d}.exr" for number in range(1, 13)]
+        assert calls[-1] == (12, 12)
+
+    @pytest.mark.parametrize("done", [0, 3])
+    def test_a_cancelled_run_leaves_nothing(self, sequence, tmp_path, done):
+        targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
+        with pytest.raises(CancelledError):
+            pipeline.bake_plates(sequence, targets, LUT, PlateOptions(), progress=cancel_after(done))
+        assert not (tmp_path / "new").exists()
+
+    def test_a_cancelled_run_keeps_what_was_there_before(self, sequence, tmp_path):
+        targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
+        (tmp_path / "new").mkdir()
+        targets[5].write_text("mine")
+        with pytest.raises(CancelledError):
+            pipeline.bake_plates(sequence, targets, LUT, PlateOptions(overwrite=True), progress=cancel_after(1))
+        assert listed(tmp_path / "new") == ["lin.0006.exr"]
+
+    def test_a_bad_frame_leaves_nothing(self, sequence, tmp_path):
+        sequence.paths[4].write_bytes(b"no picture")
+        targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
+        with pytest.raises(PlateError, match="1 of 12 frames failed"):
+            pipeline.bake_plates(sequence, targets, LUT, PlateOptions())
+        assert not (tmp_path / "new").exists()
+
+    def test_existing_files_are_refused_unless_asked(self, plate, tmp_path):
+        single, target = FrameSequence((plate,)), tmp_path / "lin.exr"
+        target.write_text("mine")
+        with pytest.raises(CRFNetError, match="exists already"):
+            pipeline.bake_plates(single, [target], LUT, PlateOptions())
+        assert target.read_text() == "mine"
+        pipeline.bake_plates(single, [target], LUT, PlateOptions(overwrite=True))
+        assert target.stat().st_size > 1000
+
+
+class TestExport:
+    @pytest.fixture
+    def files(self, tmp_path):
+        return OutputFiles.named(tmp_path / "look", [tmp_path / "plate.png"], has_sheet=False)
+
+    @pytest.fixture
+    def space(self, files, tmp_path):
+        return files.plate_color_space(tmp_path / "plate.png", exposure=1, file_pattern="plate.*.png")
+
+    def test_writes_the_lut_in_three_formats_and_a_config(self, files, space):
+        written = pipeline.export_luts(files, space, LUT)
+        assert [path.name for path in written] == ["plate.spi1d", "plate.cube", "plate.clf", "config.ocio"]
+        assert all(read_lut(path) == LUT for path in written[:3])
+        config = OCIO.Config.CreateFromFile(str(files.config))
+        assert config.getColorSpaceFromFilepath("plate.0001.png")[0] == "CRF plate"
+
+    def test_existing_files_are_refused_before_anything_is_written(self, files, space):
+        files.config.parent.mkdir()
+        files.config.write_text("mine")
+        with pytest.raises(CRFNetError, match=r"config\.ocio: exists already"):
+            pipeline.export_luts(files, space, LUT)
+        assert listed(files.config.parent) == ["config.ocio"]
+        pipeline.export_luts(files, space, LUT, overwrite=True)
+        assert len(listed(files.config.parent)) == 4
+
+    @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
+    def test_a_failure_in_the_middle_leaves_nothing(self, files, space, monkeypatch, problem):
+        def fail(*arguments, **options):
+            raise problem
+
+        monkeypatch.setattr("ocio.pipeline.delivery.write_config", fail)
+        with pytest.raises(type(problem)):
+            pipeline.export_luts(files, space, LUT)
+        assert not files.config.parent.exists()

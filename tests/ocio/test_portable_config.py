@@ -1,0 +1,135 @@
+"""The small config for every host: its roles, spaces, displays and file rules."""
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet_core.errors import ConfigError
+from ocio.configs.plate_color_space import FAMILY, PlateColorSpace
+from ocio.configs.portable import portable_config
+from tests.helpers.configs import REC709_TO_AP1, SPACE, converted, rule_names
+
+
+def test_it_is_valid_and_of_profile_2_0():
+    config = portable_config([SPACE])
+    config.validate()
+    assert (config.getMajorVersion(), config.getMinorVersion()) == (2, 0)
+    assert list(config.getSearchPaths()) == ["."]
+
+
+def test_the_roles_are_complete():
+    assert dict(portable_config([]).getRoles()) == {
+        "aces_interchange": "ACES2065-1",
+        "cie_xyz_d65_interchange": "CIE-XYZ-D65",
+        "color_picking": "sRGB",
+        "color_timing": "ACEScct",
+        "compositing_log": "ACEScct",
+        "data": "Non-Color",
+        "default_byte": "sRGB",
+        "default_float": "Linear Rec.709",
+        "default_sequencer": "sRGB",
+        "matte_paint": "sRGB",
+        "reference": "Linear Rec.709",
+        "rendering": "Linear Rec.709",
+        "scene_linear": "Linear Rec.709",
+        "texture_paint": "sRGB",
+    }
+
+
+@pytest.mark.parametrize("name", ["lin_rec709", "lin_rec709_scene", "Linear Rec.709 (sRGB)", "linear", "lin_srgb"])
+def test_every_host_finds_its_name_of_scene_linear(name):
+    assert portable_config([]).getColorSpace(name).getName() == "Linear Rec.709"
+
+
+def test_the_plates_space_says_what_it_is():
+    space = portable_config([SPACE]).getColorSpace("crf_plate01")
+    assert space.getName() == "CRF plate01"
+    assert space.getFamily() == FAMILY == "Camera Response"
+    assert space.getEncoding() == "sdr-video"
+    assert space.getDescription() == "from a.jpg"
+    assert not space.isData()
+
+
+@pytest.mark.parametrize(
+    ("source", "target", "pixel", "expected"),
+    [
+        ("sRGB", "scene_linear", [0.5, 0.5, 1], [0.21404114, 0.21404114, 1]),
+        ("scene_linear", "ACES2065-1", [1, 1, 1], [1, 1, 1]),
+        ("scene_linear", "ACES2065-1", [1, 0, 0], [0.43963298, 0.08977644, 0.01754117]),
+        ("scene_linear", "ACEScg", [0, 1, 0], REC709_TO_AP1[:, 1]),
+        ("scene_linear", "ACEScct", [0.18, 0.18, 0.18], [0.41358840, 0.41358840, 0.41358840]),
+        ("scene_linear", "CIE-XYZ-D65", [1, 1, 1], [0.95045593, 1, 1.08905775]),
+        ("scene_linear", "sRGB - Display", [0.21404114, 1, 0], [0.5, 1, 0]),
+        ("scene_linear", "Rec.1886 Rec.709 - Display", [0.5**2.4, 1, 0], [0.5, 1, 0]),
+        ("Non-Color", "scene_linear", [0.5, 2, -1], [0.5, 2, -1]),
+    ],
+)
+def test_its_spaces_have_known_values(source, target, pixel, expected):
+    found = converted(portable_config([]), source, target, [pixel])
+    np.testing.assert_allclose(found, [expected], atol=3e-6)
+
+
+@pytest.mark.parametrize("display", ["sRGB", "Rec.709"])
+def test_its_displays_show_white_as_white(display):
+    transform = OCIO.DisplayViewTransform(src="scene_linear", display=display, view="Standard")
+    processor = portable_config([]).getProcessor(transform)
+    found = processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB([1.0, 1.0, 1.0])
+    np.testing.assert_allclose(found, 1, atol=3e-6)
+    assert list(portable_config([]).getViews(display)) == ["Standard", "Raw"]
+
+
+@pytest.mark.parametrize(
+    ("path", "space"),
+    [
+        ("shot_plate01.0001.png", "CRF plate01"),
+        ("/a b/shot_plate01.0001.png", "CRF plate01"),
+        ("C:\\a\\shot_plate01.0001.png", "CRF plate01"),
+        ("/a/xshot_plate01.0001.png", "sRGB"),
+        ("/a/shot_plate01.0001.jpg", "sRGB"),
+        ("/shot_plate01.1/beauty.png", "sRGB"),
+        ("/a/shot_plate01x0001xpng", "Non-Color"),
+        ("a.PNG", "sRGB"),
+        ("a.jpeg", "sRGB"),
+        ("a.exr", "scene_linear"),
+        ("a.EXR", "scene_linear"),
+        ("a.dpx", "Non-Color"),
+    ],
+)
+def test_files_find_their_space_by_rules(path, space):
+    plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_pattern="shot_plate01.????.png")
+    assert portable_config([plate]).getColorSpaceFromFilepath(path)[0] == space
+
+
+def test_patterns_are_no_regular_expressions():
+    plate = PlateColorSpace("CRF", "a.spi1d", file_pattern="a+(b)[1]*.png")
+    config = portable_config([plate])
+    assert config.getColorSpaceFromFilepath("a+(b)[1]_2.png")[0] == "CRF"
+    assert config.getColorSpaceFromFilepath("aab1.png")[0] == "sRGB"
+
+
+def test_several_plates():
+    plates = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", file_pattern=f"{name}.*") for name in "abc"]
+    config = portable_config(plates)
+    config.validate()
+    assert rule_names(config)[:3] == ["CRF c", "CRF b", "CRF a"]
+    assert config.getColorSpaceFromFilepath("/x/b.tif")[0] == "CRF b"
+
+
+def test_two_plates_of_one_name_are_refused():
+    with pytest.raises(ConfigError, match="two plates have this name"):
+        portable_config([SPACE, PlateColorSpace("crf PLATE01", "other.spi1d")])
+
+
+def test_two_plates_of_one_alias_are_refused():
+    with pytest.raises(ConfigError, match=r"CRF b: cannot be added to the config \(.*alias"):
+        portable_config([PlateColorSpace(f"CRF {name}", "a.spi1d", aliases=("same",)) for name in "ab"])
+
+
+@pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear"])
+def test_names_of_the_config_are_refused(name):
+    with pytest.raises(ConfigError, match="choose another name"):
+        portable_config([PlateColorSpace(name, "a.spi1d")])
+
+
+def test_the_text_is_reproducible():
+    assert portable_config([SPACE]).serialize() == portable_config([SPACE]).serialize()
