@@ -13,7 +13,7 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.network import ModelConfig
 from training.evaluation.material import bundled_material
 from training.evaluation.protocols import Evaluation, Model, Settings
-from training.export.model_folder import model_card as card
+from training.export import model_card as card
 
 
 @pytest.fixture(scope="module")

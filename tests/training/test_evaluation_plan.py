@@ -7,6 +7,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from training.evaluation.plan import CLEAN, CONDITIONS, PLAIN, TRIALS, Condition, balanced, plain_shots, stress_shots
+from training.synthesis.camera import Capture
 
 
 @pytest.mark.parametrize(("scenes", "curves"), [(20, 201), (20, 40), (5, 13), (6, 4), (1, 3)])
@@ -68,3 +69,8 @@ def test_conditions_that_differ_behind_the_lens_share_their_light():
     noisy, dark = Condition("noise", noise=2.0), Condition("dark", factor=0.6)
     assert noisy.light == dark.light == CLEAN.light
     assert Condition("blur", blur=2.0).light != CLEAN.light
+
+
+def test_noise_and_compression_come_after_exposure():
+    assert Condition("noise", noise=4.0).capture == Capture(grain=2 / 255)
+    assert Condition("JPEG", jpeg_quality=75, blur=2.0).capture == Capture(jpeg_quality=75)

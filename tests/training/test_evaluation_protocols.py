@@ -11,7 +11,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from training.evaluation import main
+from training.evaluation.__main__ import main
 from training.evaluation.bootstrap import Resampling
 from training.evaluation.cases import CaseFile
 from training.evaluation.material import SceneFile, bundled_material

@@ -15,7 +15,7 @@ from crfnet_core.network import DEFAULT_MODEL
 from crfnet_core.response import LEAST_SLOPE
 from training.data.scenes import LUMINANCE
 from training.data.studio_lights import BAND, LIGHTS, LIGHTS_FOLDER, copy_lights, read_light
-from training.evaluation import main, parsed
+from training.evaluation.__main__ import main, parsed
 from training.evaluation.material import bundled_material
 from training.evaluation.measure import Job
 from training.evaluation.plan import CLEAN, Condition, Trial

@@ -55,6 +55,6 @@ def test_the_file_is_written_as_it_is_read():
 
 def test_data_split_otherwise_is_refused(monkeypatch, tmp_path):
     found = json.loads(SPLITS_FILE.read_text()) | {"held_out_curves": [1, 2]}
-    monkeypatch.setattr(splits, "found_splits", lambda _: found)
+    monkeypatch.setattr(splits, "compute_splits", lambda _: found)
     with pytest.raises(CRFNetError, match=r"held_out_curves differ from splits\.json"):
         splits.checked_splits(tmp_path)

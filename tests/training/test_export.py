@@ -8,35 +8,30 @@ torch = pytest.importorskip("torch", reason="training needs the train extra")
 onnx = pytest.importorskip("onnx", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
-from crfnet_core.network import ResponseNetwork
-from training.export.model_folder import (
-    PARITY,
-    POOLING,
-    UNCALIBRATED,
-    assert_parity,
-    export_onnx,
-    load_network,
-    write_config,
-    write_golden,
-)
+from crfnet_core.network import ModelConfig, ResponseNetwork
+from training.export.golden import PARITY, assert_parity, write_golden
+from training.export.model_folder import load_network, write_config
+from training.export.onnx_graph import POOLING, export_onnx
+from training.export.uncertainty import BAND_KNOTS, NOT_FITTED, fit
 from training.network.model import NetworkConfig, PhotographNet
 
 CONFIG = NetworkConfig(width=64)
 
 
 @pytest.fixture(scope="module")
-def exported(tmp_path_factory, root):
+def exported(tmp_path_factory):
     """A run with random weights, its model folder and golden file."""
     folder = tmp_path_factory.mktemp("export")
     (folder / "run").mkdir()
     (folder / "model").mkdir()
     torch.manual_seed(0)
     torch.save({"net": PhotographNet(CONFIG).state_dict()}, folder / "run" / "last.pt")
-    (folder / "run" / "config.json").write_text(json.dumps({"network": asdict(CONFIG)}))
+    record = {"commit": "0" * 40, "dirty": True, "recipe": {"training": {}, "network": asdict(CONFIG)}}
+    (folder / "run" / "run.json").write_text(json.dumps(record))
     network = load_network(folder / "run")
     export_onnx(network, POOLING, folder / "model" / "model.onnx")
-    write_config(folder / "model", POOLING, UNCALIBRATED)
-    write_golden(network, POOLING, root / "tests" / "data" / "plate.jpg", folder / "golden.npz")
+    write_config(folder / "model", POOLING, NOT_FITTED, record)
+    write_golden(network, POOLING, folder / "golden.npz")
     return folder
 
 
@@ -55,12 +50,32 @@ def test_a_disagreement_stops_the_export(exported, tmp_path):
 def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
-    found = network.predict(np.zeros((2, 227, 227, 3), np.float32))
+    found = network.predict(network.inputs(np.zeros((2, 227, 227, 3), np.float32)))
     assert np.isfinite(found.weights).all()
     assert np.isfinite(found.pooled.weights).all()
     assert found.weights.shape == (2, 11)
     assert found.pooled.weights.shape == (11,)
     assert network.config.training["held_out_curves"] == []
+    assert network.config.training_commit == "0" * 40 + "-dirty"
+
+
+def test_held_out_curves_stand_in_the_configuration(exported):
+    record = {"commit": None, "recipe": {"training": {"without_held_out": True}}}
+    write_config(exported / "model", POOLING, NOT_FITTED, record)
+    config = ModelConfig.read(exported / "model" / "model.json")
+    assert len(config.training["held_out_curves"]) == 40
+    assert config.training_commit == "unknown"
+
+
+def test_the_uncertainty_is_fitted_to_the_errors():
+    rng = np.random.default_rng(0)
+    expected, spread = rng.uniform(0.5, 2, (2, 400))
+    error = 0.3 + 0.8 * expected
+    residuals = error[:, None] * np.linspace(0, 1, 1024) * rng.uniform(0, 1, (400, 1))
+    model = fit(error=error, expected=expected, spread=spread, residuals=residuals)
+    assert (model.base, model.of_predicted, model.of_spread) == pytest.approx((0.3, 0.8, 0), abs=1e-3)
+    assert len(model.band_profile) == BAND_KNOTS
+    assert model.band_profile[-1] == pytest.approx(0.9, abs=0.05)
 
 
 def test_matrices_are_kept_in_half_precision(exported):

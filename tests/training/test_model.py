@@ -4,18 +4,15 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics import window_statistics
-from training.network.model import (
+from training.network.conjugate_gradients import conjugate_gradients
+from training.network.features import (
     CANDIDATE_FEATURES,
-    COLOR_FEATURES,
     EDGE_FEATURES,
+    EQUATION_FEATURES,
     LEVEL_FEATURES,
-    Embedding,
     Features,
-    NetworkConfig,
-    PhotographNet,
-    ShippedNetwork,
-    solved,
 )
+from training.network.model import KindLayer, NetworkConfig, PhotographNet, ShippedNetwork
 
 CONFIG = NetworkConfig(width=32)
 
@@ -36,29 +33,31 @@ def network():
 
 
 def test_features_are_finite_and_of_the_sizes_named(statistics):
-    levels, edges, colors, candidates = Features()(statistics)
+    levels, edges, equations, candidates = Features()(statistics)
     assert levels.shape == (3, 3, LEVEL_FEATURES)
     assert edges.shape == (3, EDGE_FEATURES)
-    assert colors.shape == (3, COLOR_FEATURES)
+    assert equations.shape == (3, EQUATION_FEATURES)
     assert candidates.shape == (3, CANDIDATE_FEATURES)
-    assert all(part.isfinite().all() and part.abs().max() < 30 for part in (levels, edges, colors, candidates))
+    assert all(part.isfinite().all() and part.abs().max() < 30 for part in (levels, edges, equations, candidates))
 
 
 def test_training_leaves_out_kinds_of_features_of_some_rows_only():
     torch.manual_seed(0)
-    embedding = Embedding(NetworkConfig(width=8, kind_dropout=0.5))
-    left_out = [(embedding._kept(torch.ones(400, 3, 5)) == 0) for _ in range(2)]
+    layer = KindLayer(5, NetworkConfig(width=8, kind_dropout=0.5))
+    left_out = [(layer.drop_kind(torch.ones(400, 3, 5)) == 0) for _ in range(2)]
     assert all((rows.all(-1).all(-1) == rows.any(-1).any(-1)).all() for rows in left_out)
     assert left_out[0].float().mean() == pytest.approx(0.5, abs=0.1)
-    assert not (embedding.eval()._kept(torch.ones(400, 5)) == 0).any()
+    assert not (layer.eval().drop_kind(torch.ones(400, 5)) == 0).any()
 
 
 def test_conjugate_gradients_solve():
     generator = torch.Generator().manual_seed(1)
     root, right = torch.randn(4, 20, 20, generator=generator), torch.randn(4, 20, generator=generator)
     matrix = root @ root.mT + 5 * torch.eye(20)
-    np.testing.assert_allclose(solved(matrix, right), torch.linalg.solve(matrix, right), atol=1e-4)
-    assert not solved(matrix, torch.zeros(4, 20)).any()
+    np.testing.assert_allclose(
+        conjugate_gradients(matrix, right, steps=40), torch.linalg.solve(matrix, right), atol=1e-4
+    )
+    assert not conjugate_gradients(matrix, torch.zeros(4, 20), steps=40).any()
 
 
 def test_features_hardly_depend_on_the_number_of_samples(statistics):

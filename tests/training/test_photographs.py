@@ -6,8 +6,9 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.curves import CurveSource
 from training.data.scenes import Scene
+from training.synthesis.augmentation import composited, recolor, relight
 from training.synthesis.camera import reference_luminance
-from training.synthesis.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource, augmented, pieced, relit
+from training.synthesis.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -22,7 +23,7 @@ def scene():
 
 @pytest.fixture
 def source(scene):
-    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_share=0, plain_share=1) for power in (0.3, 0.5))
+    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_fraction=0, plain_fraction=1) for power in (0.3, 0.5))
     return PhotographSource([scene], sets, (0.25, 0.75), reference_luminance([scene]))
 
 
@@ -49,7 +50,7 @@ def test_augmentation_treats_all_windows_alike_and_leaves_them_unchanged(scene):
     light = np.stack([scene.pixels[:227, :227]] * 2)
     before = light.copy()
     for seed in range(20):
-        turned = augmented(light, np.random.default_rng(seed))
+        turned = recolor(light, np.random.default_rng(seed))
         assert turned.shape == light.shape
         np.testing.assert_allclose(turned[0], turned[1], rtol=1e-5)
     np.testing.assert_array_equal(light, before)
@@ -59,7 +60,7 @@ def test_a_photograph_shows_scenes_of_its_fold_only(scene):
     """Scenes of one colour each, by fold; the augmentation keeps which is the brightest channel as a rule."""
     colors = np.eye(3, dtype=np.float32) * 0.9 + 0.1
     scenes = [Scene(str(n), scene.pixels[:, :, :1] * colors[n % FOLDS], False) for n in range(2 * FOLDS)]
-    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_share=0, plain_share=1),)
+    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_fraction=0, plain_fraction=1),)
     source = PhotographSource(scenes, sets, (1.0,), reference_luminance(scenes), cameras=1)
     photos = [photo for seed in range(12) for photo in source.draw(np.random.default_rng(seed))]
     assert {photo.fold for photo in photos} == set(range(FOLDS))
@@ -68,9 +69,9 @@ def test_a_photograph_shows_scenes_of_its_fold_only(scene):
         assert means.std() < 1 or (means.argmax(axis=1) == photo.fold).mean() >= 0.75
 
 
-def test_a_pieced_window_shows_both_and_mixes_them_at_the_border():
+def test_a_composited_window_shows_both_and_mixes_them_at_the_border():
     ones, threes = (np.full((WINDOWS, 227, 227, 3), value, np.float32) for value in (1, 3))
-    light = pieced(ones, threes, np.random.default_rng(0))
+    light = composited(ones, threes, np.random.default_rng(0))
     assert (light == 1).any(axis=(1, 2, 3)).all()
     assert (light.max(axis=(1, 2, 3)) == light.max()).all()
     between = (light > 1) & (light < light.max())
@@ -80,7 +81,7 @@ def test_a_pieced_window_shows_both_and_mixes_them_at_the_border():
 def test_relighting_is_smooth_and_keeps_light_positive(scene):
     light = np.ones((2, 227, 227, 3), np.float32)
     for seed in range(30):
-        lit = relit(light, np.random.default_rng(seed))
+        lit = relight(light, np.random.default_rng(seed))
         assert (lit > 0).all()
         assert np.abs(np.diff(np.log2(lit), axis=1)).max() < 0.1
-    assert any(relit(light, np.random.default_rng(seed)).std() > 0.05 for seed in range(30))
+    assert any(relight(light, np.random.default_rng(seed)).std() > 0.05 for seed in range(30))

@@ -4,7 +4,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from training.data.scenes import Scene
-from training.synthesis.resampling import View
+from training.synthesis.resampling import AffineResampling
 
 
 @pytest.fixture
@@ -14,31 +14,31 @@ def scene():
     return Scene("made", np.stack([1 + y, 1 + x, 2 + np.sin(y / 9) + np.cos(x / 9)], axis=-1), False)
 
 
-def test_an_upright_view_shows_the_pixels(scene):
-    light = View(scene, np.eye(2), np.array([150.0, 200.0])).window()
+def test_an_upright_window_shows_the_pixels(scene):
+    light = AffineResampling(scene, np.eye(2), np.array([150.0, 200.0])).window()
     assert light.shape == (227, 227, 3)
     assert light.dtype == np.float32
     np.testing.assert_allclose(light[1:, 1:, 0] - light[:-1, 1:, 0], 1, atol=1e-4)
     np.testing.assert_allclose(light[113, 113, :2], [151, 201], atol=1)
 
 
-def test_a_view_from_farther_away_shows_more_and_turns(scene):
+def test_a_window_of_twice_the_scale_shows_more_and_turns(scene):
     quarter = np.array([[0.0, -2.0], [2.0, 0.0]])
-    light = View(scene, quarter, np.array([150.0, 250.0])).window()
+    light = AffineResampling(scene, quarter, np.array([150.0, 250.0])).window()
     inner = light[100:130, 100:130]
     np.testing.assert_allclose(np.diff(inner[:, :, 0], axis=1), -2, atol=1e-3)
     np.testing.assert_allclose(np.diff(inner[:, :, 1], axis=0), 2, atol=1e-3)
 
 
-def test_a_glance_is_every_fourth_sample(scene):
+def test_a_thumbnail_is_every_fourth_sample(scene):
     for seed in range(5):
-        view = View.draw(scene, np.random.default_rng(seed))
-        glance, window = view.glance(), view.window()
-        assert glance.shape == (57, 57, 3)
-        assert np.median(np.abs(glance - window[::4, ::4])[2:-2, 2:-2] / glance[2:-2, 2:-2]) < 0.02
+        resampling = AffineResampling.draw(scene, np.random.default_rng(seed))
+        thumbnail, window = resampling.thumbnail(), resampling.window()
+        assert thumbnail.shape == (57, 57, 3)
+        assert np.median(np.abs(thumbnail - window[::4, ::4])[2:-2, 2:-2] / thumbnail[2:-2, 2:-2]) < 0.02
 
 
 def test_beyond_its_sides_a_scene_is_mirrored(scene):
-    light = View(scene, np.eye(2), np.array([0.0, 250.0])).window()
+    light = AffineResampling(scene, np.eye(2), np.array([0.0, 250.0])).window()
     np.testing.assert_allclose(light[112], light[114], atol=1e-4)
     assert light.min() >= 0

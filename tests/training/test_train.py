@@ -7,11 +7,13 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.statistics import LEVELS, PARTS, STATISTICS
+from crfnet_core.statistics import LENGTH, unpack
+from crfnet_core.statistics.gradients import LEVELS
 from training.network import train as training_run
+from training.network.loss import CurveLoss
 from training.network.model import NetworkConfig
-from training.network.shards import HELD_OUT, TARGET_STRIDE, read_shards
-from training.network.train import CurveLoss, TrainingConfig, train
+from training.network.shards import TARGET_STRIDE, CurveSet, read_shards
+from training.network.train import TrainingConfig, train
 from training.synthesis.photographs import FOLDS
 
 SIZES = NetworkConfig(width=32, dropout=0.1)
@@ -26,11 +28,11 @@ def shards(tmp_path_factory):
     for split, number in (("train", 0), ("train", 1), ("validation", 0)):
         weights = np.zeros((256, 11))
         weights[:, 0] = rng.normal(0, 2, 256)
-        statistics = rng.uniform(0, 1, (256, 2, STATISTICS)).astype(np.float16)
-        ends = np.cumsum([int(np.prod(part)) for part in PARTS])
-        statistics[:, :, ends[2] : ends[3]] = 0  # gray: random numbers would be no normal equations
-        lean = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
-        statistics[:, :, : 3 * LEVELS] = np.broadcast_to(lean, (256, 2, 3, LEVELS)).reshape(256, 2, -1)
+        statistics = rng.uniform(0, 1, (256, 2, LENGTH)).astype(np.float16)
+        parts = unpack(statistics)  # views
+        parts["channel_equations"][:] = 0  # gray: random numbers would be no normal equations
+        parts["histogram"][:] = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
+        assert (statistics[0, 0, : 3 * LEVELS] == parts["histogram"][0, 0].ravel()).all()
         curves = basis.reconstruct(weights)[:, ::TARGET_STRIDE].astype(np.float32)
         sets = (np.arange(256) % 3).astype(np.int8)
         path, folds = folder / f"{split}_{number:04d}.npz", (np.arange(256) % FOLDS).astype(np.int8)
@@ -48,7 +50,7 @@ def test_training_learns_and_logs(shards, tmp_path):
     assert len(errors) == 8
     assert errors[-1] < 0.7 * errors[0]
     assert last.exists()
-    assert json.loads((tmp_path / "run" / "config.json").read_text())["network"]["width"] == 32
+    assert json.loads((tmp_path / "run" / "run.json").read_text())["recipe"]["network"]["width"] == 32
 
 
 def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(shards, tmp_path, monkeypatch):
@@ -83,14 +85,14 @@ def test_the_loss_is_the_estimation_error():
 
 def test_held_out_curves_can_be_left_out(shards, tmp_path):
     train(shards, tmp_path / "p2", replace(RECIPE, epochs=1, without_held_out=True), SIZES)
-    settings = json.loads((tmp_path / "p2" / "config.json").read_text())
-    assert settings["photographs"] == sum(n % 3 != HELD_OUT for n in range(256)) * 2 == 342
+    settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]
+    assert settings["photographs"] == sum(n % 3 != CurveSet.HELD_OUT for n in range(256)) * 2 == 342
     assert settings["training"]["without_held_out"]
 
 
 def test_a_fold_of_scenes_can_be_left_out_and_validated_on(shards, tmp_path):
     train(shards, tmp_path / "fold", replace(RECIPE, epochs=1, without_fold=1), SIZES)
-    settings = json.loads((tmp_path / "fold" / "config.json").read_text())
+    settings = json.loads((tmp_path / "fold" / "run.json").read_text())["recipe"]
     assert settings["photographs"] == sum(n % FOLDS != 1 for n in range(256)) * 2
     train(shards, tmp_path / "all", replace(RECIPE, epochs=1), SIZES)
     assert read_log(tmp_path / "fold") != read_log(tmp_path / "all")

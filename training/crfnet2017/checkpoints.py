@@ -1,4 +1,4 @@
-"""Keep, restore and carry over weights: checkpoints, other runs, and exported model folders."""
+"""Save and restore the state of a run, and start from the weights of another run or of a model folder."""
 
 from __future__ import annotations
 
@@ -12,25 +12,26 @@ from torch import Tensor, nn
 
 from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
+from training.export.onnx_graph import HALF_SUFFIX
 
-#: What the graph of an exported network puts around its parameters' names (see `training.export.model_folder.halve`).
-GRAPH_PREFIX, HALF_SUFFIX = "network.", "_half"
+#: In front of the parameters' names in the graph of an exported network.
+GRAPH_PREFIX = "network."
 
 
 @dataclass
-class Progress:
-    """All that a run needs to go on from where it stopped; randomness follows from the step.
+class TrainingState:
+    """All that a run needs to go on from where it stopped; what is random depends on the seed and the step only.
 
     Parameters
     ----------
     network : CRFNet
-        The bare network, never wrapped, so that any number of processes can go on.
+        The network itself, not wrapped for several processes, so that any number of them can go on.
     optimizer : Optimizer
-        With its momenta.
+        The optimizer, with its momenta.
     step : int
-        Steps done.
+        Number of steps done.
     rows : list
-        The log: step, training loss, validation figure, windows per second, share of waiting.
+        The log: step, training loss, validation figure, windows per second, fraction of the time spent waiting.
     """
 
     network: CRFNet
@@ -49,7 +50,7 @@ class Progress:
         _save(state | {"step": self.step, "rows": self.rows}, path)
 
     def save_best(self, path: Path) -> None:
-        """Write the weights with the log so far."""
+        """Write the weights and the log so far."""
         _save({"network": self.network.state_dict(), "step": self.step, "rows": self.rows}, path)
 
     def resume(self, path: Path, device: torch.device) -> None:
@@ -66,21 +67,22 @@ def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
     Parameters
     ----------
     network : CRFNet
-        To be changed.
+        Is changed.
     source : Path
         A run folder (its best checkpoint), a checkpoint, or a model folder written by `training.crfnet2017.export`.
     windows : Tensor, shape (N, 3, 227, 227)
-        Training windows, at least a few; only for model folders, whose convolutions have swallowed the normalisation.
+        Training windows, at least a few; needed only for a model folder, whose normalisations are folded into the
+        convolutions.
 
     Returns
     -------
     bool
-        Whether the last layer was taken over too; one with another number of outputs stays as it is.
+        Whether the last layer was copied too; one with another number of outputs stays as it is.
 
     Raises
     ------
     SystemExit
-        If the source is of another network.
+        If the source holds another network.
     """
     exported = (source / "model.onnx").exists()
     state = _exported_state(source / "model.onnx") if exported else _checkpoint_state(source)
@@ -96,28 +98,28 @@ def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
 
 
 def fold_normalisation(network: CRFNet) -> CRFNet:
-    """Return the network itself, ready to infer, each normalisation gone into the convolution before it."""
+    """Return the network itself, ready to infer, with each normalisation folded into the convolution before it."""
     network.eval()
     for layers in _sequences(network):
-        for place, layer in enumerate(layers):
+        for index, layer in enumerate(layers):
             if isinstance(layer, nn.BatchNorm2d):
-                layers[place - 1] = nn.utils.fuse_conv_bn_eval(layers[place - 1], layer)
-                layers[place] = nn.Identity()
+                layers[index - 1] = nn.utils.fuse_conv_bn_eval(layers[index - 1], layer)
+                layers[index] = nn.Identity()
     return network
 
 
 def unfold_normalisation(network: CRFNet, windows: Tensor) -> None:
-    """Let the normalisations do again, in place, what biases of the convolutions do, without changing the outputs.
+    """Give a folded network its normalisations back, in place, without changing its outputs.
 
-    Folding loses the statistics that the normalisation trains with; those of `windows` take their place.
+    Folding loses the mean and the variance that a normalisation needs in training; those of `windows` take their place.
 
     Parameters
     ----------
     network : CRFNet
-        Its `normalisation_bias` entries were loaded into the normalisations' biases (see `_exported_state`), their
-        other parameters are untouched since the network was made.
+        The biases of its normalisations are those of the folded convolutions (see `_exported_state`); their other
+        parameters are as they were when the network was made.
     windows : Tensor, shape (N, 3, 227, 227)
-        What to take the statistics of.
+        The windows whose mean and variance are taken.
     """
     normalisations = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
     hooks = [layer.register_forward_pre_hook(_take_statistics) for layer in normalisations]
@@ -129,7 +131,7 @@ def unfold_normalisation(network: CRFNet, windows: Tensor) -> None:
 
 
 def _take_statistics(layer: nn.Module, inputs: tuple[Tensor]) -> None:
-    """Give a normalisation the statistics of its input, and a scale and a bias that undo them but for its own bias."""
+    """Give a normalisation the statistics of its input, and a scale and a bias that undo them, its own bias aside."""
     variance, mean = torch.var_mean(inputs[0], dim=(0, 2, 3), correction=0)
     layer.running_mean.copy_(mean)
     layer.running_var.copy_(variance)
@@ -145,7 +147,7 @@ def _checkpoint_state(source: Path) -> dict[str, Tensor]:
 
 
 def _exported_state(graph: Path) -> dict[str, Tensor]:
-    """Return the parameters in an exported graph; biases of convolutions go to the normalisations after them."""
+    """Return the parameters in an exported graph; the biases of convolutions become those of the normalisations."""
     values = {
         tensor.name.removeprefix(GRAPH_PREFIX).removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
         for tensor in onnx.load(graph).graph.initializer
@@ -153,8 +155,8 @@ def _exported_state(graph: Path) -> dict[str, Tensor]:
     }
     state = {name: torch.from_numpy(value.astype("float32")) for name, value in values.items()}
     for name in [name for name in state if name.endswith(".bias") and not name.startswith("head.")]:
-        layers, place, _ = name.rsplit(".", 2)
-        state[f"{layers}.{int(place) + 1}.bias"] = state.pop(name)
+        layers, index, _ = name.rsplit(".", 2)
+        state[f"{layers}.{int(index) + 1}.bias"] = state.pop(name)
     state["body.0.bias"] = torch.zeros_like(state["body.1.bias"])
     return state
 
@@ -165,6 +167,6 @@ def _sequences(network: CRFNet) -> list[nn.Sequential]:
 
 
 def _save(state: dict[str, object], path: Path) -> None:
-    """Write a file of torch."""
+    """Write a checkpoint."""
     with atomic_write(path, overwrite=True) as temporary:
         torch.save(state, temporary)

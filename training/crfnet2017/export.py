@@ -1,7 +1,8 @@
 """Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
 
-The folder is like those of `training.export.model_folder`. The paper's network expects no error: its log error is a constant, that
-of the best mean E_est on the validation windows, and the calibration goes by the spread of the windows' estimates.
+The steps are those of `training.export.model_folder`. The paper's network expects no error of its own, so its log error
+is a constant, that of the best mean E_est on the validation windows, and the uncertainty goes by the spread of the
+windows' estimates.
 """
 
 from __future__ import annotations
@@ -12,11 +13,11 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.windows import cut_windows, select_windows
 from training.crfnet2017.checkpoints import fold_normalisation
 from training.crfnet2017.network import CRFNet
-from training.export.model_folder import WINDOWED, export_options, rounded, write_model
+from training.export.golden import golden_windows
+from training.export.model_folder import export_options, write_model
+from training.export.onnx_graph import WINDOWED, rounded
 
 
 class ShippedCRFNet(nn.Module):
@@ -27,7 +28,7 @@ class ShippedCRFNet(nn.Module):
     network : CRFNet
         With 11 outputs.
     expected_error : float
-        E_est that is expected of every window.
+        The E_est that is expected of every window.
     """
 
     def __init__(self, network: CRFNet, expected_error: float) -> None:
@@ -41,12 +42,12 @@ class ShippedCRFNet(nn.Module):
 
 
 def load_network(run: Path) -> ShippedCRFNet:
-    """Return the best network of a run, ready to infer, its normalisation folded.
+    """Return the best network of a run, ready to infer, with its normalisations folded.
 
     Raises
     ------
     SystemExit
-        If the run tells responses apart instead of estimating their weights.
+        If the run is of the first stage, which tells responses apart.
     """
     state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
     network = CRFNet()
@@ -56,23 +57,22 @@ def load_network(run: Path) -> ShippedCRFNet:
     return ShippedCRFNet(fold_normalisation(network), min(row[2] for row in state["rows"])).eval()
 
 
-def cost_of_rounding(network: ShippedCRFNet, plate: Path) -> float:
-    """Return the largest change of a weight (units of E_est) on the plate's windows when the network is `rounded`.
+def cost_of_rounding(network: ShippedCRFNet) -> float:
+    """Return the largest change of a weight (units of E_est) on the golden windows when the network is `rounded`.
 
     The network stays rounded.
     """
-    pixels = read_photo(plate).pixels
-    windows = torch.from_numpy(cut_windows(pixels, select_windows(pixels, count=3)))
+    windows = torch.from_numpy(golden_windows())
     with torch.inference_mode():
         before = network(windows)[0]
         return float((rounded(network)(windows)[0] - before).abs().max())
 
 
 def main() -> None:
-    """Export, check the parity, calibrate, and write the model folder."""
-    options = export_options(__doc__).parse_args()
+    """Export the best network of a run."""
+    options = export_options((__doc__ or "").splitlines()[0]).parse_args()
     network = load_network(options.run)
-    print(f"half precision moves the weights by at most {cost_of_rounding(network, options.plate):.1e}")
+    print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
     write_model(network, WINDOWED, options)
 
 

@@ -7,34 +7,34 @@ from torch import Tensor, nn
 
 from crfnet_core.emor import COMPONENTS
 
-#: Channels and side of the map that the last layer is fully connected to.
+#: Channels and side of the maps that the last layer is fully connected to.
 MAP_CHANNELS, MAP_SIDE = 512, 23
 
 
 class Bottleneck(nn.Module):
-    """A residual block of ResNet-50: 1x1, 3x3 and 1x1 convolutions beside a shortcut.
+    """A residual block of ResNet-50: convolutions of 1x1, 3x3 and 1x1, beside a shortcut.
 
-    The stride is that of the first convolution and of the projection, as in the ResNet-50 of 2015.
+    The first convolution and the projection of the shortcut have the stride, as in the ResNet-50 of 2015.
 
     Parameters
     ----------
     channels, inner, outputs : int
-        Channels that come in, of the 3x3 convolution, and that go out.
+        Channels of the input, of the 3x3 convolution and of the output.
     stride : int
-        Of the block; other than 1, it needs the projection.
+        Stride of the block.
     """
 
     def __init__(self, channels: int, inner: int, outputs: int, *, stride: int = 1) -> None:
         super().__init__()
         self.branch = nn.Sequential(
-            *_normalised(channels, inner, 1, stride),
+            *_normalized(channels, inner, 1, stride),
             nn.ReLU(inplace=True),
-            *_normalised(inner, inner, 3, 1),
+            *_normalized(inner, inner, 3, 1),
             nn.ReLU(inplace=True),
-            *_normalised(inner, outputs, 1, 1),
+            *_normalized(inner, outputs, 1, 1),
         )
-        projected = stride != 1 or channels != outputs
-        self.shortcut = nn.Sequential(*_normalised(channels, outputs, 1, stride)) if projected else nn.Identity()
+        is_projected = stride != 1 or channels != outputs
+        self.shortcut = nn.Sequential(*_normalized(channels, outputs, 1, stride)) if is_projected else nn.Identity()
 
     def forward(self, maps: Tensor) -> Tensor:
         """Return maps (N, outputs, H / stride, W / stride) of maps (N, channels, H, W)."""
@@ -42,7 +42,7 @@ class Bottleneck(nn.Module):
 
 
 class CRFNet(nn.Module):
-    """Windows to EMoR weights, or to the scores of the 201 responses of DoRF.
+    """Windows to EMoR weights, or to scores of the 201 responses of DoRF.
 
     Source: CRF-net paper, Table 1. With 11 outputs it has 3 864 203 parameters.
 
@@ -64,12 +64,12 @@ class CRFNet(nn.Module):
             Bottleneck(256, 64, 256),
             Bottleneck(256, 128, 512, stride=2),
             Bottleneck(512, 128, MAP_CHANNELS),
-            # 7 x 7 in two passes: a third of the time of one, backwards.
+            # 7 x 7 in two passes takes a third of the time of one pass in the backward step.
             nn.AvgPool2d((7, 1), stride=1),
             nn.AvgPool2d((1, 7), stride=1),
         )
         self.head = nn.Linear(MAP_CHANNELS * MAP_SIDE * MAP_SIDE, outputs)
-        self._initialise()
+        self._initialize()
 
     def forward(self, windows: Tensor) -> Tensor:
         """Return (N, outputs) of windows of shape (N, 3, 227, 227) in [0, 1]."""
@@ -78,8 +78,8 @@ class CRFNet(nn.Module):
             outputs: Tensor = self.head(maps.float().flatten(1))
         return outputs
 
-    def _initialise(self) -> None:
-        """Scale the convolutions for ReLU; start the head at 0, which is the mean response or equal scores."""
+    def _initialize(self) -> None:
+        """Scale the convolutions for ReLU, and set the head to 0, which gives the mean response or equal scores."""
         for module in self.modules():
             if isinstance(module, nn.Conv2d):
                 nn.init.kaiming_normal_(module.weight, mode="fan_out", nonlinearity="relu")
@@ -87,12 +87,7 @@ class CRFNet(nn.Module):
         nn.init.zeros_(self.head.bias)
 
 
-def parameter_count(network: nn.Module) -> int:
-    """Return the number of trained parameters of a network."""
-    return sum(parameter.numel() for parameter in network.parameters())
-
-
-def _normalised(channels: int, outputs: int, size: int, stride: int) -> tuple[nn.Module, nn.Module]:
+def _normalized(channels: int, outputs: int, size: int, stride: int) -> tuple[nn.Module, nn.Module]:
     """Return a convolution that keeps the side at stride 1, and the normalisation of its outputs."""
     convolution = nn.Conv2d(channels, outputs, size, stride=stride, padding=size // 2, bias=False)
     return convolution, nn.BatchNorm2d(outputs)

@@ -1,10 +1,8 @@
-"""Keep linear scenes ready to be photographed: memory-mapped, with the responses and their exposures.
+"""A pack: linear scenes, memory-mapped, with the responses to photograph them by and their exposures.
 
-A pack holds, per split, shards of float16 samples (npy, below 64 MiB each) and an index; beside them the 201 responses
-of DoRF with s_crf of each. s_crf is that of `training.synthesis.camera`: the exposure at which evenly spread samples of the
-training scenes, each scene scaled to a geometric mean luminance of 1, have the mean brightness `TARGET_BRIGHTNESS`
-under the response. It belongs to the curve, not to the photograph, as in the paper (Sec. 3.3), and is the same for
-every split.
+A pack holds shards of float16 samples (NPY, at most 60 MiB each) and an index for each split. Beside them are the 201
+responses of DoRF, each with its s_crf, the exposure of `training.synthesis.camera.automatic_exposure`. As in the paper
+(Sec. 3.3), s_crf belongs to the response and not to the photograph, and it is the same for every split.
 """
 
 from __future__ import annotations
@@ -12,6 +10,7 @@ from __future__ import annotations
 import json
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from tqdm import tqdm
@@ -21,10 +20,10 @@ from training.data.curves import read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
-#: Samples of a shard at most: 60 MiB of float16.
+#: Most samples of a shard: 60 MiB of float16.
 SHARD_SAMPLES = 30 * 2**20
 
-#: The shorter side of a packed scene holds about this many samples or more, if the scene does.
+#: Scenes are averaged by a whole factor that leaves the shorter side at least this many samples.
 SHORTER_SIDE = 395
 
 #: The largest finite float16.
@@ -33,7 +32,7 @@ FLOAT16_MAX = 65504.0
 
 @dataclass(frozen=True)
 class ScenePack:
-    """Linear scenes of one split with the responses to photograph them by.
+    """The linear scenes of one split, and the responses.
 
     Parameters
     ----------
@@ -51,13 +50,13 @@ class ScenePack:
 
 
 def area_scaled(pixels: np.ndarray) -> np.ndarray:
-    """Return linear pixels (H, W, 3) averaged over boxes, so that the shorter side keeps `SHORTER_SIDE` or more."""
+    """Return linear pixels (H, W, 3), averaged so that the shorter side keeps at least `SHORTER_SIDE` samples."""
     factor = max(1, min(pixels.shape[:2]) // SHORTER_SIDE)
     return area_averaged(pixels, factor)
 
 
 def packed_scene(scene: Scene, number: int) -> np.ndarray:
-    """Return a scene as float16 (H, W, 3); panoramas are dithered first, the same way every time."""
+    """Return a scene as float16 (H, W, 3); a panorama is dithered first, with a seed of its number."""
     pixels = dithered(scene.pixels, np.random.default_rng([2017, number])) if scene.is_panorama else scene.pixels
     return np.minimum(area_scaled(pixels), FLOAT16_MAX).astype(np.float16)
 
@@ -77,7 +76,9 @@ def write_pack(data: Path, out: Path, split: str) -> Path:
 
 def write_scenes(scenes: list[tuple[str, np.ndarray]], out: Path, split: str) -> Path:
     """Write named float16 scenes as shards with an index, and return the path of the index."""
-    index, shard, used, number = [], [], 0, 0
+    index: list[dict[str, Any]] = []
+    shard: list[np.ndarray] = []
+    used = number = 0
     for name, pixels in scenes:
         if used + pixels.size > SHARD_SAMPLES and shard:
             _write_shard(out, split, number, shard)
@@ -109,6 +110,12 @@ def read_pack(folder: Path, split: str) -> ScenePack:
         scenes.append(shards[entry["shard"]][start : start + int(np.prod(shape))].reshape(shape))
     with np.load(folder / "curves.npz") as arrays:
         return ScenePack(tuple(scenes), arrays["curves"], arrays["exposures"])
+
+
+def pack_files(folder: Path) -> list[Path]:
+    """Return the files that a training reads of a pack: shards, indices, and the responses."""
+    splits = [folder / f"{split}.json" for split in ("train", "validation")]
+    return sorted([*folder.glob("*.npy"), *splits, folder / "curves.npz"])
 
 
 def _shard(folder: Path, split: str, number: int) -> Path:

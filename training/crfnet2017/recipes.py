@@ -1,4 +1,4 @@
-"""How the paper's network is trained: optimizer, learning rate and size of the steps."""
+"""Recipes for the paper's network: optimizer, learning rate, batch."""
 
 from __future__ import annotations
 
@@ -12,30 +12,31 @@ from training.crfnet2017.network import CRFNet
 
 @dataclass(frozen=True)
 class Recipe:
-    """How the weights are moved.
+    """How the weights are trained.
 
     Parameters
     ----------
     optimizer : str
         "sgd" (with `momentum`) or "adamw".
     learning_rate : float
-        The highest.
+        The highest learning rate of the schedule.
     head_factor : float
-        What the last layer's learning rate is multiplied with: 270 848 inputs move an output together.
+        Factor on the learning rate of the last layer, small because 270 848 inputs move each of its outputs together.
     momentum, weight_decay : float
         Of the optimizer.
     batch : int
-        Windows of a step, on each process.
+        Windows of a step on each process.
     schedule : str
         "steps" (a tenth after each third) or "one-cycle" (up for a tenth, down as a cosine to 0).
     mixed : bool
-        bfloat16 where it is safe.
+        Whether to compute in bfloat16 where that is safe.
     channels_last : bool
-        Memory order of the maps.
+        Whether the channels of a sample lie side by side in memory.
     clip : float
         Largest norm of the gradient; 0 for none.
     squared : bool
-        Regression loss: half the squared distance (Caffe's Euclidean loss), or the distance itself, which is E_est.
+        Whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance
+        itself, which is E_est.
     """
 
     optimizer: str = "adamw"
@@ -51,10 +52,9 @@ class Recipe:
     squared: bool = False
 
 
-#: `paper`: what the paper tells of its training, and guesses for the rest. We had no more than a summary of its text.
-#: From it: the two stages, their order, and the Euclidean loss. Assumed, as usual for Caffe in 2017: SGD, momentum 0.9,
-#: a learning rate of 0.01 that drops by 10, weight decay 5e-4, batch 64, the moments of the drops, the initial weights.
-#: `default`: ours, for few windows.
+#: `default` is our recipe for few windows. `paper` is the paper's as far as we know it. We had a summary of its text,
+#: which tells the two stages, their order and the Euclidean loss. The rest is assumed, as was usual with Caffe in 2017:
+#: SGD, momentum 0.9, a learning rate of 0.01 that drops to a tenth after each third, weight decay 5e-4, batches of 64.
 RECIPES = {
     "default": Recipe(),
     "paper": Recipe(
@@ -74,24 +74,24 @@ RECIPES = {
 
 @dataclass(frozen=True)
 class RunConfig:
-    """What a run folder is for; a run goes on only with the same.
+    """The configuration of a run; a run goes on only with the same.
 
     Parameters
     ----------
     stage : str
         "classify" or "regress".
     recipe : Recipe
-        How the weights are moved.
+        How the weights are trained.
     steps : int
-        Of the whole run.
+        Steps of the whole run.
     seed : int
-        Of the initial weights and, with the step, of the windows.
+        Seed of the initial weights and, with the step, of the windows.
     init : str
-        A run, a checkpoint or a model folder whose weights the run starts from; or "none".
+        A run, a checkpoint or a model folder whose weights the run starts from, or "none".
     validate_every : int
         Steps between validations.
     per_photograph : int
-        Windows of one photograph at most.
+        Most windows of one photograph in a batch.
     """
 
     stage: str
@@ -114,7 +114,7 @@ def learning_rate(recipe: Recipe, step: int, steps: int) -> float:
 
 
 def make_optimizer(network: CRFNet, recipe: Recipe) -> torch.optim.Optimizer:
-    """Return the recipe's optimizer, body and head in groups of their own; "factor" is that of the learning rate."""
+    """Return the optimizer of a recipe, with a group each for body and head; "factor" is on the learning rate."""
     groups = [
         {"params": list(network.body.parameters()), "factor": 1.0},
         {"params": list(network.head.parameters()), "factor": recipe.head_factor},

@@ -1,4 +1,4 @@
-"""What a run shows of itself: speed, waiting, log.csv and curves.png."""
+"""The log of a run: speed, time spent waiting, log.csv and curves.png."""
 
 from __future__ import annotations
 
@@ -23,19 +23,19 @@ DOTS_PER_INCH = 110
 
 
 class Clock:
-    """Loss, speed and time spent on waiting for windows since the last validation."""
+    """Loss, speed, and time spent waiting for windows, since the last validation."""
 
     def __init__(self) -> None:
         self.saved()
         self.restart()
 
     def restart(self) -> None:
-        """Begin anew."""
+        """Start counting anew."""
         self._begun, self._waited, self._windows = time.perf_counter(), 0.0, 0
         self._losses: list[Tensor] = []
 
     def saved(self) -> None:
-        """Count the time to the next checkpoint from now."""
+        """Count the time since the last checkpoint from now on."""
         self._saved = time.perf_counter()
 
     @contextmanager
@@ -52,7 +52,7 @@ class Clock:
 
     @property
     def loss(self) -> float:
-        """Mean loss."""
+        """The mean loss."""
         return float(torch.stack(self._losses).mean())
 
     @property
@@ -61,8 +61,8 @@ class Clock:
         return self._windows / (time.perf_counter() - self._begun)
 
     @property
-    def share(self) -> float:
-        """Share of the time in [0, 1] that went into waiting for windows."""
+    def waiting_fraction(self) -> float:
+        """The fraction of the time, in [0, 1], that was spent waiting for windows."""
         return self._waited / (time.perf_counter() - self._begun)
 
     @property

@@ -1,4 +1,4 @@
-"""The two stages of the training: which of the known responses is it, then, what are its EMoR weights."""
+"""The two stages of the training: tell the known responses apart, then estimate EMoR weights."""
 
 from __future__ import annotations
 
@@ -21,11 +21,11 @@ class StageTask:
     stage : str
         "classify": cross-entropy, top-1 accuracy. "regress": distance of the EMoR weights, mean E_est.
     curves : ndarray, shape (N, 1024)
-        The responses that windows are made with; N is 201 for DoRF.
+        The responses of the windows; N is 201 for DoRF.
     squared : bool
         Whether the loss of the regression is half the squared distance.
     device : torch.device
-        Where the targets are kept.
+        The device of the targets.
     """
 
     def __init__(self, stage: str, curves: np.ndarray, *, squared: bool, device: torch.device) -> None:
@@ -38,7 +38,7 @@ class StageTask:
 
     @property
     def classifies(self) -> bool:
-        """Whether this is the first stage, whose figure is the better the higher it is."""
+        """Whether this is the first stage, whose figure is better the higher it is."""
         return self.stage == "classify"
 
     @property
@@ -54,10 +54,10 @@ class StageTask:
         return squares.mean() / 2 if self.squared else (squares + 1e-8).sqrt().mean()
 
     def figures(self, outputs: Tensor, classes: Tensor) -> Tensor:
-        """Return per window, shape (N,), 1 where the right response scores highest, else 0; or E_est.
+        """Return for every window, shape (N,), whether the right response scores highest (1 or 0), or E_est.
 
-        The basis is orthonormal: E_est squared is the squared distance of the weights plus that of the curve from the
-        basis.
+        The basis is orthonormal, so E_est squared is the squared distance of the weights plus the squared distance
+        of the true response from the basis.
         """
         if self.classifies:
             return (outputs.argmax(dim=1) == classes).float()

@@ -1,8 +1,9 @@
 """Draw the paper's windows from packed scenes: ``python -m training.crfnet2017.windows --data DIR --out DIR`` packs.
 
-A photograph is a scene, a curve drawn evenly from the 201, and an exposure of s_crf times 0.6, 0.8, 1, 1.2 or 1.4. Its
-windows are those with at least 220 of the 256 code values over all channels (CRF-net paper, Sec. 3.2, 3.3). The host
-only cuts float16 irradiance; `photographed` does tone curve and 8-bit rounding on the device that trains.
+A photograph is a scene, one of the 201 responses, all equally likely, and an exposure of s_crf times 0.6, 0.8, 1, 1.2
+or 1.4. Its windows are those that hold at least 220 of the 256 codes over all channels (CRF-net paper, Sec. 3.2, 3.3).
+The host only cuts out float16 irradiance; `render_windows` applies the response and rounds to 8 bits on the device that
+trains.
 """
 
 from __future__ import annotations
@@ -19,21 +20,23 @@ from torch.utils.data import IterableDataset, get_worker_info
 
 from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
 from training.crfnet2017.pack import ScenePack, write_pack
-from training.synthesis.camera import EXPOSURE_FACTORS, responded
+from training.data.manifest import training_digest
+from training.provenance import record_making
+from training.synthesis.camera import EXPOSURE_FACTORS, apply_response
 
-#: Finite float16 that are not negative.
+#: How many float16 values are finite and not negative.
 FLOAT16_CODES = 31744
 
-#: Photographs tried for one curve, and positions tried in one photograph, before another is taken.
-PHOTOGRAPHS, POSITIONS = 20, 12
+#: Photographs tried for one response, and positions tried in one photograph, before the next is tried.
+PHOTOGRAPHS_TRIED, POSITIONS_TRIED = 20, 12
 
-#: Every how many-th sample of a window is looked at first: where these fill enough bins, the window does.
+#: Every so many-th sample of a window is looked at first: where these fill enough bins, the window does.
 SPARSE_STEP = 3
 
 
 @dataclass(frozen=True)
 class LinearWindows:
-    """A batch before its tone curves.
+    """A batch of windows before their responses.
 
     Parameters
     ----------
@@ -42,7 +45,7 @@ class LinearWindows:
     classes : Tensor, int64, shape (N,)
         Which of the 201 responses each window gets.
     exposures : Tensor, float32, shape (N,)
-        What the irradiance is multiplied with.
+        Factor on the irradiance of each window.
     """
 
     irradiance: Tensor
@@ -57,8 +60,8 @@ class LinearWindows:
     def split(self, size: int) -> Iterator[LinearWindows]:
         """Yield the batch in parts of `size` windows or fewer."""
         parts = (self.irradiance, self.classes, self.exposures)
-        for some in zip(*(part.split(size) for part in parts), strict=True):
-            yield LinearWindows(*some)
+        for arrays in zip(*(part.split(size) for part in parts), strict=True):
+            yield LinearWindows(*arrays)
 
     def pin_memory(self) -> LinearWindows:
         """Return the batch in page-locked memory, which `torch.utils.data.DataLoader` asks for."""
@@ -66,7 +69,7 @@ class LinearWindows:
 
 
 def draw_windows(pack: ScenePack, count: int, rng: np.random.Generator, *, per_photograph: int = 1) -> LinearWindows:
-    """Return `count` windows that meet the paper's rule, the curves drawn evenly, at random mirrored.
+    """Return `count` windows that meet the paper's rule; responses are equally likely, half of the windows mirrored.
 
     Parameters
     ----------
@@ -75,27 +78,27 @@ def draw_windows(pack: ScenePack, count: int, rng: np.random.Generator, *, per_p
     count : int
         Windows of the batch.
     rng : Generator
-        Decides everything.
+        Draws responses, scenes, exposures, positions and mirroring.
     per_photograph : int
-        Windows taken of one photograph at most; the paper takes 10. One makes batches of more kinds.
+        Windows of one photograph at most; the paper takes 10. With one, a batch holds more photographs.
     """
     windows: list[np.ndarray] = []
     classes: list[int] = []
     exposures: list[float] = []
     while len(windows) < count:
         curve = int(rng.integers(len(pack.curves)))
-        found, exposure = _photograph_windows(pack, curve, min(per_photograph, count - len(windows)), rng)
-        windows += found
-        classes += [curve] * len(found)
-        exposures += [exposure] * len(found)
+        chosen, exposure = _photograph_windows(pack, curve, min(per_photograph, count - len(windows)), rng)
+        windows += chosen
+        classes += [curve] * len(chosen)
+        exposures += [exposure] * len(chosen)
     irradiance = torch.from_numpy(np.stack(windows))
     return LinearWindows(irradiance, torch.tensor(classes), torch.tensor(exposures, dtype=torch.float32))
 
 
 class WindowStream(IterableDataset[LinearWindows]):
-    """Batches of training windows, one a step; step n holds the same windows in every process and at every start.
+    """Batches of training windows, one for each step; a step has the same windows whenever the run was interrupted.
 
-    Workers of a `DataLoader` share the steps out in turn, so that their number changes nothing.
+    The workers of a `DataLoader` take the steps in turn, so their number changes nothing.
 
     Parameters
     ----------
@@ -104,9 +107,9 @@ class WindowStream(IterableDataset[LinearWindows]):
     batch : int
         Windows of a step.
     steps : range
-        The steps to draw: from the first that is not done yet.
+        The steps to draw windows for, from the first that is not done.
     seed, rank : int
-        With the step, all that the windows depend on; processes that train together have different ranks.
+        The windows depend on these two and on the step; processes that train together have different ranks.
     per_photograph : int
         As in `draw_windows`.
     """
@@ -126,19 +129,19 @@ class WindowStream(IterableDataset[LinearWindows]):
             yield draw_windows(self.pack, self.batch, rng, per_photograph=self.per_photograph)
 
 
-def photographed(windows: LinearWindows, curves: Tensor) -> Tensor:
+def render_windows(windows: LinearWindows, curves: Tensor) -> Tensor:
     """Return 8-bit windows in [0, 1], float32 (N, 3, 227, 227), on the device of `windows` and `curves` (201, 1024).
 
-    As `code_table`, for every window its own: float16 has fewer values than a window has samples, so each value goes
-    through the curve once.
+    A table of codes for every window, as `code_table`: float16 has fewer values than a window has samples, so each
+    value goes through the response once.
     """
     values = torch.from_numpy(_float16_values()).to(curves.device)
     last = curves.shape[1] - 1
-    place = (values * windows.exposures[:, None]).clamp(0, 1) * last
-    below = place.int().clamp(max=last - 1)
+    position = (values * windows.exposures[:, None]).clamp(0, 1) * last
+    below = position.int().clamp(max=last - 1)
     index = below + (windows.classes * curves.shape[1]).int()[:, None]
     low, high = curves.flatten()[index], curves.flatten()[index + 1]
-    tables = ((low + (place - below) * (high - low)) * 255).round() / 255
+    tables = ((low + (position - below) * (high - low)) * 255).round() / 255
     offsets = torch.arange(len(tables), dtype=torch.int32, device=curves.device) * FLOAT16_CODES
     bits = windows.irradiance.view(torch.int16).int() + offsets[:, None, None, None]
     return tables.flatten()[bits].permute(0, 3, 1, 2)
@@ -146,7 +149,7 @@ def photographed(windows: LinearWindows, curves: Tensor) -> Tensor:
 
 def code_table(curve: np.ndarray, exposure: float) -> np.ndarray:
     """Return the 8-bit code, uint8 (31744,), of every float16 irradiance that is not negative, by its bits."""
-    return np.rint(responded(_float16_values() * np.float32(exposure), curve) * 255).astype(np.uint8)
+    return np.rint(apply_response(_float16_values() * np.float32(exposure), curve) * 255).astype(np.uint8)
 
 
 def _float16_values() -> np.ndarray:
@@ -157,22 +160,22 @@ def _float16_values() -> np.ndarray:
 def _photograph_windows(
     pack: ScenePack, curve: int, count: int, rng: np.random.Generator
 ) -> tuple[list[np.ndarray], float]:
-    """Return one to `count` good windows of the first photograph under the curve that has any, else none."""
+    """Return 1 to `count` windows of the first photograph tried that has any, and its exposure; else none."""
     exposure = 0.0
-    for _ in range(PHOTOGRAPHS):
+    for _ in range(PHOTOGRAPHS_TRIED):
         scene = pack.scenes[rng.integers(len(pack.scenes))]
         exposure = float(pack.exposures[curve] * rng.choice(EXPOSURE_FACTORS))
         codes = code_table(pack.curves[curve], exposure)
-        found: list[np.ndarray] = []
-        for _ in range(POSITIONS):
+        chosen: list[np.ndarray] = []
+        for _ in range(POSITIONS_TRIED):
             y, x = (int(rng.integers(side - WINDOW_SIZE + 1)) for side in scene.shape[:2])
             window = scene[y : y + WINDOW_SIZE, x : x + WINDOW_SIZE]
             if _covers_range(window, codes):
-                found.append(np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window))
-            if len(found) == count:
+                chosen.append(np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window))
+            if len(chosen) == count:
                 break
-        if found:
-            return found, exposure
+        if chosen:
+            return chosen, exposure
     return [], exposure
 
 
@@ -190,8 +193,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the pack")
     parser.add_argument("--split", choices=["train", "validation"], help="by default both")
     options = parser.parse_args()
+    digest = training_digest(options.data)
     for split in [options.split] if options.split else ["train", "validation"]:
         print(f"wrote {write_pack(options.data, options.out, split)}")
+        record_making(options.out, split, digest)
 
 
 if __name__ == "__main__":

@@ -1,1 +1,12 @@
-"""What training and evaluation are made from: responses, scenes, and how both are split."""
+"""The data: responses and scenes, where they come from, and how they are split.
+
+manifest       source, licence, split and SHA-256 of every file: `manifest.csv`
+splits         which scenes and curves are held out: `splits.json`
+scenes         scene-linear photographs, split by scene
+linear_files   reads camera raw, OpenEXR and Radiance HDR
+import_scenes  adds photographs of your own to the scenes
+studio_lights  five of Blender's studio lights, which the repository holds
+curves         responses to draw from: DoRF, in-camera base curves, mixtures
+dorf           converts DoRF's own text
+emor_basis     computes the EMoR basis that `crfnet_core` ships
+"""

@@ -1,4 +1,4 @@
-"""Camera responses to train and measure on: DoRF, in-camera base curves, and mixtures of them."""
+"""Camera responses to train and measure on: DoRF, in-camera base curves, and mixtures of each."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from scipy.interpolate import PchipInterpolator
 
 from crfnet_core.response import SAMPLES
 from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.types import Float64Array
 
 IRRADIANCE = np.linspace(0, 1, SAMPLES)
 
-#: Range of the headroom s between a camera's brightest JPEG value and its sensor's clipping.
+#: Range of the headroom s that a camera leaves between its brightest JPEG value and the clipping of its sensor.
 HEADROOM = (0.4, 1.1)
 
 
-def read_dorf(path: Path) -> np.ndarray:
+def read_dorf(path: Path) -> Float64Array:
     """Return the 201 measured responses of DoRF, shape (201, 1024), at uniform irradiances."""
     return np.asarray(scipy.io.loadmat(path)["B"], dtype=np.float64)
 
 
 def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:
-    """Return camera name -> monotone tone curve, scene-linear to display-linear."""
+    """Return camera name -> monotone tone curve, from scene-linear to display-linear values, both in [0, 1]."""
     nodes: dict[str, list[tuple[float, float]]] = {}
     with path.open(newline="") as file:
         for row in csv.DictReader(file):
@@ -33,54 +34,54 @@ def read_base_curves(path: Path) -> dict[str, PchipInterpolator]:
     return {name: PchipInterpolator(*np.array(points).T) for name, points in nodes.items()}
 
 
-def camera_response(base: PchipInterpolator, headroom: float) -> np.ndarray:
-    """Return f(E) = sRGB(curve(min(1, s E))) / f(1), shape (1024,)."""
+def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
+    """Return f(E) = sRGB(base(min(1, s E))), divided by f(1), shape (1024,), for the headroom s."""
     encoded = srgb_encode(np.clip(base(np.minimum(1, headroom * IRRADIANCE)), 0, 1))
     return encoded / encoded[-1]
 
 
 @dataclass(frozen=True)
 class CurveSource:
-    """Where training draws its responses from.
+    """A family of responses that training draws from.
 
     Parameters
     ----------
     dorf : ndarray, shape (N, 1024)
-        Measured responses of the training split.
+        Measured responses.
     bases : tuple of callables
-        In-camera base curves of the training split.
-    camera_share : float
-        Share in [0, 1] of curves that come from `bases`.
+        In-camera base curves.
+    camera_fraction : float
+        Fraction, in [0, 1], of the responses that come from `bases`.
     warp : float
-        Standard deviation of the logarithm of the powers put on irradiance and brightness of augmented curves.
-    plain_share : float
-        Share in [0, 1] of DoRF curves left as they were measured.
+        Standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response.
+    plain_fraction : float
+        Fraction, in [0, 1], of the responses from `dorf` that are left as they were measured.
     """
 
-    dorf: np.ndarray
+    dorf: Float64Array
     bases: tuple[PchipInterpolator, ...]
-    camera_share: float = 0.5
+    camera_fraction: float = 0.5
     warp: float = 0.15
-    plain_share: float = 0.5
+    plain_fraction: float = 0.5
 
-    def draw(self, rng: np.random.Generator) -> np.ndarray:
+    def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""
-        if rng.random() < self.camera_share:
+        if rng.random() < self.camera_fraction:
             return self._warped(self._mixed(self._camera_curves(rng), rng), rng, self.warp / 2)
-        if rng.random() < self.plain_share:
+        if rng.random() < self.plain_fraction:
             return self.dorf[rng.integers(len(self.dorf))]
         return self._warped(self._mixed(self.dorf[rng.integers(len(self.dorf), size=3)], rng), rng, self.warp)
 
-    def _camera_curves(self, rng: np.random.Generator) -> np.ndarray:
+    def _camera_curves(self, rng: np.random.Generator) -> Float64Array:
         """Return two camera responses, each with its own headroom."""
         chosen = rng.integers(len(self.bases), size=2)
         return np.stack([camera_response(self.bases[i], rng.uniform(*HEADROOM)) for i in chosen])
 
-    def _mixed(self, curves: np.ndarray, rng: np.random.Generator) -> np.ndarray:
+    def _mixed(self, curves: Float64Array, rng: np.random.Generator) -> Float64Array:
         """Return a random convex mixture, most often near one of the curves."""
         return rng.dirichlet(np.full(len(curves), 0.4)) @ curves
 
-    def _warped(self, curve: np.ndarray, rng: np.random.Generator, sigma: float) -> np.ndarray:
+    def _warped(self, curve: Float64Array, rng: np.random.Generator, sigma: float) -> Float64Array:
         """Return f(E ** p) ** q with log-normal powers."""
         p, q = np.exp(rng.normal(0, sigma, 2))
         return np.interp(IRRADIANCE**p, IRRADIANCE, curve) ** q

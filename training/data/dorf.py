@@ -2,12 +2,13 @@
 
 DoRF, the Database of Response Functions (Grossberg & Nayar, "Modeling the Space of Camera Response Functions", PAMI
 2004), comes from its owners, Columbia's CAVE (https://www.cs.columbia.edu/CAVE/software/softlib/dorf.php), as one text
-file. What is relied on, known from other programs that read it, and checked for every curve where it can be:
+file. We know its format from other programs that read it. The following is relied on, and checked for every curve as
+far as that is possible:
 
 - a curve is six lines: its name, the kind of graph that it was taken from, ``I =``, irradiances, ``B =``, brightnesses
   (blank lines, and values that run over several lines, are read as well);
 - irradiances increase from 0 to 1, brightnesses do not decrease and run from 0 to 1;
-- both are linear whatever the kind of graph ("graph-log-log-neg" and the like) says: it tells of the source's axes;
+- both are linear, whatever the kind of graph says ("graph-log-log-neg" and the like describe the axes of the source);
 - there are 201 curves.
 """
 
@@ -28,13 +29,13 @@ from crfnet_core.errors import CRFNetError, CurveError
 from crfnet_core.files import atomic_write, check_target
 from training.data.curves import IRRADIANCE
 
-#: Curves in DoRF.
+#: Number of curves in DoRF.
 CURVES = 201
 
-#: The text has seven digits: closer to the uniform irradiances than this, samples are taken as they are.
+#: Irradiances this close to uniform ones need no interpolation: the text has seven digits.
 ROUNDING = 1e-6
 
-#: What the 116 bytes of text in front of a MAT-file say; scipy would put the time of day there.
+#: The 116 bytes of text in front of a MAT-file; scipy would write the time of day there.
 MAT_TEXT = b"MATLAB 5.0 MAT-file, DoRF (Grossberg & Nayar, Columbia CAVE) from dorfCurves.txt"
 
 
@@ -45,9 +46,9 @@ class DorfCurve:
     Parameters
     ----------
     name : str
-        The film, chip or camera.
+        Name of the film, sensor or camera.
     graph : str
-        The kind of graph that it was taken from.
+        The kind of graph that it was read from.
     irradiance, brightness : ndarray, shape (N,)
         Samples from (0, 0) to (1, 1).
     """
@@ -73,7 +74,7 @@ def parse_dorf(text: str) -> list[DorfCurve]:
         If there are none, or one is cut short, holds something else than numbers, or is no response from 0 to 1.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
-    starts = [place for place, line in enumerate(lines) if line.replace(" ", "") == "I="]
+    starts = [index for index, line in enumerate(lines) if line.replace(" ", "") == "I="]
     if not starts or starts[0] < 2:
         raise CurveError("holds no curve: a name, the kind of graph and a line 'I =' are needed")
     ends = [*(start - 2 for start in starts[1:]), len(lines)]
@@ -104,7 +105,7 @@ def convert(source: Path, out: Path, *, overwrite: bool = False) -> int:
 
 
 def mat_bytes(brightness: NDArray[np.float64]) -> bytes:
-    """Return a MAT-file, the same for the same curves, of I and B, float32, both of the shape (N, 1024) of B."""
+    """Return a MAT-file of I and B, float32 (N, 1024), for brightness B of that shape; same curves, same bytes."""
     file = io.BytesIO()
     irradiance = np.broadcast_to(IRRADIANCE, brightness.shape)
     scipy.io.savemat(file, {"I": irradiance.astype(np.float32), "B": brightness.astype(np.float32)})
@@ -112,9 +113,9 @@ def mat_bytes(brightness: NDArray[np.float64]) -> bytes:
 
 
 def _curve(lines: Sequence[str]) -> DorfCurve:
-    """Return the curve in its lines, the first of which is its name."""
+    """Return the curve in its lines; the first line is its name."""
     name, graph, _, *rest = lines
-    middle = next((place for place, line in enumerate(rest) if line.replace(" ", "") == "B="), None)
+    middle = next((index for index, line in enumerate(rest) if line.replace(" ", "") == "B="), None)
     if middle is None:
         raise CurveError(f"the curve {name!r} has no line 'B ='; download the file again")
     try:
@@ -129,7 +130,7 @@ def _curve(lines: Sequence[str]) -> DorfCurve:
 
 
 def _faults(irradiance: NDArray[np.float64], brightness: NDArray[np.float64]) -> Iterator[str]:
-    """Yield what keeps samples from being a response."""
+    """Yield every reason why samples are no response."""
     if len(irradiance) != len(brightness) or len(irradiance) < 2:
         yield f"has {len(irradiance)} irradiances and {len(brightness)} brightnesses"
     if not (np.isfinite(irradiance).all() and np.isfinite(brightness).all()):
@@ -142,7 +143,7 @@ def _faults(irradiance: NDArray[np.float64], brightness: NDArray[np.float64]) ->
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Convert the file; say on stderr why it cannot be, and return 2 then, else 0."""
+    """Convert the file and return 0; if it cannot be converted, say why on stderr and return 2."""
     parser = argparse.ArgumentParser(prog="python -m training.data.dorf", description="Convert DoRF's own text.")
     parser.add_argument("source", type=Path, metavar="dorfCurves.txt", help="as downloaded from Columbia CAVE")
     parser.add_argument("--out", type=Path, required=True, help="DATA/dorf/201_CRF_data.mat")

@@ -10,9 +10,10 @@ import numpy as np
 from crfnet_core.emor import BASIS_FILE, EmorBasis
 from crfnet_core.files import atomic_write
 from crfnet_core.response import SAMPLES
+from crfnet_core.types import Float64Array
 from training.data.curves import read_dorf
 
-#: Agreement of the first five components with the published ones.
+#: Least |cosine| between each of the first five components and the published one.
 LEAST_COSINE = 0.999
 
 
@@ -33,7 +34,7 @@ def main() -> None:
     print(f"wrote {BASIS_FILE.name}")
 
 
-def read_published(path: Path) -> np.ndarray:
+def read_published(path: Path) -> Float64Array:
     """Return f0 and the unit components of emor.txt, shape (26, 1024)."""
     blocks = path.read_text().split("=")[2:]
     values = np.array([[float(word) for word in block.split()[:SAMPLES]] for block in blocks])

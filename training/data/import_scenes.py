@@ -1,7 +1,7 @@
-"""Bring your own scene-linear photographs: ``python -m training.data.import_scenes FILE... --out DATA/linear``.
+"""Import scene-linear photographs of your own: ``python -m training.data.import_scenes FILE... --out DATA/linear``.
 
-LibRaw develops camera raw without tone curve, sharpening or automatic brightness, the sensor's white at 1; OpenEXR and
-Radiance HDR are taken as they are. Each file becomes a half-float OpenEXR file and a row of manifest.csv.
+LibRaw develops camera raw without tone curve, sharpening or automatic brightness; the sensor's white becomes 1. OpenEXR
+and Radiance HDR files are read as they are. Each file becomes a half-float OpenEXR file and a row of manifest.csv.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text, check_target
 from crfnet_core.image_io import first_line
 from training.data.linear_files import LEAST_SIDE, linear_scene
-from training.data.scenes import BROUGHT
+from training.data.scenes import IMPORTED
 
 #: What the manifest calls each kind.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
@@ -31,7 +31,7 @@ KINDS = {"photograph": "photograph", "panorama": "panorama band"}
 
 @dataclass(frozen=True)
 class ManifestRow:
-    """One scene of manifest.csv, its columns in their order."""
+    """A row of the folder's manifest.csv; the columns have this order."""
 
     file: str
     kind: str
@@ -45,7 +45,7 @@ class ManifestRow:
 COLUMNS = tuple(field.name for field in fields(ManifestRow))
 
 
-def bring(
+def import_scene(
     path: str | Path,
     folder: str | Path,
     *,
@@ -54,27 +54,28 @@ def bring(
     licence: str = "not stated",
     overwrite: bool = False,
 ) -> ManifestRow:
-    """Write the scene in `path` to `folder` as OpenEXR and enter it into the manifest; return its row.
+    """Write the scene in `path` to `folder` as OpenEXR, add it to the folder's manifest.csv and return its row.
 
     Parameters
     ----------
     path : str or Path
         A camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file.
     folder : str or Path
-        The folder of the scenes; it and its manifest.csv are made where absent.
+        The folder of the scenes; it and its manifest.csv are created if absent.
     kind : {"photograph", "panorama"}
-        A panorama is equirectangular, twice as wide as high; the middle `BAND` of its rows is kept.
+        A panorama is equirectangular and twice as wide as high; the middle `BAND` of its rows is kept.
     scale : int or None
-        Samples whose mean, in linear light, becomes one, along each side; see `automatic_scale` for None.
+        Each scale x scale samples become one, their mean in linear light; None takes the `automatic_scale`.
     licence : str
-        For the manifest.
+        Licence of the photograph, for the manifest.
     overwrite : bool
-        Whether a scene of this name is replaced.
+        Whether to replace a scene of this name.
 
     Raises
     ------
     CRFNetError
-        If the file is absent, damaged or not scene-linear, too small, black, or its name is taken; nothing is written.
+        If the file is absent, damaged, not scene-linear, too small or black, or if its name is taken; nothing is
+        written then.
     """
     path, folder = Path(path), Path(folder)
     target = folder / f"{path.stem}.exr"
@@ -85,7 +86,7 @@ def bring(
         raise PhotoError(f"{path}: is a file of the folder {folder} itself; give files from elsewhere")
     pixels, notes = linear_scene(path, is_panorama=kind == "panorama", scale=scale)
     height, width, _ = pixels.shape
-    row = ManifestRow(target.name, KINDS[kind], width, height, f"{BROUGHT} {path.name}", licence, "; ".join(notes))
+    row = ManifestRow(target.name, KINDS[kind], width, height, f"{IMPORTED} {path.name}", licence, "; ".join(notes))
     try:
         folder.mkdir(parents=True, exist_ok=True)
     except OSError as problem:
@@ -98,7 +99,7 @@ def bring(
 
 
 def write_scene(path: Path, pixels: NDArray[np.float16], *, overwrite: bool = False) -> None:
-    """Write a scene, float16 (H, W, 3), as OpenEXR: whole, without the time of day; a PhotoError if it cannot be."""
+    """Write a scene, float16 (H, W, 3), as OpenEXR, whole or not at all; PhotoError if it cannot be written."""
     height, width, channels = pixels.shape
     header = oiio.ImageSpec(width, height, channels, oiio.HALF)
     header.attribute("DateTime", "")  # else OpenImageIO writes the time of day
@@ -111,7 +112,7 @@ def write_scene(path: Path, pixels: NDArray[np.float16], *, overwrite: bool = Fa
 
 
 def read_manifest(folder: Path) -> list[dict[str, str]]:
-    """Return the rows of a folder's manifest.csv, [] where there is none; a PhotoError if its columns differ."""
+    """Return the rows of a folder's manifest.csv, [] if there is none; PhotoError if it has other columns."""
     path = folder / "manifest.csv"
     if not path.exists():
         return []
@@ -125,7 +126,7 @@ def read_manifest(folder: Path) -> list[dict[str, str]]:
 
 
 def write_manifest(folder: Path, rows: Sequence[dict[str, str]]) -> None:
-    """Write a folder's manifest.csv, whole, with the line ends of RFC 4180."""
+    """Write a folder's manifest.csv, whole or not at all, with the line ends of RFC 4180."""
     text = io.StringIO()
     writer = csv.DictWriter(text, COLUMNS)
     writer.writeheader()
@@ -148,7 +149,7 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Bring every file that can be; say on stderr which cannot, and return 2 then, else 0."""
+    """Import every file that is usable and return 0; if some are not, say why on stderr and return 2."""
     options = _parser().parse_args(arguments)
     settings = {"kind": options.kind, "scale": options.scale, "licence": options.licence}
     names = Counter(path.stem for path in options.files)
@@ -157,11 +158,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         try:
             if names[path.stem] > 1:
                 raise PhotoError(f"{path}: {names[path.stem]} of these files would become {path.stem}.exr; rename them")
-            row = bring(path, options.out, overwrite=options.overwrite, **settings)
+            row = import_scene(path, options.out, overwrite=options.overwrite, **settings)
             print(f"{options.out / row.file}: {row.kind}, {row.width} x {row.height}, {row.notes}")
         except CRFNetError as problem:
             failed += 1
-            print(f"bring: error: {problem}", file=sys.stderr)
+            print(f"import_scenes: error: {problem}", file=sys.stderr)
     return 2 if failed else 0
 
 

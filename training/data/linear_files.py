@@ -16,16 +16,17 @@ from crfnet_core.image_io import LINEAR_SIGNATURES, MAX_PIXELS, RAW_SUFFIXES, fi
 from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import LUMINANCE, area_averaged
 
-#: The automatic scale leaves the shorter side at least this many samples: windows of step 1 and 2 fit into it.
+#: The automatic scale leaves the shorter side at least this many samples, room for windows of step 1 and 2.
 LEAST_SIDE = 2 * WINDOW_SIZE
 
-#: Fraction (numerator, denominator) of a panorama's rows that are kept, around the horizon: the poles are stretched.
+#: Fraction (numerator, denominator) of the rows of a panorama that is kept, around the horizon: poles are stretched.
 BAND = (4, 5)
 
-#: Where a power of two brings the median luminance of an HDR file, whose unit is anybody's, and what half floats hold.
+#: An HDR file, whose unit is arbitrary, is multiplied by the power of two that brings its median luminance nearest to
+#: this; larger values than half floats hold are clipped.
 MEDIAN_LUMINANCE, LARGEST = 0.18, 65000.0
 
-#: How LibRaw develops: nothing that depends on the picture, so that double the light is double the value.
+#: Options of LibRaw. None depends on the picture, so twice the light is twice the value.
 DEVELOPMENT: dict[str, Any] = {
     "gamma": (1, 1),
     "output_bps": 16,
@@ -41,10 +42,10 @@ DEVELOPMENT: dict[str, Any] = {
 def linear_scene(
     path: Path, *, is_panorama: bool = False, scale: int | None = None
 ) -> tuple[NDArray[np.float16], list[str]]:
-    """Return the scene as it is written, float16 (H, W, 3) in [0, 65000], and what was done to it.
+    """Return the scene as it will be written, float16 (H, W, 3) in [0, 65000], and notes on what was done to it.
 
-    Camera raw: 0 is black and 1 the sensor's white, where every channel is clipped. Others: times a power of two that
-    brings the median luminance nearest to `MEDIAN_LUMINANCE`.
+    In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. Other files are multiplied by
+    the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`.
 
     Parameters
     ----------
@@ -53,12 +54,12 @@ def linear_scene(
     is_panorama : bool
         Whether it is equirectangular, twice as wide as high; the middle `BAND` of its rows is kept.
     scale : int or None
-        Samples whose mean becomes one, along each side; by default as `automatic_scale`.
+        Each scale x scale samples become one, their mean; None takes the `automatic_scale`.
 
     Raises
     ------
     PhotoError
-        If the file is absent, damaged, not scene-linear, no panorama where one is promised, too small or black.
+        If the file is absent, damaged, not scene-linear, too small or black, or no panorama although it is called one.
     """
     is_raw = path.suffix.lower() in RAW_SUFFIXES.split()
     samples = read_raw(path) if is_raw else read_hdr(path)
@@ -67,18 +68,18 @@ def linear_scene(
     _check_scale(path, band.shape, scale)
     notes = [f"area-averaged {scale}x{scale} from {samples.shape[1]}x{samples.shape[0]}"] if scale > 1 else []
     if not is_raw:
-        fitted, done = _fitted(band, scale, path)
-        return fitted, [done[0], *notes, *done[1:]]
-    pixels = area_averaged(band, scale) / np.float32(65535)
-    _lit(pixels, path)
+        fitted, (factor, *more) = _fitted(band, scale, path)
+        return fitted, [factor, *notes, *more]
+    pixels = np.divide(area_averaged(band, scale), 65535, dtype=np.float32)
+    _positive_luminance(pixels, path)
     return pixels.astype(np.float16), ["sensor white = 1", *notes]
 
 
 def read_raw(path: Path) -> NDArray[np.uint16]:
     """Return a developed camera raw file, uint16 (H, W, 3), linear, Rec.709 primaries, the sensor's white at 65535.
 
-    White-balanced as the camera did it; rows and columns as stored, whatever the orientation; demosaiced
-    by AHD. Negative values, colours outside the primaries, become 0.
+    The white balance is the camera's, the demosaicing AHD. Rows and columns are as stored, whatever the orientation.
+    Negative values, which are colours outside the primaries, become 0.
 
     Raises
     ------
@@ -101,7 +102,7 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
     Raises
     ------
     PhotoError
-        If the file is absent, damaged, not of floats, has no RGB or gray, or is not scene-linear: JPEG, PNG, TIFF.
+        If the file is absent, damaged, not of floats, without RGB or gray, or not scene-linear, as JPEG, PNG or TIFF.
     """
     _check_file(path)
     with path.open("rb") as file:
@@ -123,8 +124,8 @@ def read_hdr(path: Path) -> NDArray[np.float32]:
         source.close()
     if values is None or problem:
         raise PhotoError(f"{path}: is damaged or cut short ({first_line(problem)}); copy it again")
-    places = [header.channelindex(name) for name in "RGB"]
-    return values[..., places] if min(places) >= 0 else _three_channels(values[..., :1])
+    channels = [header.channelindex(name) for name in "RGB"]
+    return values[..., channels] if min(channels) >= 0 else _three_channels(values[..., :1])
 
 
 def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
@@ -143,7 +144,7 @@ def automatic_scale(height: int, width: int) -> int:
 
 
 def _check_file(path: Path) -> None:
-    """Refuse what is no file."""
+    """Refuse a path that is no file or cannot be opened."""
     if not path.is_file():
         raise PhotoError(f"{path}: there is no such file; check the name")
     if not os.access(path, os.R_OK):
@@ -169,7 +170,7 @@ def _check_header(path: Path, header: Any) -> None:
 
 
 def _check_scale(path: Path, shape: tuple[int, ...], scale: int) -> None:
-    """Refuse a scale that is no scale or leaves no room for a window."""
+    """Refuse a scale below 1, and one that leaves no room for a window."""
     side = min(shape[:2])
     if scale < 1:
         raise PhotoError(f"{path}: a scale of {scale} is none; give 1 or more")
@@ -178,25 +179,25 @@ def _check_scale(path: Path, shape: tuple[int, ...], scale: int) -> None:
 
 
 def _fitted(samples: NDArray[Any], scale: int, path: Path) -> tuple[NDArray[np.float16], list[str]]:
-    """Return an HDR picture without negative values, averaged and times a power of two, and what was done to it."""
+    """Return an HDR picture averaged, scaled and without negative values, and notes on what was done to it."""
     negative = float((samples < 0).mean())
     pixels = area_averaged(np.maximum(np.nan_to_num(samples, nan=0, posinf=np.inf, neginf=0), 0), scale)
-    exponent = round(float(np.log2(MEDIAN_LUMINANCE / np.median(_lit(pixels, path)))))
+    exponent = round(float(np.log2(MEDIAN_LUMINANCE / np.median(_positive_luminance(pixels, path)))))
     pixels = np.ldexp(pixels, exponent)
     clipped = int((pixels > LARGEST).any(axis=2).sum())
-    done = [f"scale=2^{exponent}"]
-    done += [f"{negative:.2g} negative samples set to 0"] if negative else []
-    done += [f"{clipped} px clipped at {LARGEST:.0f} after scale"] if clipped else []
-    return np.minimum(pixels, np.float32(LARGEST)).astype(np.float16), done
+    notes = [f"scale=2^{exponent}"]
+    notes += [f"{negative:.2g} negative samples set to 0"] if negative else []
+    notes += [f"{clipped} px clipped at {LARGEST:.0f} after scale"] if clipped else []
+    return np.minimum(pixels, np.float32(LARGEST)).astype(np.float16), notes
 
 
-def _lit(pixels: NDArray[np.float32], path: Path) -> NDArray[np.float32]:
-    """Return the positive and finite luminances of a picture, and refuse one that has none."""
+def _positive_luminance(pixels: NDArray[np.float32], path: Path) -> NDArray[np.float32]:
+    """Return the luminances of a picture that are positive and finite; refuse one that has none."""
     luminance = (pixels @ LUMINANCE).ravel()
-    lit: NDArray[np.float32] = luminance[(luminance > 0) & np.isfinite(luminance)]
-    if not lit.size:
+    positive: NDArray[np.float32] = luminance[(luminance > 0) & np.isfinite(luminance)]
+    if not positive.size:
         raise PhotoError(f"{path}: is black, or without a finite value; give another photograph")
-    return lit
+    return positive
 
 
 def _three_channels(pixels: NDArray[Any]) -> NDArray[Any]:
@@ -205,6 +206,6 @@ def _three_channels(pixels: NDArray[Any]) -> NDArray[Any]:
 
 
 def _reason(problem: rawpy.LibRawError) -> str:
-    """Return LibRaw's message, which comes as bytes."""
+    """Return the message of LibRaw, which may be bytes."""
     message = problem.args[0] if problem.args else type(problem).__name__
     return message.decode(errors="replace") if isinstance(message, bytes) else str(message)

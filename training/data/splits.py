@@ -1,6 +1,7 @@
-"""Which scenes and which curves are held out: ``python -m training.data.splits --data DATA`` writes training/data/splits.json.
+"""Which scenes and which curves are held out: ``python -m training.data.splits --data DATA`` writes splits.json.
 
-Scenes are split in `training.data.scenes`; curves are held out by whole groups, because DoRF holds near-duplicates.
+Scenes are split in `training.data.scenes`. Curves are held out by whole groups, because some curves of DoRF are nearly
+equal.
 """
 
 from __future__ import annotations
@@ -15,24 +16,25 @@ from scipy.cluster.hierarchy import fcluster, linkage
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
+from crfnet_core.types import Float64Array, IndexArray
 from training.data.curves import read_dorf
 from training.data.scenes import SPLIT_SEED, split_scenes
 
-#: The splits that models are trained and measured by.
+#: The splits that the packaged models were trained and measured with.
 SPLITS_FILE = Path(__file__).with_name("splits.json")
 
 #: No two curves of a group are farther apart than this, in units of E_est.
 GROUP_DIAMETER = 1.0
 
-#: Share of the curves that P2 holds out, rounded down to whole groups.
-HELD_OUT_SHARE = 0.2
+#: Fraction of the curves that P2 holds out, rounded down to whole groups.
+HELD_OUT_FRACTION = 0.2
 
 
-def curve_groups(dorf: np.ndarray) -> np.ndarray:
+def curve_groups(dorf: Float64Array) -> IndexArray:
     """Return the group of each curve, int (N,), numbered from 0 in order of first appearance.
 
-    Complete-link hierarchical clustering on the L2 distance, so that no two curves of one group are farther apart than
-    `GROUP_DIAMETER`: DoRF's 201 curves fall into 48 groups.
+    Complete-linkage clustering on the L2 distance: no two curves of a group are farther apart than `GROUP_DIAMETER`.
+    The 201 curves of DoRF fall into 48 groups.
 
     Parameters
     ----------
@@ -44,32 +46,32 @@ def curve_groups(dorf: np.ndarray) -> np.ndarray:
     return np.argsort(np.argsort(first))[groups]
 
 
-def held_out_curves(dorf: np.ndarray, *, seed: int = SPLIT_SEED) -> np.ndarray:
-    """Return the sorted indices of the curves that P2 holds out: whole groups, drawn at random, a fifth of the curves.
+def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray:
+    """Return the sorted indices of the curves that P2 holds out: whole groups, a fifth of the curves.
 
-    Groups are drawn in random order and taken where they still fit into `HELD_OUT_SHARE` of the curves.
+    The groups come in random order, and each is held out if it still fits into `HELD_OUT_FRACTION` of the curves.
 
     Parameters
     ----------
     dorf : ndarray, shape (N, 1024)
         Responses at uniform irradiances.
     seed : int
-        The same seed holds out the same groups.
+        Seed of the order of the groups.
     """
     groups = curve_groups(dorf)
-    sizes, room = np.bincount(groups), round(HELD_OUT_SHARE * len(dorf))
-    taken = []
+    sizes, room = np.bincount(groups), round(HELD_OUT_FRACTION * len(dorf))
+    chosen = []
     for group in np.random.default_rng(seed).permutation(len(sizes)):
         if sizes[group] <= room:
-            taken.append(group)
+            chosen.append(group)
             room -= sizes[group]
-    return np.flatnonzero(np.isin(groups, taken))
+    return np.flatnonzero(np.isin(groups, chosen))
 
 
-def found_splits(data: Path) -> dict[str, Any]:
-    """Return what splits.json must hold for the scenes and curves in the folder `data`."""
+def compute_splits(data: Path) -> dict[str, Any]:
+    """Return the entries of splits.json for the scenes and curves in the folder `data`."""
     dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
-    scenes = split_scenes(data / "linear", brought=False)
+    scenes = split_scenes(data / "linear", with_imported=False)
     return {
         "seed": SPLIT_SEED,
         "scenes": {split: [name for name, _ in members] for split, members in scenes.items()},
@@ -85,11 +87,11 @@ def checked_splits(data: Path) -> dict[str, Any]:
     Raises
     ------
     CRFNetError
-        If the scenes or curves in the folder `data` are split otherwise: figures would not be comparable.
+        If the scenes or curves in the folder `data` are split otherwise, so that figures would not be comparable.
     """
     splits: dict[str, Any] = json.loads(SPLITS_FILE.read_text())
-    found = found_splits(data)
-    differing = [name for name in splits if splits[name] != found[name]]
+    computed = compute_splits(data)
+    differing = [name for name in splits if splits[name] != computed[name]]
     if differing:
         raise CRFNetError(
             f"{data}: {' and '.join(differing)} differ from {SPLITS_FILE.name}; restore the data, or write the splits"
@@ -114,7 +116,7 @@ def main() -> None:
     """Write the splits."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
-    splits = found_splits(parser.parse_args().data)
+    splits = compute_splits(parser.parse_args().data)
     atomic_write_text(SPLITS_FILE, splits_text(splits), overwrite=True)
     groups, held_out = max(splits["curve_groups"]) + 1, len(splits["held_out_curves"])
     print(f"wrote {SPLITS_FILE.name}: {groups} groups of curves, {held_out} curves held out")

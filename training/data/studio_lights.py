@@ -1,8 +1,8 @@
-"""Five of Blender's studio lights, to measure with where no other data is: CC0, and no training scene among them.
+"""Five of Blender's studio lights (CC0), to measure with where there is no other data; no training scene is among them.
 
     python -m training.data.studio_lights --studio-lights <bpy>/4.5/datafiles/studiolights/world --out tests/data/lights
 
-copies them as they are stored. Sunrise, sunset and night stay away: they are panoramas of the training data.
+copies them as they are stored. Sunrise, sunset and night are left out, because the training data holds these panoramas.
 """
 
 from __future__ import annotations
@@ -19,13 +19,13 @@ from training.data.scenes import Scene, read_scene
 #: Where the repository keeps them.
 LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
 
-#: The rows that are used, as shares of the height: what is nearer to the poles of a panorama is stretched.
+#: The first and the last row that are used, as fractions of the height: nearer to its poles a panorama is stretched.
 BAND = (0.1, 0.9)
 
 
 @dataclass(frozen=True)
 class StudioLight:
-    """One file of Blender's, what Poly Haven calls it, and its hash."""
+    """A file of Blender, the name of the panorama at Poly Haven, and the SHA-256 of the file."""
 
     file: str
     source: str
@@ -71,7 +71,7 @@ def read_light(path: Path) -> Scene:
     if not path.is_file():
         raise CRFNetError(f"{path}: is absent; write the lights with python -m training.data.studio_lights")
     pixels = read_scene(path, is_panorama=True).pixels
-    low, high = (round(share * len(pixels)) for share in BAND)
+    low, high = (round(fraction * len(pixels)) for fraction in BAND)
     return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)
 
 
@@ -81,7 +81,7 @@ def copy_lights(source: Path, target: Path) -> None:
     Raises
     ------
     CRFNetError
-        If one is absent, or is another file than Blender 4.5's.
+        If one is absent, or is not the file of Blender 4.5.
     """
     for light in LIGHTS:
         path = source / light.file

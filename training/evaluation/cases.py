@@ -27,7 +27,6 @@ MEASURING_CODE = (
     "training/data/scenes.py",
     "training/synthesis/camera.py",
     "training/data/studio_lights.py",
-    "training/synthesis/capture.py",
     "training/evaluation/measure.py",
     "training/evaluation/cases.py",
 )

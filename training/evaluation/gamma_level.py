@@ -19,7 +19,7 @@ from training.evaluation import paper
 from training.evaluation.cases import CODES
 from training.evaluation.markdown_tables import rows_of
 from training.evaluation.material import Material, bundled_material, dorf_material
-from training.synthesis.camera import responded
+from training.synthesis.camera import apply_response
 
 #: Factors on s_crf; every how many-th row and column is looked at.
 FACTORS, STRIDE = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4), 8
@@ -67,7 +67,7 @@ def gamma_levels(material: Material, factors: tuple[float, ...] = FACTORS) -> li
 
 def _figures(light: np.ndarray, exposure: float, curve: ResponseCurve) -> tuple[float, ...]:
     """Return the figures of one photograph, in the order of `Level`."""
-    brightness = responded(light * np.float32(exposure), curve.brightness)
+    brightness = apply_response(light * np.float32(exposure), curve.brightness)
     counts = np.bincount(np.rint(255 * brightness).astype(int), minlength=256)
     shares, irradiance = counts / counts.sum(), curve.inverse(CODES)
     error = linearization_error(CODES, curve, GAMMA, counts=counts)

@@ -83,7 +83,7 @@ def dorf_material(data: Path) -> Material:
     """
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
-    files = split_scenes(data / "linear", brought=False)["test"]
+    files = split_scenes(data / "linear", with_imported=False)["test"]
     scenes = tuple(
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
@@ -111,11 +111,11 @@ def formula_curves() -> dict[str, np.ndarray]:
 
 
 def training_luminance(data: Path) -> np.ndarray:
-    """Return luminances of the training scenes of the folder `data`, without those that were brought later.
+    """Return luminances of the training scenes of the folder `data`, without those that were imported later.
 
     So the test photographs stay the same when training gets more scenes.
     """
-    files = split_scenes(data / "linear", brought=False)["train"]
+    files = split_scenes(data / "linear", with_imported=False)["train"]
     return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
 
 

@@ -24,7 +24,7 @@ from training.evaluation.baselines import constant_curves, oracle_curves
 from training.evaluation.cases import CaseFile, Row, errors
 from training.evaluation.material import Material, SceneFile
 from training.evaluation.plan import PLAIN, Condition, Shot, Trial
-from training.synthesis.capture import code_counts, light_under, taken
+from training.synthesis.camera import code_counts, render_photo, sensor_light
 
 #: Photographs of a job: small enough to spread and to keep often.
 JOB_SIZE = 20
@@ -71,13 +71,28 @@ class Job:
         """Return one photograph; its dither is that of the scene, its noise its own."""
         light = _light(self.scenes[scene], scene, condition.light, self.seed)
         rng = np.random.default_rng([self.seed, scene, curve])
-        return taken(light, self.curves[curve], self.exposures[curve], condition, self.scenes[scene].name, rng)
+        return render_photo(
+            light,
+            self.curves[curve],
+            self.exposures[curve] * condition.factor,
+            rng,
+            name=self.scenes[scene].name,
+            capture=condition.capture,
+            is_gray=condition.is_gray and not condition.noise,
+        )
 
 
 @lru_cache(maxsize=LIGHTS_KEPT)
 def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> np.ndarray:
     """Return the light of a scene under the part of a condition that comes before exposure."""
-    return light_under(condition, file.read(), np.random.default_rng([seed, number]))
+    return sensor_light(
+        file.read(),
+        np.random.default_rng([seed, number]),
+        gains=condition.gains,
+        is_gray=condition.is_gray,
+        blur=condition.blur,
+        upsampling=condition.upsampling,
+    )
 
 
 @cache

@@ -9,13 +9,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
-from training.synthesis.camera import EXPOSURE_FACTORS
+from training.synthesis.camera import EXPOSURE_FACTORS, Capture
 
 #: Photographs of P3, each under every condition.
 STRESS_PHOTOGRAPHS = 200
 
 #: Gains in linear light, red to blue, of a camera whose white balance is off by about a stop and a half from red to
-#: blue; scaled by `training.synthesis.capture` so that a neutral keeps its luminance.
+#: blue; scaled by `training.synthesis.camera` so that a neutral keeps its luminance.
 COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 
 
@@ -57,6 +57,11 @@ class Condition:
     def light(self) -> Condition:
         """The part of the condition that comes before exposure: photographs that share it share the light."""
         return replace(self, name="", factor=1.0, noise=0.0, jpeg_quality=None)
+
+    @property
+    def capture(self) -> Capture:
+        """The part of the condition that comes after exposure."""
+        return Capture(grain=math.sqrt(self.noise) / 255, jpeg_quality=self.jpeg_quality)
 
 
 @dataclass(frozen=True)

@@ -17,7 +17,7 @@ from training.evaluation.baselines import GAMMA, OTHER_CAMERAS, constant_curves
 from training.evaluation.cases import CaseFile, Row
 from training.evaluation.measure import BASELINE_PARTY, baseline_rows, model_row
 from training.evaluation.plan import PLAIN
-from training.synthesis.capture import code_counts
+from training.synthesis.camera import code_counts
 
 #: Grades of the measured responses that count; the others are shown.
 TRUSTED_GRADES = ("A", "B")

@@ -1,1 +1,8 @@
-"""From a trained network to a model folder with its card."""
+"""From a training run to a model folder: model.onnx, model.json, run.json and the model card.
+
+model_folder  the command that writes the folder
+onnx_graph    the graph, its matrices in half precision
+golden        predictions of PyTorch that onnxruntime must repeat
+uncertainty   the fit of the uncertainty model
+model_card    the command that adds measured figures and writes the card
+"""

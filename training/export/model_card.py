@@ -1,6 +1,7 @@
-"""Put measured figures into a model folder: ``python -m training.export.model_card --model DIR --report FOLDER/report.json``.
+"""Put measured figures into a model folder: ``python -m training.export.model_card --model DIR --report FILE``.
 
-The report comes from `training.evaluation`; model.json gets its overall figures, README.md the model card.
+The report is the report.json of `training.evaluation`. Its overall figures go into model.json, and README.md becomes
+the model card.
 """
 
 from __future__ import annotations
@@ -14,7 +15,7 @@ from typing import Any
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.network import ModelConfig
-from crfnet_core.statistics import STATISTICS
+from crfnet_core.statistics import LENGTH
 from training.data.scenes import VALIDATION_SCENES
 from training.evaluation import paper
 from training.evaluation.baselines import GAMMA
@@ -22,12 +23,12 @@ from training.evaluation.markdown_tables import rows_of
 
 Table = dict[str, Any]
 
-#: What a card says before its figures, by what the network reads; the names in braces are filled in.
-CARDS = Path(__file__).with_name("model_card_templates")
+#: The introductions of the cards, one for each input of networks; the names in braces are filled in.
+TEMPLATES = Path(__file__).with_name("model_card_templates")
 
 ALL_CURVES = (
-    "All 201 DoRF curves are in training, so P0 below says how it does on new photographs of known responses, and the"
-    " real\nphotographs how it does on new cameras."
+    "All 201 DoRF curves are in training. So P0 below tells the accuracy on new photographs of known responses, and the"
+    " real\nphotographs tell the accuracy on new cameras."
 )
 
 HELD_OUT_CURVES = (
@@ -39,45 +40,45 @@ def introduction(folder: Path, config: ModelConfig) -> str:
     """Return what the card says before its figures."""
     held_out = len(config.training.get("held_out_curves", ()))
     return (
-        (CARDS / f"{config.input_name}.md")
+        (TEMPLATES / f"{config.input_name}.md")
         .read_text()
         .format(
             **asdict(config),
             **asdict(config.uncertainty_model),
             size=(folder / "model.onnx").stat().st_size / 1e6,
-            statistics=STATISTICS,
-            calibration_scenes=VALIDATION_SCENES,
+            statistics=LENGTH,
+            scenes=VALIDATION_SCENES,
             curves=HELD_OUT_CURVES.format(count=held_out) if held_out else ALL_CURVES,
         )
     )
 
 
-def flat(protocol: Table, model: str, *, photographs: int) -> dict[str, float]:
-    """Return a protocol's figures of one model and of gamma 2.2, without their intervals, for model.json."""
+def overall_figures(protocol: Table, model: str, *, photographs: int) -> dict[str, float]:
+    """Return the figures of one model and of gamma 2.2 in a protocol, without intervals, for model.json."""
     own, gamma = protocol["estimators"][model], protocol["estimators"][GAMMA]
-    figures = {name: figure["value"] for name, figure in own.items()}
+    figures: dict[str, float] = {name: figure["value"] for name, figure in own.items()}
     figures |= {f"{error} {GAMMA}": gamma[f"{error} mean"]["value"] for error in ("E_est", "E_lin")}
-    return {"photographs": photographs} | dict(sorted(figures.items()))
+    return {"photographs": photographs, **dict(sorted(figures.items()))}
 
 
 def accuracy(report: Table, model: str) -> dict[str, dict[str, float]]:
-    """Return the figures of P0, P2 and P4 (cameras of grade A and B) for model.json, where they were measured."""
-    found = {}
+    """Return the figures of those of P0, P2 and P4 (cameras of grade A and B) that were measured, for model.json."""
+    figures: dict[str, dict[str, float]] = {}
     for name in ("P0", "P2", "P4"):
         if name not in report:
             continue
         part = report[name]["trusted"] if name == "P4" else report[name]
         trust = report["P5"][name][model]
-        found[name] = flat(part, model, photographs=part["photographs"]) | {
+        figures[name] = overall_figures(part, model, photographs=part["photographs"]) | {
             "uncertainty mean": trust["mean uncertainty"],
             "uncertainty rank correlation": trust["rank correlation"],
             "band coverage": trust["band coverage"],
         }
-    return found
+    return figures
 
 
-def card(folder: Path, config: ModelConfig, report: Table) -> str:
-    """Return the model card."""
+def card_text(folder: Path, config: ModelConfig, report: Table) -> str:
+    """Return the text of the model card."""
     protocols = config.accuracy
     rows = [
         [name, *(f"{figures[name]:g}" for figures in protocols.values())] for name in next(iter(protocols.values()))
@@ -97,7 +98,7 @@ def card(folder: Path, config: ModelConfig, report: Table) -> str:
 
 
 def _cameras(report: Table, model: str) -> list[str]:
-    """Return the table of the real cameras, if they were measured."""
+    """Return the table of the real cameras, or nothing if they were not measured."""
     if "P4" not in report:
         return []
     rows = []
@@ -109,12 +110,12 @@ def _cameras(report: Table, model: str) -> list[str]:
 
 
 def checked_report(path: Path, config: ModelConfig) -> Table:
-    """Return a report that holds figures of this very model.
+    """Return the report, which must hold figures of this very model.
 
     Raises
     ------
     CRFNetError
-        If it is of another model, or of bundled material, or lacks P0.
+        If it is of another model, was measured on the bundled scenes, or lacks P0.
     """
     report: Table = json.loads(path.read_text())
     found = report["models"].get(config.name, {}).get("sha256")
@@ -126,7 +127,7 @@ def checked_report(path: Path, config: ModelConfig) -> Table:
 
 
 def main() -> None:
-    """Write the figures."""
+    """Write the figures into model.json and README.md."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--model", type=Path, required=True, help="the model's folder")
     parser.add_argument("--report", type=Path, required=True, help="report.json of training.evaluation")
@@ -138,7 +139,7 @@ def main() -> None:
         raise SystemExit(str(problem)) from None
     config = replace(config, accuracy=accuracy(report, config.name))
     config.write(options.model / "model.json")
-    text = card(options.model, config, report)
+    text = card_text(options.model, config, report)
     atomic_write_text(options.model / "README.md", text, overwrite=True)
     print(text)
 

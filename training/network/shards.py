@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields
+from enum import IntEnum
 from functools import cache
 from pathlib import Path
 
@@ -16,42 +17,83 @@ from tqdm import tqdm
 from crfnet_core.files import atomic_write
 from crfnet_core.statistics import window_statistics
 from training.data.curves import CurveSource, read_base_curves, read_dorf
+from training.data.manifest import CURVE_FILES, training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
+from training.provenance import record_making
 from training.synthesis.camera import reference_luminance
 from training.synthesis.photographs import PhotographSource
 
-#: Photographs of one shard file.
+#: Photographs in a shard file.
 SHARD = 500
 
-#: Every how many-th sample of a response is kept as the target.
+#: Every so many-th sample of a response is kept as the target: 128 of 1024.
 TARGET_STRIDE = 8
 
-#: Statistics are kept as float16 in units of this many samples.
+#: Statistics are kept as float16, in units of this many samples.
 UNIT = 256
 
-#: Share of photographs whose response is of the in-camera family; the others are of DoRF.
-CAMERA_SHARE = 0.45
+#: Fraction of the photographs whose response is of the in-camera family; the others' are of DoRF.
+CAMERA_FRACTION = 0.45
 
-#: The sets of responses: DoRF without and with the curves held out of P2, and in-camera curves.
-KEPT, HELD_OUT, IN_CAMERA = 0, 1, 2
+
+class CurveSet(IntEnum):
+    """The sets of responses: DoRF without the curves that P2 holds out, these curves, and in-camera curves."""
+
+    DORF = 0
+    HELD_OUT = 1
+    IN_CAMERA = 2
+
+
+@dataclass(frozen=True)
+class Shards:
+    """Photographs as the training reads them.
+
+    Parameters
+    ----------
+    statistics : Tensor, float16, shape (P, 4, LENGTH)
+        Of the windows, in `UNIT`s.
+    curves : Tensor, float32, shape (P, 128)
+        Responses, every `TARGET_STRIDE`-th sample.
+    curve_sets, folds : Tensor, int8, shape (P,)
+        `CurveSet` of the response, and fold of the scenes.
+    """
+
+    statistics: Tensor
+    curves: Tensor
+    curve_sets: Tensor
+    folds: Tensor
+
+    def only(self, chosen: Tensor) -> Shards:
+        """Return the photographs where `chosen`, bool (P,), is true."""
+        return Shards(*(getattr(self, field.name)[chosen] for field in fields(self)))
+
+    def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
+        """Return statistics, float32 (B, 4, LENGTH), and responses (B, 128) of photographs."""
+        return self.statistics[rows].float() * UNIT, self.curves[rows]
 
 
 @cache
 def photograph_source(data: Path, split: str) -> PhotographSource:
     """Return the source of a split's photographs; the exposure always comes from the training scenes."""
-    dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
-    held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
-    bases = tuple(read_base_curves(data / "camera_curves" / "base_curves.csv").values())
-    sets = (
-        CurveSource(dorf[~held_out], (), camera_share=0),
-        CurveSource(dorf[held_out], (), camera_share=0),
-        CurveSource(dorf, bases, camera_share=1),
-    )
-    of_dorf = 1 - CAMERA_SHARE
-    shares = (of_dorf * float((~held_out).mean()), of_dorf * float(held_out.mean()), CAMERA_SHARE)
+    dorf_file, base_curves_file = (data / name for name in CURVE_FILES)
+    dorf = read_dorf(dorf_file)
+    is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
+    bases = tuple(read_base_curves(base_curves_file).values())
+    sets = {
+        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
+        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
+        CurveSet.IN_CAMERA: CurveSource(dorf, bases, camera_fraction=1),
+    }
+    of_dorf, held_out = 1 - CAMERA_FRACTION, float(is_held_out.mean())
+    fractions = {
+        CurveSet.DORF: of_dorf * float((~is_held_out).mean()),
+        CurveSet.HELD_OUT: of_dorf * held_out,
+        CurveSet.IN_CAMERA: CAMERA_FRACTION,
+    }
     luminance = reference_luminance(read_scenes(data / "linear", "train"))
-    return PhotographSource(read_scenes(data / "linear", split), sets, shares, luminance)
+    scenes = read_scenes(data / "linear", split)
+    return PhotographSource(scenes, tuple(sets.values()), tuple(fractions.values()), luminance)
 
 
 def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
@@ -59,7 +101,7 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
 
     Its photographs depend only on the split and the number: a run can stop and go on, on any number of processes.
     """
-    path = out / f"{split}_{number:04d}.npz"
+    path = shard_path(out, split, number)
     if path.exists():
         return path
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
@@ -78,31 +120,30 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     return path
 
 
-@dataclass(frozen=True)
-class Shards:
-    """Photographs: statistics, float16 (P, 4, STATISTICS) in `UNIT`s, responses (P, 128), curve sets, folds (P,)."""
-
-    statistics: Tensor
-    curves: Tensor
-    curve_sets: Tensor
-    folds: Tensor
-
-    def only(self, chosen: Tensor) -> Shards:
-        """Return the photographs where `chosen`, bool (P,), is true."""
-        return Shards(*(getattr(self, field.name)[chosen] for field in fields(self)))
-
-    def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
-        """Return statistics, float32 (B, 4, STATISTICS), and responses (B, 128), of the photographs in `rows`."""
-        return self.statistics[rows].float() * UNIT, self.curves[rows]
+def shard_path(folder: Path, split: str, number: int) -> Path:
+    """Return the path of a shard file."""
+    return folder / f"{split}_{number:04d}.npz"
 
 
-def read_shards(folder: Path, split: str) -> Shards:
-    """Return all photographs of a split that are there."""
-    shards = [np.load(path) for path in sorted(folder.glob(f"{split}_*.npz"))]
-    if not shards:
+def shard_files(folder: Path, split: str) -> list[Path]:
+    """Return the shard files of a split, sorted.
+
+    Raises
+    ------
+    FileNotFoundError
+        If there are none.
+    """
+    files = sorted(folder.glob(f"{split}_*.npz"))
+    if not files:
         raise FileNotFoundError(
             f"{folder}: no shards of the split {split}; run python -m training.network.shards first"
         )
+    return files
+
+
+def read_shards(folder: Path, split: str) -> Shards:
+    """Return all photographs of a split that are there; FileNotFoundError if there are none."""
+    shards = [np.load(path) for path in shard_files(folder, split)]
     parts = (np.concatenate([shard[field.name] for shard in shards]) for field in fields(Shards))
     return Shards(*map(torch.from_numpy, parts))
 
@@ -117,7 +158,11 @@ def main() -> None:
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    numbers = range(-(-options.photographs // SHARD))
+    numbers = [
+        n for n in range(-(-options.photographs // SHARD)) if not shard_path(options.out, options.split, n).exists()
+    ]
+    if numbers:
+        record_making(options.out, options.split, training_digest(options.data))
     with ProcessPoolExecutor(options.workers) as pool:
         jobs = [pool.submit(make_shard, options.data, options.out, options.split, n) for n in numbers]
         for job in tqdm(jobs, unit="shard"):

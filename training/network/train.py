@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import csv
-import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -12,14 +11,15 @@ import torch
 from torch import Tensor
 from tqdm import tqdm
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.files import atomic_write
+from training.network.loss import CurveLoss
 from training.network.model import NetworkConfig, PhotographNet
-from training.network.shards import HELD_OUT, TARGET_STRIDE, Shards, read_shards
+from training.network.shards import CurveSet, Shards, read_shards, shard_files
+from training.provenance import data_record, record_run
 from training.synthesis.photographs import FOLDS
 
-#: Weights, beside the loss of the photographs' responses, of that of single windows and of the expected errors.
-WINDOW_WEIGHT, EXPECTED_ERROR_WEIGHT = 0.3, 0.1
+#: Largest norm of the gradient of a step.
+CLIP = 1.0
 
 
 @dataclass(frozen=True)
@@ -28,12 +28,18 @@ class TrainingConfig:
 
     Parameters
     ----------
+    epochs, batch : int
+        Passes over the photographs, and photographs of a step.
+    learning_rate, weight_decay : float
+        The highest learning rate of the cycle, and the decay of AdamW.
     all_windows : float
-        Share of training photographs seen with all their windows; of the others, some are left out at random.
+        Fraction of the training photographs seen with all their windows; of the others, some are left out at random.
     without_held_out : bool
-        Whether to leave out the photographs whose response is near a curve held out of P2.
+        Whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds out.
     without_fold : int, optional
-        The fold of training scenes to leave out and to validate on, instead of on the validation scenes.
+        The fold of the training scenes to leave out and to validate on, in place of the validation scenes.
+    seed : int
+        Of the initial weights and of the order of the photographs.
     """
 
     epochs: int = 12
@@ -47,8 +53,8 @@ class TrainingConfig:
 
 
 @dataclass
-class Progress:
-    """Everything that a run needs to go on from where it stopped."""
+class TrainingState:
+    """All that a run needs to go on from where it stopped."""
 
     net: PhotographNet
     optimizer: torch.optim.Optimizer
@@ -58,66 +64,50 @@ class Progress:
     def save(self, path: Path) -> None:
         """Write the checkpoint, whole or not at all."""
         parts = {"net": self.net, "optimizer": self.optimizer, "schedule": self.schedule}
-        state = {name: part.state_dict() for name, part in parts.items()}
+        entries = {name: part.state_dict() for name, part in parts.items()}
         with atomic_write(path, overwrite=True) as temporary:
-            torch.save(state | {"epoch": self.epoch}, temporary)
+            torch.save(entries | {"epoch": self.epoch}, temporary)
 
     def resume(self, path: Path) -> None:
         """Go on from a checkpoint."""
-        state = torch.load(path, weights_only=True)
-        self.net.load_state_dict(state["net"])
-        self.optimizer.load_state_dict(state["optimizer"])
-        self.schedule.load_state_dict(state["schedule"])
-        self.epoch = state["epoch"]
-
-
-class CurveLoss:
-    """The estimation error itself, and the likelihood of the error that the network expects."""
-
-    def __init__(self) -> None:
-        basis = EmorBasis.load()
-        self.mean = torch.from_numpy(basis.mean[::TARGET_STRIDE]).float()
-        self.components = torch.from_numpy(basis.components[:, ::TARGET_STRIDE]).float()
-
-    def errors(self, weights: Tensor, curves: Tensor) -> Tensor:
-        """Return E_est, shape (...), of weights (..., 11) against responses (..., 128)."""
-        squares = (self.mean + weights.float() @ self.components - curves) ** 2
-        return (squares.sum(dim=-1) * TARGET_STRIDE + 1e-6).sqrt()
-
-    def __call__(self, predictions: tuple[Tensor, Tensor, Tensor, Tensor], present: Tensor, curves: Tensor) -> Tensor:
-        """Return the loss; an exponential distribution of mean exp(log_error) models every error."""
-        window_weights, window_log_errors, weights, log_errors = predictions
-        windows = self._with_likelihood(window_weights, window_log_errors.float(), curves[:, None])
-        photographs = self._with_likelihood(weights, log_errors.float(), curves)
-        return photographs.mean() + WINDOW_WEIGHT * windows[present].mean()
-
-    def _with_likelihood(self, weights: Tensor, log_errors: Tensor, curves: Tensor) -> Tensor:
-        """Return errors plus the weighted negative log likelihood of the expected ones."""
-        errors = self.errors(weights, curves)
-        return errors + EXPECTED_ERROR_WEIGHT * (errors.detach() * (-log_errors).exp() + log_errors)
+        entries = torch.load(path, weights_only=True)
+        self.net.load_state_dict(entries["net"])
+        self.optimizer.load_state_dict(entries["optimizer"])
+        self.schedule.load_state_dict(entries["schedule"])
+        self.epoch = entries["epoch"]
 
 
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig) -> Path:
-    """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint."""
-    photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
-    if config.without_held_out:
-        photographs, held_out = (part.only(part.curve_sets != HELD_OUT) for part in (photographs, held_out))
-    if config.without_fold is not None:
-        left_out = photographs.folds == config.without_fold
-        photographs, held_out = photographs.only(~left_out), photographs.only(left_out)
-    progress = _start(network, config, len(photographs.curves))
-    run.mkdir(parents=True, exist_ok=True)
-    settings = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.curves)}
-    (run / "config.json").write_text(json.dumps(settings, indent=2) + "\n")
+    """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
+
+    Parameters
+    ----------
+    shards : Path
+        Folder written by `training.network.shards`.
+    run : Path
+        Folder of run.json, log.csv (epoch, training loss, E_est of validation windows and photographs) and last.pt.
+    config, network
+        The recipe and the sizes of the network.
+
+    Raises
+    ------
+    SystemExit
+        If `run` holds a run of another recipe or on other shards.
+    """
+    photographs, held_out = _split(shards, config)
+    files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
+    recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.curves)}
+    record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start="random weights")
+    state = _start(network, config, len(photographs.curves))
     if (run / "last.pt").exists():
-        progress.resume(run / "last.pt")
+        state.resume(run / "last.pt")
     loss = CurveLoss()
-    while progress.epoch < config.epochs:
-        train_loss = _train_epoch(progress, loss, photographs, config)
-        window_error, error = validation_errors(progress.net, loss, held_out)
+    while state.epoch < config.epochs:
+        train_loss = _train_epoch(state, loss, photographs, config)
+        window_error, error = validation_errors(state.net, loss, held_out)
         with (run / "log.csv").open("a", newline="") as file:
-            csv.writer(file).writerow([progress.epoch, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
-        progress.save(run / "last.pt")
+            csv.writer(file).writerow([state.epoch, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
+        state.save(run / "last.pt")
     return run / "last.pt"
 
 
@@ -134,40 +124,51 @@ def validation_errors(net: PhotographNet, loss: CurveLoss, shards: Shards) -> tu
     return float(torch.cat(windows).mean()), float(torch.cat(photographs).mean())
 
 
-def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> Progress:
+def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
+    """Return the photographs to train on and those to validate on, as the recipe says."""
+    photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
+    if config.without_held_out:
+        photographs, held_out = (part.only(part.curve_sets != CurveSet.HELD_OUT) for part in (photographs, held_out))
+    if config.without_fold is not None:
+        is_left_out = photographs.folds == config.without_fold
+        photographs, held_out = photographs.only(~is_left_out), photographs.only(is_left_out)
+    return photographs, held_out
+
+
+def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> TrainingState:
     """Return an untrained network with its optimizer and schedule."""
     torch.manual_seed(config.seed)
     net = PhotographNet(network)
     optimizer = torch.optim.AdamW(net.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
     steps = config.epochs * (photographs // config.batch)
     schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, config.learning_rate, total_steps=steps, pct_start=0.15)
-    return Progress(net, optimizer, schedule)
+    return TrainingState(net, optimizer, schedule)
 
 
-def _train_epoch(progress: Progress, loss: CurveLoss, shards: Shards, config: TrainingConfig) -> float:
+def _train_epoch(state: TrainingState, loss: CurveLoss, shards: Shards, config: TrainingConfig) -> float:
     """Run one epoch, in an order that depends on the seed and the epoch only, and return the mean loss."""
-    torch.manual_seed(config.seed * 1000 + progress.epoch)
+    torch.manual_seed(config.seed * 1000 + state.epoch)
     order = torch.randperm(len(shards.curves))
     batches = order[: len(order) // config.batch * config.batch].split(config.batch)
     total = 0.0
-    progress.net.train()
-    for rows in tqdm(batches, desc=f"epoch {progress.epoch + 1}/{config.epochs}", leave=False, disable=None):
+    state.net.train()
+    for rows in tqdm(batches, desc=f"epoch {state.epoch + 1}/{config.epochs}", leave=False, disable=None):
         statistics, curves = shards.batch(rows)
-        present = _some_windows(statistics.shape[:2], config.all_windows)
+        present = _random_windows(statistics.shape[:2], config.all_windows)
         with torch.autocast("cpu", torch.bfloat16):
-            predictions = progress.net(statistics, present)
+            predictions = state.net(statistics, present)
         value = loss(predictions, present, curves)
-        progress.optimizer.zero_grad()
+        state.optimizer.zero_grad()
         value.backward()
-        torch.nn.utils.clip_grad_norm_(progress.net.parameters(), 1.0)
-        progress.optimizer.step()
-        progress.schedule.step()
+        torch.nn.utils.clip_grad_norm_(state.net.parameters(), CLIP)
+        state.optimizer.step()
+        state.schedule.step()
         total += float(value.detach())
-    progress.epoch += 1
+    state.epoch += 1
     return total / len(batches)
 
 
-def _some_windows(shape: torch.Size, all_windows: float) -> Tensor:
+def _random_windows(shape: torch.Size, all_windows: float) -> Tensor:
     """Return which windows of each photograph are present, bool (B, K): all of them, or 1 to K at random."""
     count = torch.where(torch.rand(shape[0]) < all_windows, shape[1], torch.randint(1, shape[1] + 1, (shape[0],)))
     return torch.rand(*shape).argsort(dim=1) < count[:, None]

@@ -1,1 +1,8 @@
-"""Photographs made of scene-linear light: the camera, the scenes seen by it, the demo's plate."""
+"""Simulated photographs of scene-linear light.
+
+camera        the camera: sensor light, exposure, noise, response, 8 bits, JPEG
+resampling    windows of a scene at any angle and scale
+augmentation  other light, colours and compositions
+photographs   training photographs, made with all three
+demo_plate    the bundled plate of known response
+"""

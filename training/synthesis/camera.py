@@ -1,26 +1,55 @@
-"""Photographs that a camera with a known response would have taken of a linear scene."""
+"""The simulated camera: photographs that a camera with a known response would have taken of scene-linear light.
+
+From the scene to the file: `sensor_light` (white balance, defocus, resolution), exposure, noise of the sensor, the
+response, sharpening and grain, 8-bit rounding, JPEG (`simulate_capture`). `render_photo` returns the result as the
+estimator reads it.
+"""
 
 from __future__ import annotations
 
 import io
 from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d
 
-from training.data.scenes import LUMINANCE, Scene
+from crfnet_core.photo import Photo
+from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
+from training.data.scenes import LUMINANCE, Scene, dithered
 
-#: Mean brightness that automatic exposure aims at.
+#: Mean brightness that the automatic exposure aims at.
 TARGET_BRIGHTNESS = 0.45
 
 #: Factors on the automatic exposure of a test photograph (CRF-net paper, Sec. 3.3: s_crf +- 0.4).
 EXPOSURE_FACTORS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
+#: Rows captured at a time where no step looks at neighbouring samples: the largest photographs then fit into memory.
+ROWS_AT_A_TIME = 512
+
 
 @dataclass(frozen=True)
 class Capture:
-    """What happens between the scene's light and the file; zeros and None leave it out."""
+    """What happens between the exposed light and the file, beside the response; zeros and None leave a step out.
+
+    Parameters
+    ----------
+    shot_noise : float
+        Variance of the sensor's noise at irradiance 1, where the sensor clips; it is proportional to the irradiance.
+    read_noise : float
+        Standard deviation of the sensor's noise that does not depend on the irradiance.
+    blur : float
+        Standard deviation, in samples, of the Gaussian that blurs the irradiance.
+    sharpening : float
+        Weight of the unsharp mask that is added to the brightness.
+    grain : float
+        Standard deviation of the Gaussian noise that is added to the brightness, in [0, 1].
+    jpeg_quality : int, optional
+        Quality of the JPEG compression, 1 to 95 or more; None for none.
+    subsampled : bool
+        Whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4).
+    """
 
     shot_noise: float = 0.0
     read_noise: float = 0.0
@@ -32,7 +61,7 @@ class Capture:
 
     @classmethod
     def draw(cls, rng: np.random.Generator) -> Capture:
-        """Return the capture of a random camera: most leave some noise and compress."""
+        """Return the capture of a random camera; most have some noise and compress."""
         return cls(
             shot_noise=10 ** rng.uniform(-5, -3) if rng.random() < 0.7 else 0.0,
             read_noise=10 ** rng.uniform(-4, -2.3) if rng.random() < 0.7 else 0.0,
@@ -43,8 +72,15 @@ class Capture:
             subsampled=bool(rng.random() < 0.5),
         )
 
+    @property
+    def splits_into_rows(self) -> bool:
+        """Whether rows captured one after the other equal the whole: no neighbours, and one noise at most."""
+        uses_neighbours = self.blur or self.sharpening or self.jpeg_quality is not None
+        noises = bool(self.shot_noise or self.read_noise) + bool(self.grain)
+        return not uses_neighbours and noises < 2
 
-def automatic_exposure(curve: np.ndarray, luminance: np.ndarray) -> float:
+
+def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
     """Return s_crf: the exposure at which scenes of this luminance have the mean brightness `TARGET_BRIGHTNESS`.
 
     Parameters
@@ -52,55 +88,152 @@ def automatic_exposure(curve: np.ndarray, luminance: np.ndarray) -> float:
     curve : ndarray, shape (1024,)
         The response.
     luminance : ndarray, shape (N,)
-        Luminances of the training scenes, each scene scaled to a geometric mean of 1; found once, so that s_crf
-        belongs to the curve and not to the photograph.
+        Luminances of the training scenes, each scene scaled to a geometric mean of 1. They are the same for every
+        photograph, so s_crf belongs to the response and not to the photograph.
     """
     low, high = -12.0, 6.0
     for _ in range(24):
         middle = (low + high) / 2
-        bright = responded(luminance * np.float32(2**middle), curve).mean() > TARGET_BRIGHTNESS
-        low, high = (low, middle) if bright else (middle, high)
+        is_bright = apply_response(luminance * np.float32(2**middle), curve).mean() > TARGET_BRIGHTNESS
+        low, high = (low, middle) if is_bright else (middle, high)
     return float(2**low)
 
 
-def reference_luminance(scenes: list[Scene], *, each: int = 64) -> np.ndarray:
-    """Return luminances of evenly spread samples of the scenes, for `automatic_exposure`."""
-    picks = [(scene.pixels.reshape(-1, 3) @ LUMINANCE) for scene in scenes]
-    return np.concatenate([pick[:: max(1, len(pick) // each)][:each] for pick in picks])
+def reference_luminance(scenes: list[Scene], *, each: int = 64) -> Float32Array:
+    """Return the luminance of `each` evenly spread samples of every scene, for `automatic_exposure`."""
+    luminances = [(scene.pixels.reshape(-1, 3) @ LUMINANCE) for scene in scenes]
+    return np.concatenate([luminance[:: max(1, len(luminance) // each)][:each] for luminance in luminances])
 
 
-def responded(irradiance: np.ndarray, curve: np.ndarray) -> np.ndarray:
-    """Return brightness of irradiance clipped to [0, 1], float32, linear between the curve's samples."""
-    table = curve.astype(np.float32)
-    place = np.clip(irradiance, 0, 1) * np.float32(len(table) - 1)
-    below = np.minimum(place.astype(np.int32), len(table) - 2)
-    return table[below] + (place - below) * (table[below + 1] - table[below])
+def sensor_light(
+    scene: Scene,
+    rng: np.random.Generator,
+    *,
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0),
+    is_gray: bool = False,
+    blur: float = 0.0,
+    upsampling: int = 1,
+) -> Float32Array:
+    """Return the linear light that reaches the sensor, before exposure, float32 (H, W, 3).
+
+    Parameters
+    ----------
+    scene : Scene
+        The light; not changed. A panorama is dithered first (see `training.data.scenes.dithered`).
+    rng : Generator
+        Draws the dither.
+    gains : tuple of float
+        White balance: factors on red, green and blue, scaled so that a neutral keeps its luminance.
+    is_gray : bool
+        Whether all channels hold the luminance.
+    blur : float
+        Variance, in squared pixels of the scene, of a Gaussian.
+    upsampling : int
+        How many times the scene is enlarged along each side, by cubic interpolation.
+    """
+    light = dithered(scene.pixels, rng) if scene.is_panorama else scene.pixels
+    light = light * balanced_gains(gains)
+    if is_gray:
+        light = np.repeat((light @ LUMINANCE)[:, :, None], 3, axis=2)
+    if blur:
+        light = blurred(light, float(np.sqrt(blur)))
+    return enlarged(light, upsampling)
 
 
-def photographed(irradiance: np.ndarray, curve: np.ndarray, capture: Capture, rng: np.random.Generator) -> np.ndarray:
-    """Return the 8-bit photographs, uint8 (..., H, W, 3), of exposed irradiance (..., H, W, 3)."""
+def render_photo(
+    light: Float32Array,
+    curve: Float64Array,
+    exposure: float,
+    rng: np.random.Generator,
+    *,
+    name: str,
+    capture: Capture | None = None,
+    is_gray: bool = False,
+) -> Photo:
+    """Return the photograph of the light of `sensor_light`, as the estimator reads it from a file.
+
+    Parameters
+    ----------
+    light : ndarray, float32, shape (H, W, 3)
+        Linear light; not changed.
+    curve : ndarray, shape (1024,)
+        The response of the camera.
+    exposure : float
+        Irradiance per unit of light; irradiance above 1 clips.
+    rng : Generator
+        Draws the noise.
+    name : str
+        The photograph's name.
+    capture : Capture, optional
+        The other steps; by default only 8-bit rounding follows the response.
+    is_gray : bool
+        Whether all channels of the photograph are equal.
+    """
+    capture = capture or Capture()
+    rows = ROWS_AT_A_TIME if capture.splits_into_rows else len(light)
+    scale = np.float32(exposure)
+    parts = [simulate_capture(light[y : y + rows] * scale, curve, capture, rng) for y in range(0, len(light), rows)]
+    pixels = np.divide(np.concatenate(parts), np.float32(255), dtype=np.float32)
+    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(name))
+
+
+def simulate_capture(
+    irradiance: Float32Array, curve: Float64Array, capture: Capture, rng: np.random.Generator
+) -> Uint8Array:
+    """Return the 8-bit photographs, uint8 (..., H, W, 3), of exposed irradiance (..., H, W, 3).
+
+    In this order: blur, shot and read noise, response, sharpening, grain, rounding, JPEG.
+    """
     irradiance = blurred(irradiance, capture.blur) if capture.blur else irradiance
     if capture.shot_noise or capture.read_noise:
-        spread = np.sqrt(capture.shot_noise * irradiance + capture.read_noise**2)
-        irradiance = irradiance + spread * rng.standard_normal(irradiance.shape, dtype=np.float32)
-    brightness = responded(irradiance, curve)
+        deviation = np.sqrt(capture.shot_noise * irradiance + capture.read_noise**2)
+        irradiance = irradiance + deviation * rng.standard_normal(irradiance.shape, dtype=np.float32)
+    brightness = apply_response(irradiance, curve)
     if capture.sharpening:
         brightness = brightness + capture.sharpening * (brightness - blurred(brightness, 0.8))
     if capture.grain:
         brightness = brightness + capture.grain * rng.standard_normal(brightness.shape, dtype=np.float32)
     codes = np.rint(np.clip(brightness, 0, 1) * 255).astype(np.uint8)
-    return codes if capture.jpeg_quality is None else compressed(codes, capture.jpeg_quality, capture.subsampled)
+    return codes if capture.jpeg_quality is None else jpeg_compressed(codes, capture.jpeg_quality, capture.subsampled)
 
 
-def compressed(codes: np.ndarray, quality: int, subsampled: bool) -> np.ndarray:
+def apply_response(irradiance: Float32Array, curve: Float64Array) -> Float32Array:
+    """Return the brightness f(E) of irradiance clipped to [0, 1], float32, linear between the curve's samples."""
+    table = curve.astype(np.float32)
+    position = np.clip(irradiance, 0, 1) * np.float32(len(table) - 1)
+    below = np.minimum(position.astype(np.int32), len(table) - 2)
+    return table[below] + (position - below) * (table[below + 1] - table[below])
+
+
+def jpeg_compressed(codes: Uint8Array, quality: int, subsampled: bool) -> Uint8Array:
     """Return photographs after JPEG compression, uint8 (..., H, W, 3)."""
     if codes.ndim > 3:
-        return np.stack([compressed(photograph, quality, subsampled) for photograph in codes])
+        return np.stack([jpeg_compressed(photograph, quality, subsampled) for photograph in codes])
     file = io.BytesIO()
     Image.fromarray(codes).save(file, "JPEG", quality=quality, subsampling=2 if subsampled else 0)
     return np.asarray(Image.open(file).convert("RGB"))
 
 
-def blurred(pixels: np.ndarray, sigma: float) -> np.ndarray:
+def blurred(pixels: Float32Array, sigma: float) -> Float32Array:
     """Return pixels, shape (..., H, W, 3), under a Gaussian of `sigma` pixels."""
     return gaussian_filter1d(gaussian_filter1d(pixels, sigma, axis=-3, truncate=3), sigma, axis=-2, truncate=3)
+
+
+def balanced_gains(gains: tuple[float, float, float]) -> Float32Array:
+    """Return gains on red, green and blue, float32 (3,), scaled so that a neutral keeps its luminance."""
+    wanted = np.asarray(gains, dtype=np.float32)
+    return wanted / (wanted @ LUMINANCE)
+
+
+def enlarged(light: Float32Array, times: int) -> Float32Array:
+    """Return linear light enlarged by cubic interpolation, float32 (times H, times W, 3), nowhere negative."""
+    if times == 1:
+        return light
+    size = (light.shape[1] * times, light.shape[0] * times)
+    channels = [Image.fromarray(light[:, :, k]).resize(size, Image.Resampling.BICUBIC) for k in range(3)]
+    return np.maximum(np.stack([np.asarray(channel) for channel in channels], axis=2), 0)
+
+
+def code_counts(photo: Photo) -> IndexArray:
+    """Return how often each of the 256 codes of an 8-bit photograph occurs over all channels, shape (256,)."""
+    return np.bincount(np.rint(photo.pixels * 255).astype(np.uint8).ravel(), minlength=256)

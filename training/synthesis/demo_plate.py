@@ -2,9 +2,10 @@
 
     python -m training.synthesis.demo_plate <site-packages>/bpy/4.5/datafiles/studiolights/world/forest.exr
 
-The scene is one of Blender's studio lights (CC0, Greg Zaal's "Ninomaru Teien" at Poly Haven), cropped but never
-resampled: averaging would mix irradiance before the camera. The camera is simulated: exposure, photon and read
-noise, an in-camera-like response written down below, 8 bits, JPEG. The same source gives the same bytes.
+The scene is one of Blender's studio lights (CC0, Greg Zaal's "Ninomaru Teien" at Poly Haven). It is cropped but never
+resampled, because averaging would mix irradiance before the camera. The camera is simulated: exposure, shot and read
+noise, a response of the in-camera kind, 8 bits, JPEG. The same source gives the same bytes. This module does not use
+`training.synthesis.camera`, so the plate stays the same when training changes.
 """
 
 from __future__ import annotations
@@ -14,20 +15,18 @@ from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
-from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
-
-Floats = NDArray[np.float64]
+from crfnet_core.types import Float64Array, Uint8Array
 
 #: Rows and columns of the panorama (1024 x 512) that make the photograph, 672 x 378.
 ROWS, COLUMNS = range(84, 462), range(300, 972)
-#: Share of the values (in percent) below the sensor's clipping.
+#: Percentage of the values that lie below the clipping of the sensor.
 EXPOSED = 95.0
-#: Noise variance at irradiance E is SHOT * E + READ**2, with 1 at clipping: about ISO 400 of a full-frame camera.
+#: The variance of the noise at irradiance E is SHOT * E + READ**2, where 1 clips: about ISO 400 of a full-frame camera.
 SHOT, READ = 5e-5, 4e-4
 SEED = 2017
 JPEG_QUALITY = 95
@@ -36,11 +35,11 @@ JPEG_QUALITY = 95
 ROLL_OFF, CONTRAST = 2.0, 0.4
 
 
-def camera_response(irradiance: Floats) -> Floats:
+def camera_response(irradiance: Float64Array) -> Float64Array:
     """Return brightness f(E) of the simulated camera: roll-off, sRGB encoding, S-curve.
 
     With s = `ROLL_OFF`, k = `CONTRAST`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
-    f = (1 - k) v + k v^2 (3 - 2 v). It is nobody's measured curve, only of the kind that cameras have.
+    f = (1 - k) v + k v^2 (3 - 2 v). It is no measured curve, but of the kind that cameras have.
 
     Parameters
     ----------
@@ -52,7 +51,7 @@ def camera_response(irradiance: Floats) -> Floats:
     return (1 - CONTRAST) * encoded + CONTRAST * encoded**2 * (3 - 2 * encoded)
 
 
-def read_scene(studio_light: str | Path) -> Floats:
+def read_scene(studio_light: str | Path) -> Float64Array:
     """Return the linear scene, float64 (H, W, 3), any scale.
 
     Raises
@@ -63,18 +62,18 @@ def read_scene(studio_light: str | Path) -> Floats:
     image = oiio.ImageBuf(str(studio_light))
     if image.has_error or not image.initialized:
         raise PhotoError(f"{studio_light}: cannot be read; give the forest.exr of Blender's studio lights")
-    panorama: Floats = np.asarray(image.get_pixels(oiio.FLOAT), dtype=np.float64)
+    panorama: Float64Array = np.asarray(image.get_pixels(oiio.FLOAT), dtype=np.float64)
     return panorama[np.ix_(ROWS, COLUMNS, range(3))]
 
 
-def photograph(scene: Floats) -> NDArray[np.uint8]:
-    """Return what the simulated camera makes of a linear scene, uint8 (H, W, 3)."""
+def photograph(scene: Float64Array) -> Uint8Array:
+    """Return the photograph that the simulated camera takes of a linear scene, uint8 (H, W, 3)."""
     exposed = np.clip(scene / np.percentile(scene, EXPOSED), 0, 1)
     noise = np.random.default_rng(SEED).standard_normal(scene.shape) * np.sqrt(SHOT * exposed + READ**2)
     return np.rint(255 * camera_response(np.clip(exposed + noise, 0, 1))).astype(np.uint8)
 
 
-def write_photograph(path: Path, pixels: NDArray[np.uint8]) -> None:
+def write_photograph(path: Path, pixels: Uint8Array) -> None:
     """Write the JPEG, without chroma subsampling and without metadata that names the software.
 
     Raises

@@ -1,4 +1,4 @@
-"""Views of a scene at any angle and scale, so that few scenes give many windows."""
+"""Affine resampling: windows of a scene at any angle and scale, so that few scenes give many windows."""
 
 from __future__ import annotations
 
@@ -7,61 +7,76 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import affine_transform, gaussian_filter1d
 
+from crfnet_core.types import Float32Array, Float64Array, IndexArray
 from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import Scene
 
-#: Pixels of the scene per sample of the window, least and most: below 1 a window is as soft as a photograph whose
-#: lens does not resolve its pixels.
+#: Smallest and largest distance between samples, in pixels of the scene. Below 1 a window is as soft as a photograph
+#: whose lens does not resolve its pixels.
 SCALES = (0.55, 3.0)
 
 #: Standard deviation of the logarithm of the stretch along one axis.
 STRETCH = 0.12
 
-#: Blur before sampling, in units of the distance between samples, which keeps mixtures of light linear.
+#: Standard deviation of the Gaussian before sampling, in units of the distance between samples. It averages linear
+#: light, as a sensor does.
 PREFILTER = 0.45
+
+#: A thumbnail keeps every so many-th sample along both sides.
+THUMBNAIL_STEP = 4
 
 
 @dataclass(frozen=True)
-class View:
-    """Samples at `matrix` @ (row, column) around `centre`, in pixels of the scene; beyond its sides it is mirrored."""
+class AffineResampling:
+    """A window of 227 x 227 samples at center + matrix @ (row, column), mirrored beyond the sides of the scene.
+
+    Parameters
+    ----------
+    scene : Scene
+        The scene that is sampled.
+    matrix : ndarray, shape (2, 2)
+        From samples to pixels of the scene.
+    center : ndarray, shape (2,)
+        Row and column of the scene at the centre of the window.
+    """
 
     scene: Scene
-    matrix: np.ndarray
-    centre: np.ndarray
+    matrix: Float64Array
+    center: Float64Array
 
     @classmethod
-    def draw(cls, scene: Scene, rng: np.random.Generator) -> View:
-        """Return a view at a random place, angle, scale and stretch."""
+    def draw(cls, scene: Scene, rng: np.random.Generator) -> AffineResampling:
+        """Return a window at a random position, angle, scale and stretch."""
         scale, angle = float(np.exp(rng.uniform(*np.log(SCALES)))), rng.uniform(0, 2 * np.pi)
         stretch = np.exp(rng.normal(0, STRETCH))
-        turn = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
-        matrix = scale * turn @ np.diag([stretch, 1 / stretch])
+        rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
+        matrix = scale * rotation @ np.diag([stretch, 1 / stretch])
         return cls(scene, matrix, rng.uniform(0, scene.pixels.shape[:2]))
 
     @property
     def scale(self) -> float:
-        """Pixels of the scene per sample."""
+        """The distance between samples, in pixels of the scene."""
         return float(np.sqrt(abs(np.linalg.det(self.matrix))))
 
-    def window(self) -> np.ndarray:
+    def window(self) -> Float32Array:
         """Return the linear window, float32 (227, 227, 3)."""
         return self._sampled(1)
 
-    def glance(self) -> np.ndarray:
+    def thumbnail(self) -> Float32Array:
         """Return every fourth sample along both sides, not prefiltered, float32 (57, 57, 3)."""
-        return self._sampled(4)
+        return self._sampled(THUMBNAIL_STEP)
 
-    def _sampled(self, step: int) -> np.ndarray:
-        """Return every step-th sample."""
+    def _sampled(self, step: int) -> Float32Array:
+        """Return every step-th sample, bilinear between the pixels of the scene."""
         reach = np.abs(self.matrix) @ np.full(2, WINDOW_SIZE / 2) + 3 * max(1.0, self.scale)
-        first, last = np.floor(self.centre - reach).astype(int), np.ceil(self.centre + reach).astype(int)
+        first, last = np.floor(self.center - reach).astype(int), np.ceil(self.center + reach).astype(int)
         size = self.scene.pixels.shape[:2]
         rows, columns = (_mirrored(np.arange(first[k], last[k] + 1), size[k]) for k in (0, 1))
         light = self.scene.pixels[np.ix_(rows, columns)]
         if step == 1 and self.scale > 1:
             for axis in (0, 1):
                 light = gaussian_filter1d(light, PREFILTER * self.scale, axis=axis, truncate=2)
-        start = self.centre - first - self.matrix @ np.full(2, WINDOW_SIZE / 2)
+        start = self.center - first - self.matrix @ np.full(2, WINDOW_SIZE / 2)
         side = (WINDOW_SIZE - 1) // step + 1
         channels = [
             affine_transform(light[:, :, k], self.matrix * step, start, (side, side), order=1, mode="nearest")
@@ -70,7 +85,7 @@ class View:
         return np.stack(channels, axis=-1)
 
 
-def _mirrored(index: np.ndarray, size: int) -> np.ndarray:
+def _mirrored(index: IndexArray, size: int) -> IndexArray:
     """Return indices folded back into 0 .. size - 1 at both ends."""
     folded = index % (2 * size)
     return np.where(folded < size, folded, 2 * size - 1 - folded)

@@ -5,11 +5,22 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.scenes import LUMINANCE, Scene
-from training.evaluation.plan import CLEAN, COOL, Condition
-from training.synthesis.capture import balanced_gains, code_counts, enlarged, light_under, synthetic_photo, taken
+from training.synthesis.camera import (
+    ROWS_AT_A_TIME,
+    Capture,
+    balanced_gains,
+    code_counts,
+    enlarged,
+    render_photo,
+    sensor_light,
+    simulate_capture,
+)
 
 UNIFORM = np.linspace(0, 1, 1024)
 CURVE = UNIFORM ** (1 / 2.2)
+
+#: Gains of a white balance that is off.
+COOL = (0.6, 1.0, 1.7)
 
 
 @pytest.fixture
@@ -24,34 +35,46 @@ def scene(rng):
     return Scene("made", light.astype(np.float32), False)
 
 
-def photo_of(scene, condition, rng, exposure=0.2):
-    return taken(light_under(condition, scene, rng), CURVE, exposure, condition, "made", rng)
+def photo_of(scene, rng, exposure=0.2, **capture):
+    return render_photo(sensor_light(scene, rng), CURVE, exposure, rng, name="made", capture=Capture(**capture))
 
 
 def test_a_clean_photograph_is_the_rounded_response(scene, rng):
     expected = np.rint(255 * np.interp(0.2 * scene.pixels, UNIFORM, CURVE))
-    photo = photo_of(scene, CLEAN, rng)
+    photo = photo_of(scene, rng)
     assert np.abs(255 * photo.pixels - expected).max() <= 1
     assert (photo.bit_depth, photo.is_gray, photo.path.name) == (8, False, "made")
-    np.testing.assert_array_equal(photo.pixels, synthetic_photo(scene, CURVE, 0.2, rng).pixels)
 
 
-def test_the_factor_is_an_exposure(scene, rng):
-    bright = photo_of(scene, Condition("bright", factor=1.4), rng)
-    np.testing.assert_array_equal(bright.pixels, synthetic_photo(scene, CURVE, 0.2 * 1.4, rng).pixels)
+def test_twice_the_exposure_is_twice_the_light(scene, rng):
+    double = Scene("made", 2 * scene.pixels, False)
+    np.testing.assert_array_equal(photo_of(scene, rng, exposure=0.4).pixels, photo_of(double, rng).pixels)
+
+
+@pytest.mark.parametrize("capture", [Capture(), Capture(grain=0.01), Capture(shot_noise=1e-4, read_noise=1e-3)])
+def test_rows_captured_one_after_the_other_equal_the_whole(rng, capture):
+    light = rng.uniform(0, 1, (ROWS_AT_A_TIME + 40, 50, 3)).astype(np.float32)
+    photo = render_photo(light, CURVE, 1.0, np.random.default_rng(1), name="made", capture=capture)
+    whole = simulate_capture(light, CURVE, capture, np.random.default_rng(1))
+    assert capture.splits_into_rows
+    np.testing.assert_array_equal(np.rint(255 * photo.pixels), whole)
+
+
+def test_what_looks_at_neighbours_is_captured_as_a_whole():
+    for capture in (Capture(blur=1), Capture(sharpening=0.1), Capture(jpeg_quality=90), Capture(0.1, 0.1, grain=0.1)):
+        assert not capture.splits_into_rows
 
 
 def test_noise_has_its_variance_in_codes(rng):
     gray = Scene("gray", np.full((700, 300, 3), 0.5, np.float32), False)
-    condition = Condition("noise", noise=4.0)
-    codes = 255 * photo_of(gray, condition, rng, exposure=1).pixels
+    codes = 255 * photo_of(gray, rng, exposure=1, grain=2 / 255).pixels
     assert codes.var() == pytest.approx(4 + 1 / 12, rel=0.01)  # rounding adds a twelfth
     assert np.corrcoef(codes[:512, :, 0].ravel(), codes[:512, :, 1].ravel())[0, 1] == pytest.approx(0, abs=0.01)
 
 
 def test_gray_is_the_luminance_of_the_light(scene, rng):
-    condition = Condition("gray", is_gray=True)
-    photo, light = photo_of(scene, condition, rng), light_under(condition, scene, rng)
+    light = sensor_light(scene, rng, is_gray=True)
+    photo = render_photo(light, CURVE, 0.2, rng, name="made", is_gray=True)
     assert photo.is_gray
     assert (np.ptp(photo.pixels, axis=2) == 0).all()
     np.testing.assert_allclose(light[:, :, 0], scene.pixels @ LUMINANCE, rtol=1e-6)
@@ -76,33 +99,34 @@ def test_enlarging_is_cubic(rng):
 
 
 def test_blur_keeps_the_mean_and_smooths(scene, rng):
-    soft = light_under(Condition("blur", blur=4.0), scene, rng)
+    soft = sensor_light(scene, rng, blur=4.0)
     assert soft.mean() == pytest.approx(scene.pixels.mean(), rel=0.02)
     assert np.abs(np.diff(soft, axis=1)).mean() < np.abs(np.diff(scene.pixels, axis=1)).mean()
     dot = np.zeros((41, 41, 3), np.float32)
     dot[20, 20] = 1
-    spread = light_under(Condition("blur", blur=4.0), Scene("dot", dot, False), rng)[:, :, 0]
+    spread = sensor_light(Scene("dot", dot, False), rng, blur=4.0)[:, :, 0]
     assert (spread.sum(axis=0) * (np.arange(41) - 20) ** 2).sum() == pytest.approx(4, rel=0.05)
 
 
 def test_jpeg_is_lossy_and_lossier_at_low_quality(rng):
     noise = Scene("noise", rng.uniform(0, 1, (64, 64, 3)).astype(np.float32), False)
-    clean = photo_of(noise, CLEAN, rng, exposure=1).pixels
-    far = [
-        np.abs(photo_of(noise, Condition("j", jpeg_quality=q), rng, exposure=1).pixels - clean).mean() for q in (95, 50)
-    ]
+    clean = photo_of(noise, rng, exposure=1).pixels
+    far = [np.abs(photo_of(noise, rng, exposure=1, jpeg_quality=q).pixels - clean).mean() for q in (95, 50)]
     assert 0.01 < far[0] < far[1]
 
 
 def test_nothing_writes_into_the_scene(scene, rng):
     before = scene.pixels.copy()
-    for condition in (CLEAN, Condition("all", 0.8, 2, True, 1.0, 1.0, COOL, 75)):
-        photo_of(scene, condition, rng)
+    light = sensor_light(scene, rng, gains=COOL, is_gray=True, blur=1.0, upsampling=2)
+    for array in (scene.pixels, light):
+        kept = array.copy()
+        render_photo(array, CURVE, 0.2, rng, name="made", capture=Capture(1e-3, 1e-3, 1.0, 0.5, 0.01, 75))
+        np.testing.assert_array_equal(array, kept)
     np.testing.assert_array_equal(scene.pixels, before)
 
 
 def test_codes_are_counted_over_all_channels(scene, rng):
-    photo = photo_of(scene, CLEAN, rng)
+    photo = photo_of(scene, rng)
     counts = code_counts(photo)
     assert counts.sum() == photo.pixels.size
     assert counts[255] == (photo.pixels == 1).sum()

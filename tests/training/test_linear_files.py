@@ -1,0 +1,158 @@
+import csv
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
+
+from crfnet_core.errors import PhotoError
+from tests.helpers.linear_pictures import SWATCH, chart, ramp, swatch_means, write_dng, write_float
+from training.data.import_scenes import import_scene, main
+from training.data.linear_files import automatic_scale, linear_scene
+from training.data.scenes import area_averaged
+
+
+def pixels_of(path):
+    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
+
+
+def manifest(folder):
+    with (folder / "manifest.csv").open(newline="") as file:
+        return list(csv.DictReader(file))
+
+
+@pytest.fixture
+def out(tmp_path):
+    return tmp_path / "data" / "linear"
+
+
+@pytest.mark.parametrize(("camera", "pattern"), [("one", "RGGB"), ("two", "BGGR"), ("one", "GRBG")])
+def test_raw_grays_are_the_scene(tmp_path, out, camera, pattern):
+    scene = chart(ramp(1.0))
+    import_scene(write_dng(tmp_path / "ramp.dng", scene, camera=camera, pattern=pattern), out)
+    means = swatch_means(pixels_of(out / "ramp.exr"), SWATCH)
+    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
+
+
+def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
+    scene = chart(ramp(1.0))
+    import_scene(write_dng(tmp_path / "warm.dng", scene, light=(1.5, 1.0, 0.4)), out)
+    means = swatch_means(pixels_of(out / "warm.exr"), SWATCH)
+    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
+
+
+@pytest.mark.parametrize("camera", ["one", "two"])
+def test_raw_colours_are_the_scene_in_rec709(tmp_path, out, camera):
+    colours = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
+    scene = chart(colours)
+    import_scene(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
+    means = swatch_means(pixels_of(out / "colours.exr"), SWATCH)
+    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
+
+
+def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out):
+    values = []
+    for top in (0.45, 0.9, 1.8):  # LibRaw would by itself take 0.9 for white
+        import_scene(write_dng(tmp_path / f"top{top}.dng", chart(ramp(top))), out)
+        values.append(swatch_means(pixels_of(out / f"top{top}.exr"), SWATCH))
+    np.testing.assert_allclose(values[0][0, 0], 0.45, rtol=0.01)
+    dark = 5 / 65535  # LibRaw rounds down a few times
+    np.testing.assert_allclose(values[1], 2 * values[0], rtol=0.005, atol=dark)
+    np.testing.assert_array_equal(values[2][0, 0], [1, 1, 1])
+    np.testing.assert_allclose(values[2], np.minimum(1, 4 * values[0]), rtol=0.005, atol=2 * dark)
+
+
+def test_a_saturated_colour_clips_channel_by_channel_below_or_at_1(tmp_path, out):
+    import_scene(write_dng(tmp_path / "red.dng", chart([[4.0, 0.4, 0.2]])), out)
+    means = swatch_means(pixels_of(out / "red.exr"), SWATCH)[0, 0]
+    assert means[0] == 1
+    assert (means[1:] < 1).all()
+
+
+def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out, capsys):
+    scene = chart(ramp(1.0), rows=30, columns=40)  # 960 x 1280
+    path = write_dng(tmp_path / "large.dng", scene)
+    assert main([str(path), "--out", str(out), "--licence", "CC0"]) == 0
+    means = swatch_means(pixels_of(out / "large.exr"), SWATCH // 2)
+    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
+    assert manifest(out) == [
+        {
+            "file": "large.exr",
+            "kind": "photograph",
+            "width": "640",
+            "height": "480",
+            "source": "brought: large.dng",
+            "licence": "CC0",
+            "notes": "sensor white = 1; area-averaged 2x2 from 1280x960",
+        }
+    ]
+    assert capsys.readouterr().out.endswith(
+        "large.exr: photograph, 640 x 480, sensor white = 1; area-averaged 2x2 from 1280x960\n"
+    )
+
+
+def test_raw_stays_as_stored_whatever_its_orientation(tmp_path, out):
+    row = import_scene(write_dng(tmp_path / "turned.dng", chart(ramp(1.0)), orientation=6), out)
+    assert (row.width, row.height) == (320, 256)
+
+
+def test_the_same_file_gives_the_same_bytes(tmp_path):
+    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
+    contents = []
+    for folder in (tmp_path / "a", tmp_path / "b"):
+        import_scene(path, folder)
+        contents.append([(file.name, file.read_bytes()) for file in sorted(folder.iterdir())])
+    assert contents[0] == contents[1]
+    assert [name for name, _ in contents[0]] == ["manifest.csv", "ramp.exr"]
+    assert "DateTime" not in oiio.ImageBuf(str(tmp_path / "a" / "ramp.exr")).spec().serialize("text", "detailed")
+
+
+@pytest.mark.parametrize(
+    ("shape", "scale"), [((227, 900), 1), ((907, 4000), 1), ((908, 1000), 2), ((4000, 6000), 8), ((1361, 1361), 2)]
+)
+def test_automatic_scale(shape, scale):
+    assert automatic_scale(*shape) == scale
+
+
+def test_area_averaging_drops_the_incomplete_rest():
+    samples = np.arange(5 * 7).reshape(5, 7, 1).repeat(3, axis=2)
+    np.testing.assert_array_equal(area_averaged(samples, 2)[:, :, 1], [[4, 6, 8], [18, 20, 22]])
+
+
+def test_exr_is_scaled_by_a_power_of_two_without_negative_values(tmp_path):
+    light = np.full((240, 300, 3), 20.0)
+    light[0, 0] = [-5, np.nan, 3]
+    light[1, 1] = 1e8
+    pixels, notes = linear_scene(write_float(tmp_path / "a.exr", light))
+    assert pixels.dtype == np.float16
+    assert pixels[100, 100].tolist() == [0.15625] * 3  # 20 / 2**7
+    assert pixels[0, 0].tolist() == [0, 0, 3 / 128]
+    assert pixels[1, 1].tolist() == [65000 // 32 * 32] * 3  # the steps of half floats there
+    assert notes == ["scale=2^-7", "4.6e-06 negative samples set to 0", "1 px clipped at 65000 after scale"]
+
+
+def test_hdr_is_averaged_in_linear_light(tmp_path):
+    light = np.full((460, 460, 3), 0.25)
+    light[::2, ::2] = 1.0
+    pixels, notes = linear_scene(write_float(tmp_path / "a.hdr", light), scale=2)
+    np.testing.assert_array_equal(pixels, np.full((230, 230, 3), 0.4375 / 2, np.float16))
+    assert notes == ["scale=2^-1", "area-averaged 2x2 from 460x460"]
+
+
+def test_gray_exr_has_three_equal_channels(tmp_path, out):
+    import_scene(write_float(tmp_path / "gray.exr", np.full((240, 240, 1), 0.18), names="Y"), out)
+    np.testing.assert_array_equal(pixels_of(out / "gray.exr"), np.full((240, 240, 3), np.float16(0.18), np.float32))
+
+
+def test_a_panorama_keeps_the_rows_around_its_horizon(tmp_path, out):
+    light = np.ones((300, 600, 3)) * np.arange(1, 301)[:, None, None]
+    row = import_scene(write_float(tmp_path / "sky.hdr", light), out, kind="panorama")
+    assert (row.kind, row.width, row.height) == ("panorama band", 600, 240)
+    assert pixels_of(out / "sky.exr")[0, 0, 0] == pytest.approx(31 / 1024, rel=0.01)
+
+
+def test_a_photograph_is_no_panorama(tmp_path):
+    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
+    with pytest.raises(PhotoError, match="320 x 256 is no whole panorama"):
+        linear_scene(path, is_panorama=True)

@@ -1,0 +1,224 @@
+"""Where the data comes from: ``python -m training.data.manifest --data DATA`` writes training/data/manifest.csv.
+
+A row for every file that models are trained on or figures rest on: what it is, where it comes from, its licence, its
+SHA-256, and how it is used. The files themselves are no part of the repository. With ``--check`` the command compares a
+data folder with the manifest instead: it lists the files that are absent, altered or unlisted, and returns 2 if any.
+"""
+
+from __future__ import annotations
+
+import argparse
+import csv
+import hashlib
+import io
+import sys
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.files import atomic_write_text
+from training.data.scenes import split_scenes
+from training.provenance import file_sha256
+
+#: The manifest of the data that the packaged models were trained and measured with.
+MANIFEST_FILE = Path(__file__).with_name("manifest.csv")
+
+#: The files of responses that training reads: DoRF, and the in-camera curves.
+CURVE_FILES = ("dorf/201_CRF_data.mat", "camera_curves/base_curves.csv")
+
+#: How files are used that belong to no split of the scenes.
+MEASURED_ONLY, SPLIT_BY_GROUP, TRAINED_ON, COMPARED_ONLY = (
+    "measured only",
+    "by groups of curves: splits.json",
+    "train",
+    "compared only",
+)
+
+#: What is written for a file whose source states no licence.
+NO_LICENCE = "no licence stated"
+
+_CAVE = "Columbia CAVE, https://www.cs.columbia.edu/CAVE/software/softlib/dorf.php (Grossberg & Nayar, PAMI 2004)"
+_DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.c), https://github.com/darktable-org"
+
+
+@dataclass(frozen=True, order=True)
+class ManifestRow:
+    """One file.
+
+    Parameters
+    ----------
+    file : str
+        Path in the data folder, with slashes.
+    kind : str
+        "scene", "real photograph", "measured response" (of a real photograph) or "responses".
+    source : str
+        Repository and path, package, or owner.
+    licence : str
+        As the source states it.
+    split : str
+        "train", "validation" or "test" of a scene; otherwise how the file is used.
+    sha256 : str
+        Of the file.
+    """
+
+    file: str
+    kind: str
+    source: str
+    licence: str
+    split: str
+    sha256: str
+
+
+COLUMNS = tuple(field.name for field in fields(ManifestRow))
+
+
+def manifest_rows(data: Path) -> list[ManifestRow]:
+    """Return the rows of the data folder `data`, sorted by file.
+
+    Raises
+    ------
+    CRFNetError
+        If a file that the folder's own tables name is absent.
+    """
+    unhashed = [*_curves(), *_scenes(data / "linear"), *_real(data / "real"), *_real_bodies(data / "real_bodies")]
+    return sorted(_hashed(data, row) for row in set(unhashed))
+
+
+def training_digest(data: Path) -> str:
+    """Return the SHA-256 over the manifest rows of the scenes and curves in the folder `data`."""
+    unhashed = [*_curves(), *_scenes(data / "linear")]
+    chosen = [row for row in unhashed if row.kind == "scene" or row.file in CURVE_FILES]
+    return hashlib.sha256(manifest_text(sorted(_hashed(data, row) for row in chosen)).encode()).hexdigest()
+
+
+def manifest_text(rows: Iterable[ManifestRow]) -> str:
+    """Return the CSV text of rows, the first line of which names the columns."""
+    text = io.StringIO()
+    writer = csv.DictWriter(text, COLUMNS, lineterminator="\n")
+    writer.writeheader()
+    writer.writerows(asdict(row) for row in rows)
+    return text.getvalue()
+
+
+def read_manifest(path: Path = MANIFEST_FILE) -> list[ManifestRow]:
+    """Return the rows of a manifest."""
+    with path.open(newline="", encoding="utf-8") as file:
+        return [ManifestRow(**row) for row in csv.DictReader(file)]
+
+
+def differences(data: Path, listed: Sequence[ManifestRow]) -> list[str]:
+    """Return a line for every listed file that is absent or altered, and for every file beside them that is unlisted.
+
+    Scenes of one's own, which `training.data.import_scenes` adds, are unlisted.
+    """
+    lines = []
+    for row in listed:
+        path = data / row.file
+        if not path.is_file():
+            lines.append(f"absent: {row.file}")
+        elif file_sha256(path) != row.sha256:
+            lines.append(f"altered: {row.file}")
+    folders = {(data / row.file).parent for row in listed}
+    tables = {"manifest.csv", "cases.csv", "invemor.txt"}
+    known = {row.file for row in listed}
+    present = (path for folder in folders if folder.is_dir() for path in folder.iterdir() if path.is_file())
+    unlisted = {path.relative_to(data).as_posix() for path in present if path.name not in tables} - known
+    return lines + [f"unlisted: {name}" for name in sorted(unlisted)]
+
+
+def _hashed(data: Path, row: ManifestRow) -> ManifestRow:
+    """Return a row with its SHA-256."""
+    path = data / row.file
+    if not path.is_file():
+        raise CRFNetError(f"{path}: is absent; restore it, or take its line out of the table beside it")
+    return ManifestRow(**{**asdict(row), "sha256": file_sha256(path)})
+
+
+def _curves() -> list[ManifestRow]:
+    """Return the rows, not hashed, of the files of responses."""
+    dorf, base_curves = CURVE_FILES
+    licence = "GPL-3.0-or-later (darktable)"
+    return [
+        ManifestRow(dorf, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
+        ManifestRow("dorf/emor.txt", "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
+        ManifestRow(base_curves, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
+    ]
+
+
+def _scenes(folder: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the scenes in the folder's own manifest.csv."""
+    splits = {name: split for split, scenes in split_scenes(folder).items() for name, _ in scenes}
+    return [
+        ManifestRow(
+            f"{folder.name}/{entry['file']}", "scene", entry["source"], entry["licence"], splits[entry["file"]], ""
+        )
+        for entry in _table(folder / "manifest.csv")
+    ]
+
+
+def _real(folder: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the 16 real photographs and their measured responses."""
+    rows = []
+    for case in _table(folder / "cases.csv"):
+        source, licence = f"{case['source_repo']}:{case['source_input']}", _licence(case["licence"])
+        photograph = f"{folder.name}/{case['input_file']}"
+        rows.append(ManifestRow(photograph, "real photograph", source, licence, MEASURED_ONLY, ""))
+        rows.append(_response(f"{folder.name}/gt/{case['id']}.csv", case["source_repo"], MEASURED_ONLY))
+    return rows
+
+
+def _real_bodies(folder: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the real photographs by fold, their crops and their measured responses."""
+    rows = []
+    for case in _table(folder / "cases.csv"):
+        source, licence = f"{case['source_repo']}:{case['source_dir']}", _licence(case["licence"])
+        use = f"{MEASURED_ONLY}, fold {case['fold']}"
+        for name in filter(None, (case["file"], case["crop"])):
+            rows.append(ManifestRow(f"{folder.name}/{name}", "real photograph", source, licence, use, ""))
+        rows.append(_response(f"{folder.name}/{case['gt']}", case["source_repo"], use))
+    return rows
+
+
+def _response(file: str, repository: str, use: str) -> ManifestRow:
+    """Return the row, not hashed, of a response that was measured from an exposure stack."""
+    source = f"measured from an exposure stack of {repository}"
+    return ManifestRow(file, "measured response", source, "measured figures", use, "")
+
+
+def _licence(stated: str) -> str:
+    """Return the licence that a table of photographs states."""
+    return NO_LICENCE if stated.startswith("none") else stated
+
+
+def _table(path: Path) -> list[dict[str, str]]:
+    """Return the rows of a table that comes with the data; none where it is absent."""
+    if not path.is_file():
+        return []
+    with path.open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write the manifest; with --check, list what differs from it and return 2 if anything does."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves, linear, real ...")
+    parser.add_argument("--check", action="store_true", help="compare the folder with the manifest, write nothing")
+    parser.add_argument("--manifest", type=Path, default=MANIFEST_FILE, help="training/data/manifest.csv")
+    options = parser.parse_args(arguments)
+    try:
+        if options.check:
+            found = differences(options.data, read_manifest(options.manifest))
+            print("\n".join(found) or f"{options.data}: as {options.manifest.name} says")
+            return 2 if found else 0
+        rows = manifest_rows(options.data)
+    except CRFNetError as problem:
+        print(f"manifest: error: {problem}", file=sys.stderr)
+        return 2
+    atomic_write_text(options.manifest, manifest_text(rows), overwrite=True)
+    print(f"wrote {options.manifest.name}: {len(rows)} files")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

@@ -1,0 +1,62 @@
+"""Golden predictions: what PyTorch answers for windows of the bundled plate, to compare onnxruntime with."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import torch
+from torch import nn
+
+from crfnet_core.files import atomic_write
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.statistics import window_statistics
+from crfnet_core.types import Float32Array
+from training.export.onnx_graph import POOLING, Signature
+
+#: Windows of the bundled plate and their statistics; written by tests/data/make_golden_statistics.py.
+GOLDEN_STATISTICS = Path(__file__).parents[2] / "tests" / "data" / "golden_statistics.npz"
+
+#: Largest difference allowed between PyTorch and onnxruntime, in weights (units of E_est) and log errors.
+PARITY = 2e-4
+
+
+def golden_windows() -> Float32Array:
+    """Return three windows of the bundled plate, float32 (3, 227, 227, 3)."""
+    with np.load(GOLDEN_STATISTICS) as arrays:
+        windows: Float32Array = arrays["windows"] / np.float32(255)
+    return windows
+
+
+def write_golden(network: nn.Module, signature: Signature, path: Path) -> None:
+    """Write the outputs of a network for the golden windows, as NPZ."""
+    windows = golden_windows()
+    inputs = np.stack([window_statistics(window) for window in windows]) if signature is POOLING else windows
+    with torch.inference_mode():
+        outputs = [output.numpy() for output in network(torch.from_numpy(inputs))]
+    with atomic_write(path, overwrite=True) as temporary:
+        np.savez_compressed(temporary, **dict(zip(signature.output_names, outputs, strict=True)))
+
+
+def assert_parity(folder: Path, golden: Path) -> float:
+    """Return the largest difference between the golden outputs and those of onnxruntime for the model in `folder`.
+
+    Raises
+    ------
+    SystemExit
+        If it is above `PARITY`.
+    """
+    with np.load(golden) as expected:
+        network = ResponseNetwork.load(folder)
+        predicted = network.predict(network.inputs(golden_windows()))
+        differences = [
+            np.abs(predicted.weights - expected["weights"]).max(),
+            np.abs(np.log(predicted.expected_errors) - expected["log_errors"]).max(),
+        ]
+        if predicted.pooled:
+            pooled = predicted.pooled
+            differences.append(np.abs(pooled.weights - expected["pooled_weights"]).max())
+            differences.append(np.abs(np.log(pooled.expected_error) - expected["pooled_log_error"]).max())
+    if max(differences) > PARITY:
+        raise SystemExit(f"onnxruntime differs from torch by {max(differences):.2e}, more than {PARITY:.0e}")
+    return float(max(differences))

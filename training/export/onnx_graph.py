@@ -1,0 +1,88 @@
+"""From a PyTorch network to an ONNX graph with matrices in half precision."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TypeVar
+
+import numpy as np
+import onnx
+import torch
+from onnx import TensorProto, helper, numpy_helper
+from torch import nn
+
+from crfnet_core.files import atomic_write
+from crfnet_core.statistics import LENGTH
+from crfnet_core.windows import WINDOW_SIZE
+
+OPSET = 18
+
+#: Suffix of the name under which the graph keeps a matrix in half precision.
+HALF_SUFFIX = "_half"
+
+Network = TypeVar("Network", bound=nn.Module)
+
+
+@dataclass(frozen=True)
+class Signature:
+    """What a network reads and answers; see `crfnet_core.network.ModelConfig`.
+
+    Parameters
+    ----------
+    input_name : str
+        "statistics" or "windows".
+    input_shape : tuple of int
+        Shape of the input of one window.
+    output_names : tuple of str
+        Names of the outputs, in their order.
+    """
+
+    input_name: str
+    input_shape: tuple[int, ...]
+    output_names: tuple[str, ...]
+
+
+#: A network that reads the statistics of windows and pools them.
+POOLING = Signature("statistics", (LENGTH,), ("weights", "log_errors", "pooled_weights", "pooled_log_error"))
+
+#: A network that reads windows and answers for each by itself.
+WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), ("weights", "log_errors"))
+
+
+def rounded(network: Network) -> Network:
+    """Return the network itself, its matrices rounded to half precision in place."""
+    with torch.no_grad():
+        for parameter in network.parameters():
+            if parameter.ndim > 1:
+                parameter.copy_(parameter.half().float())
+    return network
+
+
+def export_onnx(network: nn.Module, signature: Signature, path: Path) -> None:
+    """Write the graph of a `rounded` network, with a free number of windows and matrices in half precision."""
+    program = torch.onnx.export(
+        network,
+        (torch.rand(2, *signature.input_shape),),
+        input_names=[signature.input_name],
+        output_names=list(signature.output_names),
+        dynamic_shapes=({0: torch.export.Dim("windows")},),
+        opset_version=OPSET,
+        dynamo=True,
+    )
+    if program is None:
+        raise TypeError("torch.onnx.export returned no program; it does with dynamo=True")
+    model = program.model_proto
+    store_in_half_precision(model.graph)
+    with atomic_write(path, overwrite=True) as temporary:
+        onnx.save(model, temporary)
+
+
+def store_in_half_precision(graph: onnx.GraphProto) -> None:
+    """Keep the matrices that half precision represents exactly in it, with a cast to single precision behind each."""
+    for initializer in graph.initializer:
+        values = numpy_helper.to_array(initializer)
+        if values.dtype == np.float32 and values.ndim > 1 and (values == values.astype(np.float16)).all():
+            name, half_name = initializer.name, f"{initializer.name}{HALF_SUFFIX}"
+            initializer.CopyFrom(numpy_helper.from_array(values.astype(np.float16), half_name))
+            graph.node.insert(0, helper.make_node("Cast", [half_name], [name], to=TensorProto.FLOAT))

@@ -1,0 +1,144 @@
+"""What a training run is made of: code, data, recipe, seed and versions, kept in `run.json` in its folder.
+
+Who makes the data of a run (`training.network.shards`, `training.crfnet2017.windows`) leaves `made_SPLIT.json` beside
+it. The record of the run holds these too, so it reaches back to the files of `training/data/manifest.csv`.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import platform
+import subprocess
+import sys
+from collections.abc import Iterable
+from importlib.metadata import version
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.files import atomic_write_text
+
+#: The record of a run in its folder, and in the folder of a model that came from it.
+RUN_FILE = "run.json"
+
+#: The root of the repository.
+ROOT = Path(__file__).parents[1]
+
+Record = dict[str, Any]
+
+
+def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: str) -> Record:
+    """Write run.json for a run that begins; for one that goes on, check it and add the resumption; return the record.
+
+    Parameters
+    ----------
+    folder : Path
+        The run's folder; made where absent.
+    recipe : dict
+        The whole configuration, of values that JSON knows.
+    seed : int
+        Of the initial weights and of the order of the data.
+    data : dict
+        See `data_record`.
+    start : str
+        The weights that the run starts from.
+
+    Raises
+    ------
+    SystemExit
+        If the folder holds a run of another recipe, seed or start, or on other data.
+    """
+    wanted = json.loads(json.dumps({"seed": seed, "start": start, "recipe": recipe, "data": data}))
+    path = folder / RUN_FILE
+    if path.exists():
+        record: Record = json.loads(path.read_text())
+        found, settings = _settings(record), _settings(wanted)
+        differing = sorted(name for name in settings if found.get(name) != settings[name])
+        if differing:
+            raise SystemExit(f"{folder}: holds a run of another {', '.join(differing)}; take another folder")
+        record["resumed"].append(code_record())
+    else:
+        record = {"recorded": "when the run began"} | code_record() | wanted | {"resumed": []}
+    folder.mkdir(parents=True, exist_ok=True)
+    write_json(path, record)
+    return record
+
+
+def read_run(folder: Path) -> Record:
+    """Return the record of a run, or say that there is none.
+
+    Raises
+    ------
+    SystemExit
+        If the folder holds no run.json.
+    """
+    path = folder / RUN_FILE
+    if not path.exists():
+        raise SystemExit(f"{folder}: holds no {RUN_FILE}; give the folder of a training run")
+    record: Record = json.loads(path.read_text())
+    return record
+
+
+def training_commit(record: Record) -> str:
+    """Return the commit that a run began from; "-dirty" behind it says that files had been changed since."""
+    return f"{record.get('commit') or 'unknown'}{'-dirty' if record.get('dirty') else ''}"
+
+
+def data_record(folder: Path, files: Iterable[Path]) -> Record:
+    """Return the number and the digest of the files that a run reads, and how they were made as far as it is known."""
+    chosen = sorted(files)
+    made = {
+        path.stem.removeprefix("made_"): json.loads(path.read_text()) for path in sorted(folder.glob("made_*.json"))
+    }
+    return {"files": len(chosen), "sha256": files_digest(chosen), "made": made}
+
+
+def record_making(folder: Path, name: str, source_sha256: str) -> None:
+    """Add a line to made_NAME.json: the code that makes files in `folder`, and the digest of the files it reads."""
+    path = folder / f"made_{name}.json"
+    made = json.loads(path.read_text()) if path.exists() else []
+    write_json(path, [*made, code_record() | {"source_sha256": source_sha256}])
+
+
+def code_record() -> Record:
+    """Return the command, the commit, whether tracked files differ from it, and the versions of what computes."""
+    changes = _git("status", "--porcelain", "--untracked-files=no")
+    return {
+        "command": ["python", *sys.orig_argv[1:]],
+        "commit": _git("rev-parse", "HEAD"),
+        "dirty": None if changes is None else bool(changes),
+        "versions": {"python": platform.python_version(), "torch": version("torch"), "numpy": version("numpy")},
+    }
+
+
+def files_digest(files: Iterable[Path]) -> str:
+    """Return the SHA-256 over the names and the SHA-256 of files, in the order given."""
+    digest = hashlib.sha256()
+    for path in files:
+        digest.update(f"{file_sha256(path)}  {path.name}\n".encode())
+    return digest.hexdigest()
+
+
+def file_sha256(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
+def write_json(path: Path, entries: Record | list[Record]) -> None:
+    """Write JSON, whole or not at all; an existing file is replaced."""
+    atomic_write_text(path, json.dumps(entries, indent=2) + "\n", overwrite=True)
+
+
+def _settings(record: Record) -> Record:
+    """Return what must not change when a run goes on."""
+    return record["recipe"] | {"seed": record["seed"], "start": record["start"], "data": record["data"]["sha256"]}
+
+
+def _git(*arguments: str) -> str | None:
+    """Return what git says of the repository, or None where there is no git or no repository."""
+    try:
+        done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
+    except (OSError, subprocess.CalledProcessError):
+        return None
+    return done.stdout.strip()

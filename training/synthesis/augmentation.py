@@ -1,0 +1,75 @@
+"""Augmentation: other light, colours and compositions for the linear windows of the few scenes that there are."""
+
+from __future__ import annotations
+
+import numpy as np
+from scipy.ndimage import gaussian_filter, zoom
+
+from crfnet_core.types import Float32Array
+from crfnet_core.windows import WINDOW_SIZE
+from training.data.scenes import LUMINANCE
+
+#: Fractions of photographs: without colour, under an illumination gradient, with another large-scale contrast, and
+#: with a power law on the irradiance.
+GRAY, GRADIENT, CONTRAST, POWER = 0.08, 0.3, 0.2, 0.3
+
+
+def recolor(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return windows (N, 227, 227, 3) rotated and mirrored alike, under another illuminant and with other primaries.
+
+    A fraction `GRAY` of them loses all colour instead.
+    """
+    turned = np.rot90(light, int(rng.integers(4)), axes=(1, 2))
+    turned = turned[:, :, ::-1] if rng.random() < 0.5 else turned
+    if rng.random() < GRAY:
+        return np.repeat((turned @ LUMINANCE)[..., None], 3, axis=-1)
+    matrix = np.eye(3) + rng.uniform(0, 0.15, (3, 3))
+    matrix = matrix / matrix.sum(axis=1, keepdims=True) * np.exp2(rng.normal(0, 0.4, 3))[:, None]
+    return turned @ matrix.T.astype(np.float32)
+
+
+def relight(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return windows (N, 227, 227, 3), float32, some under a smooth illumination gradient, some with other contrast.
+
+    The scenes are few, and another distribution of light makes other photographs of them. A power law on the
+    irradiance changes how light mixes at edges, which is what the network measures, so the power stays near 1. A
+    change of the contrast at large scale leaves edges as they are, so it may be large.
+    """
+    if rng.random() < GRADIENT:
+        light = light * illumination_gradient(len(light), rng)
+    if rng.random() < CONTRAST:
+        light = light * contrast_gain(light, rng)
+    if rng.random() < POWER:
+        light = np.maximum(light, 0) ** np.float32(np.exp(rng.normal(0, 0.12)))
+    return np.ascontiguousarray(light, dtype=np.float32)
+
+
+def illumination_gradient(count: int, rng: np.random.Generator) -> Float32Array:
+    """Return smooth gains around 1, shape (count, 227, 227, 1): one wave across each window, of up to 2 stops."""
+    position = np.linspace(0, 1, WINDOW_SIZE, dtype=np.float32)
+    angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
+    across = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :]  # (count, 227, 227)
+    stops = rng.uniform(0.2, 2, (count, 1, 1)) * np.sin(rng.uniform(1, 5, (count, 1, 1)) * across + phase)
+    return np.exp2(stops)[..., None].astype(np.float32)
+
+
+def contrast_gain(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return smooth gains, shape (N, 227, 227, 1), that raise or lower the large-scale contrast of windows."""
+    log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, 57, 57)
+    coarse = gaussian_filter(log_luminance, (0, *np.full(2, rng.uniform(2, 10))))
+    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, WINDOW_SIZE / coarse.shape[1])), order=1)
+    return np.exp((np.exp(rng.normal(0, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
+
+
+def composited(light: Float32Array, other: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return windows (N, 227, 227, 3) of which one side of a straight border shows `other` at another exposure.
+
+    A sample on the border mixes the light of both sides, as in a photograph.
+    """
+    exposure = np.float32(np.exp2(rng.normal(0, 1.2)))
+    position = np.arange(WINDOW_SIZE, dtype=np.float32) - WINDOW_SIZE / 2
+    angle = rng.uniform(0, 2 * np.pi, (len(light), 1, 1))
+    distance = rng.uniform(-60, 60, (len(light), 1, 1))
+    beyond = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :] - distance
+    coverage = np.clip(beyond + 0.5, 0, 1)[..., None].astype(np.float32)
+    return light * (1 - coverage) + other * exposure * coverage
