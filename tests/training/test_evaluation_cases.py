@@ -7,32 +7,52 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.metrics import estimation_error, linearization_error
+from crfnet_core.metrics import estimation_error, linearization_error, shape_error
 from crfnet_core.response import ResponseCurve
-from training.evaluation.cases import CaseFile, code_digest, errors
+from training.evaluation.measure.case_files import CaseFile, code_digest
+from training.evaluation.measure.figures import PhotographFigures, baseline_figures
 
 SETTINGS = {"seed": 1, "sha256": "abc"}
 
 
 def kept(path, code="c"):
     cases = CaseFile.opened(path, SETTINGS, code)
-    cases.rows = {f"photograph {k}": {"model": {"estimation": k / 8, "curve": [0.0, k]}} for k in range(3)}
+    cases.rows = {f"photograph {k}": {"model": figures(k)} for k in range(3)}
     cases.save()
     return cases
+
+
+def figures(k):
+    return PhotographFigures(k / 8, 0.1, 0.2, 0.3, uncertainty=1.5, coverage=0.9, curve=(0, k), band=((0, 0), (0, 1)))
 
 
 def test_cases_come_back_in_the_order_asked_for(tmp_path):
     kept(tmp_path / "model" / "p0.json")
     cases = CaseFile.opened(tmp_path / "model" / "p0.json", SETTINGS, "c")
-    columns = cases.columns(["photograph 2", "photograph 0"])["model"]
-    assert columns["estimation"].tolist() == [0.25, 0.0]
-    assert columns["curve"].tolist() == [[0.0, 2.0], [0.0, 0.0]]
+    assert cases.figures(["photograph 2", "photograph 0"]) == {"model": [figures(2), figures(0)]}
     assert not cases.is_of_other_code
 
 
 def test_cases_of_other_settings_are_not_read(tmp_path):
     kept(tmp_path / "p0.json")
     assert CaseFile.opened(tmp_path / "p0.json", SETTINGS | {"sha256": "other"}, "c").rows == {}
+
+
+def test_cases_of_other_figures_are_not_read(tmp_path):
+    kept(tmp_path / "p0.json")
+    document = json.loads((tmp_path / "p0.json").read_text())
+    document["figures"].remove("shape")
+    (tmp_path / "p0.json").write_text(json.dumps(document))
+    assert CaseFile.opened(tmp_path / "p0.json", SETTINGS, "c").rows == {}
+
+
+def test_baselines_keep_no_uncertainty(tmp_path):
+    cases = CaseFile.opened(tmp_path / "p0.json", SETTINGS, "c")
+    cases.rows = {"photograph": {"gamma 2.2": PhotographFigures(1.0, 0.1, 0.2, 0.3)}}
+    cases.save()
+    columns = json.loads((tmp_path / "p0.json").read_text())["estimators"]["gamma 2.2"]
+    assert list(columns) == ["estimation", "linearization", "shape", "partial"]
+    assert CaseFile.opened(tmp_path / "p0.json", SETTINGS, "c").rows == cases.rows
 
 
 def test_cases_of_other_code_are_read_but_marked_for_ever(tmp_path):
@@ -47,20 +67,22 @@ def test_cases_of_other_code_are_read_but_marked_for_ever(tmp_path):
 
 def test_absent_photographs_are_named(tmp_path):
     with pytest.raises(CRFNetError, match="1 photographs are absent, the first: photograph 9"):
-        kept(tmp_path / "p0.json").columns(["photograph 0", "photograph 9"])
+        kept(tmp_path / "p0.json").figures(["photograph 0", "photograph 9"])
 
 
 def test_errors_are_those_of_the_metrics():
     true, guess = ResponseCurve.gamma(1.8), ResponseCurve.gamma(2.2)
     counts = np.arange(256)
-    found = errors(true, guess, counts)
+    found = baseline_figures(true, guess, counts)
     codes = np.arange(256) / 255
-    assert found["estimation"] == pytest.approx(estimation_error(true, guess), abs=1e-6)
-    assert found["linearisation"] == pytest.approx(linearization_error(codes, true, guess, counts=counts), abs=1e-6)
+    assert found.estimation == pytest.approx(estimation_error(true, guess), abs=1e-6)
+    assert found.linearization == pytest.approx(linearization_error(codes, true, guess, counts=counts), abs=1e-6)
+    assert found.shape == pytest.approx(shape_error(true, guess), abs=1e-6)
+    assert found.errors.linearization == 100 * found.linearization
     lower = np.linspace(0, 1, 1024) <= 0.8 + 1e-3
     gap = true.brightness - guess.brightness
-    assert found["partial"] == pytest.approx(np.linalg.norm(gap[lower]), abs=1e-3)
-    assert found["partial"] < found["estimation"]
+    assert found.partial == pytest.approx(np.linalg.norm(gap[lower]), abs=1e-3)
+    assert found.partial < found.estimation
 
 
 def test_the_digest_of_the_code_is_stable():

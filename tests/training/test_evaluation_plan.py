@@ -6,7 +6,16 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from training.evaluation.plan import CLEAN, CONDITIONS, PLAIN, TRIALS, Condition, balanced, plain_shots, stress_shots
+from training.evaluation.plan import (
+    CLEAN,
+    CONDITIONS,
+    PLAIN,
+    QUERIES,
+    Condition,
+    balanced,
+    clean_photographs,
+    stress_photographs,
+)
 from training.synthesis.camera import Capture
 
 
@@ -46,23 +55,29 @@ def test_no_photographs_are_refused():
 
 
 def test_every_photograph_has_a_label_of_its_own():
-    shots = stress_shots(range(5), range(13), count=5, seed=1)
-    labels = {shot.label for shot in shots + plain_shots(range(5), range(13), count=65, seed=1)}
+    photographs = stress_photographs(range(5), range(13), count=5, seed=1)
+    labels = {photograph.label for photograph in photographs + clean_photographs(range(5), range(13), count=65, seed=1)}
     same = 1  # of the 5 clean ones of P3, the one that P0 takes at exposure 1 as well
-    assert len(labels) == len(shots) + 65 - same
-    assert "scene 1, curve 2, exposure 0.6, clean" in {shot.label for shot in plain_shots([1], [2], count=1, seed=1)}
+    assert len(labels) == len(photographs) + 65 - same
+    assert "scene 1, curve 2, exposure 0.6, clean" in {
+        photograph.label for photograph in clean_photographs([1], [2], count=1, seed=1)
+    }
 
 
-def test_every_condition_and_trial_has_the_same_photographs():
-    shots = stress_shots(range(20), range(201), count=40, seed=3)
-    assert len(shots) == 40 * (len(CONDITIONS) + len(TRIALS)) == 40 * (22 + 12)
-    cells = {(shot.scene, shot.curve) for shot in shots}
+def test_every_condition_and_query_has_the_same_photographs():
+    photographs = stress_photographs(range(20), range(201), count=40, seed=3)
+    assert len(photographs) == 40 * (len(CONDITIONS) + len(QUERIES)) == 40 * (22 + 12)
+    cells = {(photograph.scene, photograph.curve) for photograph in photographs}
     assert len(cells) == 40
-    assert all(shot.condition == CLEAN for shot in shots if shot.trial != PLAIN)
+    assert all(photograph.condition == CLEAN for photograph in photographs if photograph.query != PLAIN)
 
 
 def test_pooling_asks_for_no_more_scenes_than_there_are():
-    assert {shot.trial.pooled for shot in stress_shots(range(5), range(3), count=5, seed=1)} == {1, 2, 4}
+    assert {photograph.query.pooled for photograph in stress_photographs(range(5), range(3), count=5, seed=1)} == {
+        1,
+        2,
+        4,
+    }
 
 
 def test_conditions_that_differ_behind_the_lens_share_their_light():

@@ -4,20 +4,21 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from crfnet_core.metrics import estimation_error, peak_signal_to_noise, ratio_to_gamma, win_rate
+from crfnet_core.metrics import estimation_error, peak_signal_to_noise
 from crfnet_core.response import ResponseCurve
 from training.evaluation.baselines import (
-    BASELINES,
     constant_curves,
     geometric_median,
+    mean_in_log_irradiance,
     nearest_power,
     oracle_curves,
 )
-from training.evaluation.bootstrap import Resampling
-from training.evaluation.calibration import calibration, rejection_curve
 from training.evaluation.gamma_level import gamma_levels
-from training.evaluation.material import bundled_material
-from training.evaluation.tables import Sheet, differences, summary
+from training.evaluation.measure.figures import PhotographFigures
+from training.evaluation.summaries.bootstrap import Resampling
+from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
+from training.evaluation.summaries.reliability import rejection_curve, reliability
+from training.evaluation.test_sets import bundled_test_set
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -64,8 +65,8 @@ def test_paired_differences_see_what_intervals_hide(rng):
     resampling = Resampling.of(scenes, curves, seed=1)
     better = values - 0.1 + rng.normal(0, 0.01, 200)
     assert resampling.mean(better).high > resampling.mean(values).low
-    assert not resampling.difference(better, values).is_zero
-    assert resampling.difference(values, values).is_zero
+    assert not resampling.difference(better, values).contains_zero
+    assert resampling.difference(values, values).contains_zero
 
 
 def test_the_same_seed_gives_the_same_intervals(rng):
@@ -75,33 +76,49 @@ def test_the_same_seed_gives_the_same_intervals(rng):
     assert first != other
 
 
+def columns(estimation, linearization, shape):
+    """The figures of an estimator with these errors."""
+    rows = zip(estimation, linearization, shape, strict=True)
+    return ErrorColumns.of([PhotographFigures(*row, partial=0.0) for row in rows])
+
+
 def test_the_summary_has_the_figures_of_the_metrics(rng):
     errors, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
-    figures = summary(
-        {"estimation": errors, "linearisation": errors / 100},
-        {"estimation": gamma, "linearisation": gamma / 100},
-        Resampling.of(*crossed(6, 10), seed=1),
+    parts = {
+        "model": columns(errors, errors / 100, errors[::-1]),
+        "gamma 2.2": columns(gamma, gamma / 100, gamma),
+    }
+    found = ErrorTable(parts, Resampling.of(*crossed(6, 10), seed=1)).summary("model")
+    assert found.errors.estimation.mean.value == pytest.approx(errors.mean())
+    assert found.errors.estimation.median.value == np.sort(errors)[29]
+    assert found.errors.estimation.win_rate.value == pytest.approx((errors < gamma).mean())
+    assert found.errors.linearization.mean.value == pytest.approx(errors.mean())  # x 1e-2
+    assert found.errors.linearization.ratio.value == pytest.approx(errors.mean() / gamma.mean())
+    assert found.errors.shape.p90.value == np.sort(errors)[53]
+    assert found.errors.shape.win_rate.value == pytest.approx((errors[::-1] < gamma).mean())
+    assert found.psnr.value == pytest.approx(peak_signal_to_noise(errors.mean() / 100))
+    assert found.psnr.low < found.psnr.high
+    named = found.named()
+    assert (named["shape mean"], named["E_est win rate"]) == (
+        found.errors.shape.mean.value,
+        found.errors.estimation.win_rate.value,
     )
-    assert figures["E_est mean"]["value"] == pytest.approx(errors.mean(), abs=1e-4)
-    assert figures["E_lin mean"]["value"] == pytest.approx(errors.mean(), abs=1e-4)  # x 1e-2
-    assert figures["E_lin ratio"]["value"] == pytest.approx(ratio_to_gamma(errors, gamma), abs=1e-4)
-    assert figures["E_est win rate"]["value"] == pytest.approx(win_rate(errors, gamma), abs=1e-4)
-    assert figures["PSNR of the mean"]["value"] == pytest.approx(peak_signal_to_noise(errors.mean() / 100), abs=1e-4)
-    assert figures["PSNR of the mean"]["low"] < figures["PSNR of the mean"]["high"]
 
 
 def test_differences_name_the_better_model_or_a_tie(rng):
-    good = {"estimation": rng.uniform(1, 2, 60), "linearisation": rng.uniform(0.01, 0.02, 60)}
-    bad = {"estimation": good["estimation"] + 1, "linearisation": good["linearisation"][::-1]}
-    sheet = Sheet((), {"good": good, "bad": bad}, Resampling.of(*crossed(6, 10), seed=1))
-    verdicts = {row["error"]: row["verdict"] for row in differences(sheet, ["bad", "good"])}
-    assert verdicts == {"E_est": "good is better", "E_lin": "tie"}
+    estimation, linearization = rng.uniform(1, 2, 60), rng.uniform(0.01, 0.02, 60)
+    parts = {
+        "good": columns(estimation, linearization, estimation),
+        "bad": columns(estimation + 1, linearization[::-1], estimation),
+    }
+    (found,) = ErrorTable(parts, Resampling.of(*crossed(6, 10), seed=1)).differences(["bad", "good"])
+    verdicts = {error: comparison.verdict for error, comparison in found.errors.items()}
+    assert verdicts == {"E_est": "good is better", "E_lin": "tie", "shape": "tie"}
 
 
 def test_baselines_against_gamma_2_2():
     true = ResponseCurve.gamma(2.2)
-    curves = constant_curves(bundled_material().curves) | oracle_curves(true)
-    assert tuple(curves) == BASELINES
+    curves = constant_curves(bundled_test_set().curves) | oracle_curves(true)
     errors = {name: estimation_error(true, curve) for name, curve in curves.items()}
     expected = {
         "gamma 2.2": 0.0,
@@ -116,6 +133,7 @@ def test_baselines_against_gamma_2_2():
         "oracle: EMoR, 5 components": 0.0669,
         "oracle: EMoR, 11 components": 0.0056,
     }
+    assert list(errors) == list(expected)
     assert errors == pytest.approx(expected, abs=1e-3)
 
 
@@ -130,18 +148,24 @@ def test_the_geometric_median_ignores_an_outlier():
     np.testing.assert_allclose(geometric_median(curves), UNIFORM**0.5, atol=1e-3)
 
 
+def test_the_mean_in_log_irradiance_of_two_powers_is_the_power_between():
+    """By hand: g1 = B ** 1.5 and g2 = B ** 2.5 have the geometric mean B ** 2."""
+    mean = mean_in_log_irradiance([ResponseCurve.gamma(1.5), ResponseCurve.gamma(2.5)])
+    assert estimation_error(ResponseCurve.gamma(2.0), mean) < 0.02
+
+
 def test_a_perfect_uncertainty_gains_everything(rng):
     errors = rng.uniform(0, 3, 80)
-    found = calibration(errors, errors, np.full(80, 0.9))
-    assert (found["rank correlation"], found["gain"], found["band coverage"]) == (1.0, 1.0, 0.9)
-    assert all(part["uncertainty"] == part["error"] and part["photographs"] == 10 for part in found["bins"])
+    found = reliability(errors, errors, np.full(80, 0.9))
+    assert (found.rank_correlation, found.gain, found.band_coverage) == pytest.approx((1, 1, 0.9))
+    assert all(part.uncertainty == part.error and part.photographs == 10 for part in found.bins)
 
 
 def test_a_reversed_uncertainty_loses_and_a_constant_one_gains_nothing(rng):
     errors = rng.uniform(0, 3, 80)
-    assert calibration(errors, -errors, np.ones(80))["gain"] < -0.5
-    constant = calibration(errors, np.full(80, 1.5), np.ones(80))
-    assert (constant["rank correlation"], constant["gain"]) == (0.0, 0.0)
+    assert reliability(errors, -errors, np.ones(80)).gain < -0.5
+    constant = reliability(errors, np.full(80, 1.5), np.ones(80))
+    assert (constant.rank_correlation, constant.gain) == pytest.approx((0, 0), abs=1e-12)
 
 
 def test_rejection_removes_the_most_doubtful_first():
@@ -149,7 +173,7 @@ def test_rejection_removes_the_most_doubtful_first():
 
 
 def test_gamma_2_2_is_worse_on_brighter_photographs():
-    dark, plain = gamma_levels(bundled_material(), (0.25, 1.0))
+    dark, plain = gamma_levels(bundled_test_set(), (0.25, 1.0))
     assert 100 * plain.errors.mean() == pytest.approx(5.54, abs=0.15)
     assert 100 * dark.errors.mean() == pytest.approx(4.24, abs=0.15)
     assert (dark.irradiance < plain.irradiance).all()

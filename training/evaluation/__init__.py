@@ -1,5 +1,13 @@
-"""Measure models against responses that are known; `training.evaluation` is the command.
+"""Measure models against responses that are known: ``python -m training.evaluation``.
 
-`plan` says which photographs are taken, `material` and `camera` take them, `measure` asks every model and baseline for
-the response, `cases` keeps the errors, `tables` sums them up, `markdown` and `figures` show them.
+- `__main__`: the command.
+- `settings`: what is asked for: models, protocols, numbers of photographs.
+- `test_sets`: scenes and responses, of the data or bundled with the repository.
+- `plan`: which photographs are simulated: scene, response, exposure, condition, and the query about each.
+- `baselines`: what stands beside the models: constant guesses and oracles.
+- `measure`: photographs to figures, kept on disk.
+- `summaries`: figures to means, intervals, comparisons and reliability.
+- `report`: the report's dataclasses, and how they are written.
+- `protocols`: runs P0 to P5 and writes the report.
+- `gamma_level`: why gamma 2.2 linearises our photographs worse than the paper's.
 """

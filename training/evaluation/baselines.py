@@ -1,44 +1,50 @@
-"""What can be had without looking at the photograph, and the best that a power law or a few components can do."""
+"""What can be had without looking at the photograph, and the best that a power law or a few EMoR components can do."""
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 import numpy as np
 from scipy.optimize import minimize_scalar
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
 
+#: The name of all baselines together, among those of models.
+BASELINES = "baselines"
+
+#: Names of the baselines that tables or plots pick out.
 GAMMA = "gamma 2.2"
-CONSTANTS = (GAMMA, "sRGB", "Rec.709", "mean curve", "geometric median curve")
-OTHER_CAMERAS = "mean of the other cameras"
+MEAN_CURVE = "mean curve"
+OTHER_BODIES = "mean of the other bodies"
 ORACLE_GAMMA = "oracle: best gamma"
-BASELINES = (*CONSTANTS, ORACLE_GAMMA, *(f"oracle: EMoR, {k} component{'s' * (k > 1)}" for k in ORACLE_COMPONENTS))
 
 
-def constant_curves(known: np.ndarray) -> dict[str, ResponseCurve]:
+def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
     """Return the guesses that are the same for every photograph, by name.
 
     Parameters
     ----------
     known : ndarray, shape (N, 1024)
-        The responses whose geometric median is taken; the mean curve is that of EMoR, the mean of DoRF.
+        The responses whose geometric median is taken. The mean curve is that of EMoR, which is the mean of DoRF.
     """
     samples = {
         "sRGB": srgb_encode(IRRADIANCE),
         "Rec.709": rec709_encode(IRRADIANCE),
-        "mean curve": EmorBasis.load().mean,
+        MEAN_CURVE: EmorBasis.load().mean,
         "geometric median curve": geometric_median(known),
     }
     return {GAMMA: ResponseCurve.gamma(2.2)} | {name: ResponseCurve.from_samples(row) for name, row in samples.items()}
 
 
 def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
-    """Return the nearest power law to a true response, and its projections on EMoR, by name; all strictly monotone."""
+    """Return the power law nearest to a true response, and its projections on EMoR, by name; all strictly monotone."""
     basis = EmorBasis.load()
     weights = basis.project(true.brightness)
     curves = {ORACLE_GAMMA: nearest_power(true)}
@@ -58,7 +64,7 @@ def nearest_power(true: ResponseCurve) -> ResponseCurve:
     return ResponseCurve.from_samples(IRRADIANCE ** np.exp(found.x))
 
 
-def geometric_median(curves: np.ndarray, *, steps: int = 500) -> np.ndarray:
+def geometric_median(curves: Float64Array, *, steps: int = 500) -> Float64Array:
     """Return the curve, shape (1024,), with the least sum of distances to `curves`, shape (N, 1024).
 
     Source: Weiszfeld's iteration, from the mean.
@@ -68,3 +74,14 @@ def geometric_median(curves: np.ndarray, *, steps: int = 500) -> np.ndarray:
         nearness = 1 / np.maximum(np.linalg.norm(curves - median, axis=1), 1e-9)
         median = nearness @ curves / nearness.sum()
     return median
+
+
+def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:
+    """Return the response whose inverse is the geometric mean of the inverse responses of `curves`.
+
+    In the logarithm of irradiance cameras differ by their shapes and by a constant, which is a factor on the exposure.
+    """
+    brightness = np.linspace(0, 1, SAMPLES)
+    logarithms = [np.log(curve.inverse(brightness[1:])) for curve in curves]
+    irradiance = np.concatenate([[0.0], np.exp(np.mean(logarithms, axis=0))])
+    return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))

@@ -1,4 +1,4 @@
-"""Which photographs are taken: scene, curve, exposure and condition of every one, balanced and seeded."""
+"""Which photographs are simulated: scene, response, exposure and condition of each, balanced and seeded."""
 
 from __future__ import annotations
 
@@ -14,34 +14,34 @@ from training.synthesis.camera import EXPOSURE_FACTORS, Capture
 #: Photographs of P3, each under every condition.
 STRESS_PHOTOGRAPHS = 200
 
-#: Gains in linear light, red to blue, of a camera whose white balance is off by about a stop and a half from red to
-#: blue; scaled by `training.synthesis.camera` so that a neutral keeps its luminance.
+#: Gains on red, green and blue in linear light of a camera whose white balance is off by about a stop and a half
+#: between red and blue; `training.synthesis.camera` scales them so that a neutral keeps its luminance.
 COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 
 
 @dataclass(frozen=True)
 class Condition:
-    """What is done to a photograph.
+    """Under which condition a photograph is taken.
 
     Parameters
     ----------
     name : str
-        As in the report.
+        The name in the report.
     factor : float
-        On the exposure s_crf.
+        Factor on the exposure s_crf.
     upsampling : int
-        Times that the linear scene is enlarged, by cubic interpolation.
+        How many times the linear scene is enlarged, by cubic interpolation.
     is_gray : bool
         Whether all channels hold the luminance of the scene.
     noise : float
-        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantisation. The paper's Table 3
-        gives no unit; this is our reading of it.
+        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantisation. The CRF-net paper's
+        Table 3 gives no unit; this is our reading of it.
     blur : float
         Variance, in squared pixels, of the Gaussian that blurs the linear scene.
     gains : tuple of float
-        On red, green and blue of the linear scene.
+        Factors on red, green and blue of the linear scene.
     jpeg_quality : int, optional
-        Of a JPEG with subsampled chroma.
+        Quality of a JPEG with subsampled chroma.
     """
 
     name: str
@@ -65,21 +65,21 @@ class Condition:
 
 
 @dataclass(frozen=True)
-class Trial:
-    """How the product is asked about a photograph; None leaves its default.
+class Query:
+    """How the product is asked about a photograph; None leaves the product's default.
 
     Parameters
     ----------
     name : str
-        As in the report; that of the plain question is empty.
+        The name in the report; that of the plain query is empty.
     windows : int, optional
         Windows of each photograph.
     coverage : int, optional
-        Code values asked of a window; 0 takes random windows.
+        How many of the 256 code values a window should hold; 0 takes random windows.
     pooled : int
-        Photographs, of as many scenes, given together.
+        Photographs, each of another scene, that are given together.
     averaged : str, optional
-        "kept" or "all": the mean of these windows' weights instead of the product's own answer.
+        "kept" or "all": take the mean of these windows' weights instead of the product's own answer.
     """
 
     name: str = ""
@@ -89,7 +89,7 @@ class Trial:
     averaged: str | None = None
 
 
-PLAIN = Trial()
+PLAIN = Query()
 CLEAN = Condition("clean")
 
 CONDITIONS = (
@@ -104,36 +104,38 @@ CONDITIONS = (
     *(Condition(f"JPEG quality {quality}", jpeg_quality=quality) for quality in (95, 85, 75, 50)),
 )
 
-TRIALS = (
-    Trial("random windows", coverage=0),
-    *(Trial(f"{count} window{'s' * (count > 1)}", windows=count) for count in (1, 2, 5, 10, 20)),
-    Trial("windows averaged, outliers removed", averaged="kept"),
-    Trial("windows averaged, none removed", averaged="all"),
-    *(Trial(f"{count} photographs pooled", pooled=count) for count in (2, 4, 8, 16)),
+QUERIES = (
+    Query("random windows", coverage=0),
+    *(Query(f"{count} window{'s' * (count > 1)}", windows=count) for count in (1, 2, 5, 10, 20)),
+    Query("windows averaged, outliers removed", averaged="kept"),
+    Query("windows averaged, none removed", averaged="all"),
+    *(Query(f"{count} photographs pooled", pooled=count) for count in (2, 4, 8, 16)),
 )
 
 
 @dataclass(frozen=True)
-class Shot:
-    """One photograph to take and one question about it."""
+class TestPhotograph:
+    """One simulated photograph and one query about it: the numbers of scene and response, condition and query."""
+
+    __test__ = False  # no test class of pytest
 
     scene: int
     curve: int
     condition: Condition
-    trial: Trial = PLAIN
+    query: Query = PLAIN
 
     @property
     def label(self) -> str:
-        """Scene, curve, exposure factor and what is special: what cached cases are found by."""
-        special = self.trial.name or self.condition.name
+        """Scene, response, exposure factor, and the query or condition: the key under which its figures are kept."""
+        special = self.query.name or self.condition.name
         return f"scene {self.scene}, curve {self.curve}, exposure {self.condition.factor:g}, {special}"
 
 
 def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[tuple[int, int, float]]:
-    """Return `count` triples (scene, curve, exposure factor), at most one for each scene and curve.
+    """Return `count` triples (scene, response, exposure factor), at most one for each scene and response.
 
-    Both are shuffled and then taken in turn, shifted where the turns would repeat, so that in every beginning of the
-    list each scene and each curve occurs equally often, give or take one; so do the exposures.
+    Both are shuffled and then taken in turn, shifted where the turns would repeat. So every scene and every response
+    occurs equally often in any beginning of the list, give or take one, and so does every exposure.
 
     Raises
     ------
@@ -155,27 +157,27 @@ def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: 
     ]
 
 
-def plain_shots(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[Shot]:
-    """Return the photographs of P0 and P2: clean, at one of five exposures each, through the product as it is."""
+def clean_photographs(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: int) -> list[TestPhotograph]:
+    """Return the photographs of P0 and P2: clean, each at one of five exposures, through the product as it is."""
     cells = balanced(scenes, curves, count=count, seed=seed)
-    return [Shot(scene, curve, Condition("clean", factor=factor)) for scene, curve, factor in cells]
+    return [TestPhotograph(scene, curve, Condition("clean", factor=factor)) for scene, curve, factor in cells]
 
 
-def stress_shots(
+def stress_photographs(
     scenes: Sequence[int],
     curves: Sequence[int],
     *,
     count: int,
     seed: int,
     conditions: Sequence[Condition] = CONDITIONS,
-    trials: Sequence[Trial] = TRIALS,
-) -> list[Shot]:
-    """Return the photographs of P3: `count` of them under every condition, and the clean ones asked in every way.
+    queries: Sequence[Query] = QUERIES,
+) -> list[TestPhotograph]:
+    """Return the photographs of P3: `count` of them under every condition, and the clean ones under every query.
 
-    Pooled photographs need as many scenes; trials that ask for more are left out.
+    A query that pools more photographs than there are scenes is left out.
     """
     cells = [(scene, curve) for scene, curve, _ in balanced(scenes, curves, count=count, seed=seed)]
-    possible = [trial for trial in trials if trial.pooled <= len(scenes)]
-    stressed = [Shot(scene, curve, condition) for condition in conditions for scene, curve in cells]
-    asked = [Shot(scene, curve, CLEAN, trial) for trial in possible for scene, curve in cells]
-    return stressed + asked
+    possible = [query for query in queries if query.pooled <= len(scenes)]
+    stressed = [TestPhotograph(scene, curve, condition) for condition in conditions for scene, curve in cells]
+    queried = [TestPhotograph(scene, curve, CLEAN, query) for query in possible for scene, curve in cells]
+    return stressed + queried

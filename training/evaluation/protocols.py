@@ -1,118 +1,48 @@
-"""Run the protocols one after the other and gather their report."""
+"""Run the protocols one after the other, and write their report."""
 
 from __future__ import annotations
 
-import hashlib
-import json
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
-from crfnet_core.network import MODELS, ModelConfig, model_folder
-from training.evaluation.calibration import calibration
-from training.evaluation.cameras import real_table
-from training.evaluation.cases import CaseFile, code_digest
-from training.evaluation.figures import draw_calibration, draw_distribution, draw_real, draw_stress
-from training.evaluation.markdown import report_text
-from training.evaluation.material import Material
-from training.evaluation.measure import BASELINE_PARTY, measure
-from training.evaluation.plan import (
-    CONDITIONS,
-    STRESS_PHOTOGRAPHS,
-    TRIALS,
-    Condition,
-    Shot,
-    Trial,
-    plain_shots,
-    stress_shots,
+from crfnet_core.types import Float64Array
+from training.evaluation.baselines import BASELINES
+from training.evaluation.measure.case_files import CaseFile, code_digest
+from training.evaluation.measure.real import measure_real
+from training.evaluation.measure.real_photographs import RealPhotograph, real_photographs
+from training.evaluation.measure.simulated import measure_simulated
+from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
+from training.evaluation.report.content import (
+    BOTH,
+    CleanReport,
+    OtherKindReport,
+    RealReport,
+    Reliability,
+    Report,
+    ReportSettings,
+    StressReport,
 )
-from training.evaluation.real import measure_real, real_cases, real_settings
-from training.evaluation.tables import Sheet, other_kind_table, plain_table, stress_table
-
-PROTOCOLS = ("p0", "p1", "p2", "p3", "p4")
-
-#: Photographs of P0: every curve with every test scene.
-ALL_PHOTOGRAPHS = 4020
+from training.evaluation.report.document import read_report, write_report
+from training.evaluation.report.markdown import report_text
+from training.evaluation.report.plots import draw_distributions, draw_reliability, draw_stress
+from training.evaluation.report.real_plots import draw_real
+from training.evaluation.settings import Settings
+from training.evaluation.summaries.bodies import RealTable, real_report
+from training.evaluation.summaries.clean import clean_report, other_kind_report
+from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
+from training.evaluation.summaries.reliability import reliability
+from training.evaluation.summaries.stress import stress_report
+from training.evaluation.test_sets import TestSet
 
 QUICK_NOTE = (
     "photographs of the bundled lights through formulas, to see that all works and that nothing got worse: not to"
     " be compared with the paper's figures"
 )
-
-Table = dict[str, Any]
-
-
-@dataclass(frozen=True)
-class Model:
-    """A model folder under the name that it has in the report; `calibration` is a hash, as `sha256` is of the graph."""
-
-    name: str
-    folder: Path
-    sha256: str
-    calibration: str
-    training: dict[str, Any]
-
-    @classmethod
-    def found(cls, wanted: str) -> Model:
-        """Return the model of this name in crfnet_core/models, or in the folder of this path.
-
-        Raises
-        ------
-        CRFNetError
-            If there is neither, or the folder is no model.
-        """
-        folder = model_folder(wanted)
-        if not (folder / "model.json").is_file():
-            names = ", ".join(sorted(entry.parent.name for entry in MODELS.glob("*/model.json")))
-            raise CRFNetError(f"{wanted}: is no model folder; give its path, or one of {names}")
-        config = ModelConfig.read(folder / "model.json")
-        calibration = hashlib.sha256(repr(config.uncertainty_model).encode()).hexdigest()[:16]
-        return cls(folder.resolve().name, folder, config.sha256, calibration, config.training)
-
-    def lacks(self, held_out: Sequence[int]) -> bool:
-        """Return whether model.json says that these curves were kept out of its training."""
-        return set(held_out) <= set(self.training.get("held_out_curves") or ())
-
-
-@dataclass(frozen=True)
-class Settings:
-    """What is measured.
-
-    Parameters
-    ----------
-    out : Path
-        The folder of the report.
-    models : tuple of Model
-        Measured on the same photographs.
-    protocols : tuple of str
-        Of `PROTOCOLS`.
-    photographs : int
-        At most, of P0 and P2; P3 has at most `stress_photographs` and no more than this.
-    workers : int
-        Processes; with 1, this one.
-    seed : int
-        Of the choice of photographs, of dither, noise and bootstrap.
-    stress_photographs : int
-        See `photographs`.
-    conditions, trials : tuple
-        Of P3.
-    """
-
-    out: Path
-    models: tuple[Model, ...]
-    protocols: tuple[str, ...] = PROTOCOLS
-    photographs: int = ALL_PHOTOGRAPHS
-    workers: int = 2
-    seed: int = 2017
-    stress_photographs: int = STRESS_PHOTOGRAPHS
-    conditions: tuple[Condition, ...] = CONDITIONS
-    trials: tuple[Trial, ...] = TRIALS
 
 
 @dataclass
@@ -123,19 +53,57 @@ class Evaluation:
     ----------
     settings : Settings
         What is measured.
-    material : Material
+    test_set : TestSet
         Scenes and responses.
     """
 
     settings: Settings
-    material: Material
-    report: Table = field(default_factory=dict)
-    _calibrated: dict[str, dict[str, dict[str, np.ndarray]]] = field(default_factory=dict)
+    test_set: TestSet
+    _notes: list[str] = field(default_factory=list)
+    _with_uncertainty: dict[str, dict[str, ErrorColumns]] = field(default_factory=dict)
+
+    def run(self) -> Report:
+        """Measure what is not kept yet, write report.json, report.md and the PNGs, and return the report.
+
+        Raises
+        ------
+        CRFNetError
+            If two models have one name, or P2 is asked of a model that knows its responses.
+        """
+        self._check()
+        self.settings.out.mkdir(parents=True, exist_ok=True)
+        steps = {"p0": self._p0, "p1": self._p1, "p2": self._p2, "p3": self._p3, "p4": self._p4}
+        parts: dict[str, Any] = {name: step() for name, step in steps.items() if name in self.settings.protocols}
+        if self._with_uncertainty:
+            parts["p5"] = self._p5()
+        report = Report(
+            settings=ReportSettings(self.settings.photographs, self.settings.seed, self.test_set.digest),
+            models={model.name: model.measured for model in self.settings.models},
+            notes=tuple([] if self.test_set.data else [QUICK_NOTE]) + tuple(self._notes),
+            **parts,
+        )
+        write_report(self._path("report.json"), report)
+        kept = read_report(self._path("report.json"))
+        atomic_write_text(self._path("report.md"), report_text(kept), overwrite=True)
+        return kept
+
+    def _check(self) -> None:
+        """Refuse models of one name, and for P2 models that know its responses."""
+        names, held_out = self.settings.names, self.test_set.held_out
+        if len(set(names)) < len(names):
+            raise CRFNetError(f"models need different names, found {', '.join(names)}; copy one to another folder")
+        for model in self.settings.models if "p2" in self.settings.protocols else ():
+            if not held_out or not model.lacks(held_out):
+                raise CRFNetError(
+                    f"{model.name}: model.json does not say that it was trained without the held-out curves of"
+                    " training/data/splits.json, so P2 would measure known curves; train one without them, or leave p2"
+                    " out"
+                )
 
     @cached_property
-    def _exposures(self) -> np.ndarray:
-        """Return s_crf of every curve, found once."""
-        return self.material.exposures()
+    def _exposures(self) -> Float64Array:
+        """Return s_crf of every response, found once."""
+        return self.test_set.exposures()
 
     @cached_property
     def _code(self) -> str:
@@ -143,75 +111,35 @@ class Evaluation:
         return code_digest()
 
     @property
-    def _names(self) -> list[str]:
-        return [model.name for model in self.settings.models]
+    def _folders(self) -> dict[str, Path]:
+        """Return name of a model -> its folder."""
+        return {model.name: model.folder for model in self.settings.models}
 
-    def run(self) -> Table:
-        """Measure what is not kept yet, write report.json, report.md and the PNGs, and return the report.
+    def _path(self, name: str) -> Path:
+        """Return the path of a file of the report."""
+        return self.settings.out / name
 
-        Raises
-        ------
-        CRFNetError
-            If two models have one name, or P2 is asked of a model that knows its curves.
-        """
-        if len(set(self._names)) < len(self._names):
-            raise CRFNetError(
-                f"models need different names, found {', '.join(self._names)}; copy one to another folder"
-            )
-        wanted = self.settings.protocols
-        if "p2" in wanted:
-            self._check_held_out()
-        self.settings.out.mkdir(parents=True, exist_ok=True)
-        self.report = self._head()
-        steps: dict[str, Callable[[], None]] = {"p2": self._p2, "p3": self._p3, "p4": self._p4}
-        if "p0" in wanted or "p1" in wanted:
-            self._p0_and_p1()
-        for name, step in steps.items():
-            if name in wanted:
-                step()
-        if self._calibrated:
-            self._p5()
-        self._write()
-        return self.report
-
-    def _check_held_out(self) -> None:
-        """Refuse models that know the curves of P2."""
-        for model in self.settings.models:
-            if not self.material.held_out or not model.lacks(self.material.held_out):
-                raise CRFNetError(
-                    f"{model.name}: model.json does not say that it was trained without the held-out curves of"
-                    " training/data/splits.json, so P2 would measure known curves; train one without them, or leave p2 out"
-                )
-
-    def _head(self) -> Table:
-        """Return what the report begins with."""
-        settings = self.settings
-        models = {model.name: {"sha256": model.sha256, "training": model.training} for model in settings.models}
-        shown = {"photographs": settings.photographs, "seed": settings.seed, "material": self.material.digest}
-        return {"settings": shown, "models": models, "notes": [] if self.material.data else [QUICK_NOTE]}
-
-    def _files(self, protocol: str, depends_on: Table) -> dict[str, CaseFile]:
+    def _files(self, protocol: str, depends_on: dict[str, Any]) -> dict[str, CaseFile]:
         """Return the case files of a protocol: those of the baselines and of every model."""
+        estimators: dict[str, dict[str, str]] = {BASELINES: {}}
+        for model in self.settings.models:
+            estimators[model.name] = {"sha256": model.measured.sha256, "uncertainty": model.uncertainty_digest}
         files = {}
-        parties: dict[str, Table] = {BASELINE_PARTY: {}}
-        parties |= {m.name: {"sha256": m.sha256, "calibration": m.calibration} for m in self.settings.models}
-        for name, own in parties.items():
-            settings = depends_on | {"seed": self.settings.seed} | own
-            path = self.settings.out / "cases" / name / f"{protocol}.json"
-            files[name] = CaseFile.opened(path, settings, self._code)
+        for name, own in estimators.items():
+            path = self._path(f"cases/{name}/{protocol}.json")
+            files[name] = CaseFile.opened(path, depends_on | {"seed": self.settings.seed} | own, self._code)
             if files[name].is_of_other_code:
-                self.report["notes"].append(
-                    f"cases/{name}/{protocol}.json was measured before the code changed; delete it to measure again"
-                )
+                relative = path.relative_to(self.settings.out)
+                self._notes.append(f"{relative} was measured before the code changed; delete it to measure again")
         return files
 
-    def _measured(self, protocol: str, shots: Sequence[Shot]) -> dict[str, CaseFile]:
-        """Return the case files of a protocol, complete."""
-        files = self._files(protocol, {"material": self.material.digest})
-        measure(
-            shots,
-            self.material,
-            {model.name: model.folder for model in self.settings.models},
+    def _measured(self, protocol: str, photographs: Sequence[TestPhotograph]) -> dict[str, CaseFile]:
+        """Return the case files of a protocol on simulated photographs, complete."""
+        files = self._files(protocol, {"test_set": self.test_set.digest})
+        measure_simulated(
+            photographs,
+            self.test_set,
+            self._folders,
             files,
             exposures=lambda: self._exposures,
             workers=self.settings.workers,
@@ -220,79 +148,82 @@ class Evaluation:
         )
         return files
 
-    def _plain_sheet(self, protocol: str, curves: Sequence[int]) -> Sheet:
-        """Return the cases of P0 or P2."""
-        scenes = range(len(self.material.scenes))
-        shots = plain_shots(scenes, curves, count=self.settings.photographs, seed=self.settings.seed)
-        return Sheet.of(shots, self._measured(protocol, shots), seed=self.settings.seed)
-
-    def _p0_and_p1(self) -> None:
-        """Measure P0; P1 is some of its photographs."""
-        sheet = self._plain_sheet("p0", range(len(self.material.curves)))
-        if "p0" in self.settings.protocols:
-            self.report["P0"] = plain_table(sheet, self._names, self.material)
-            draw_distribution(self._path("p0.png"), sheet, self._names, f"P0: {len(sheet.shots)} photographs")
-            self._keep_for_calibration("P0", sheet.columns)
-        if "p1" in self.settings.protocols:
-            training = {model.name: model.training for model in self.settings.models}
-            self.report["P1"] = other_kind_table(sheet, training, self.material)
-
-    def _p2(self) -> None:
-        """Measure P2."""
-        sheet = self._plain_sheet("p2", self.material.held_out)
-        self.report["P2"] = plain_table(sheet, self._names, self.material)
-        draw_distribution(self._path("p2.png"), sheet, self._names, f"P2: {len(sheet.shots)} photographs")
-        self._keep_for_calibration("P2", sheet.columns)
-
-    def _p3(self) -> None:
-        """Measure P3."""
+    def _clean(self, protocol: str, curves: Sequence[int]) -> tuple[list[TestPhotograph], ErrorTable]:
+        """Return the photographs of P0 or P2 and their errors."""
+        scenes = range(len(self.test_set.scenes))
         settings = self.settings
-        shots = stress_shots(
-            range(len(self.material.scenes)),
-            range(len(self.material.curves)),
+        photographs = clean_photographs(scenes, curves, count=settings.photographs, seed=settings.seed)
+        return photographs, ErrorTable.of(photographs, self._measured(protocol, photographs), seed=settings.seed)
+
+    @cached_property
+    def _known(self) -> tuple[list[TestPhotograph], ErrorTable]:
+        """Return the photographs of P0 and their errors, of which P1 is a part."""
+        return self._clean("p0", range(len(self.test_set.curves)))
+
+    def _p0(self) -> CleanReport:
+        """Measure known responses."""
+        return self._clean_report("P0", *self._known)
+
+    def _p1(self) -> dict[str, OtherKindReport]:
+        """Pick the photographs of P0 that show another kind of scene than training."""
+        models = {model.name: model.measured for model in self.settings.models}
+        return other_kind_report(*self._known, models, self.test_set)
+
+    def _p2(self) -> CleanReport:
+        """Measure unseen responses."""
+        return self._clean_report("P2", *self._clean("p2", self.test_set.held_out))
+
+    def _clean_report(self, name: str, photographs: list[TestPhotograph], table: ErrorTable) -> CleanReport:
+        """Return the report of P0 or P2, and draw it."""
+        models = self.settings.names
+        draw_distributions(self._path(f"{name.lower()}.png"), table, models, f"{name}: {len(photographs)} photographs")
+        self._with_uncertainty[name] = {model: table.columns[model] for model in models}
+        return clean_report(photographs, table, models, self.test_set)
+
+    def _p3(self) -> StressReport:
+        """Measure stress."""
+        settings = self.settings
+        photographs = stress_photographs(
+            range(len(self.test_set.scenes)),
+            range(len(self.test_set.curves)),
             count=min(settings.stress_photographs, settings.photographs),
             seed=settings.seed,
             conditions=settings.conditions,
-            trials=settings.trials,
+            queries=settings.queries,
         )
-        files = self._measured("p3", shots)
-        self.report["P3"] = stress_table(shots, files, self._names, seed=settings.seed)
-        draw_stress(self._path("p3.png"), self.report["P3"], self._names)
+        report = stress_report(photographs, self._measured("p3", photographs), settings.names, seed=settings.seed)
+        draw_stress(self._path("p3.png"), report, settings.names)
+        return report
 
-    def _p4(self) -> None:
-        """Measure P4."""
-        data, models = self.material.data, {model.name: model.folder for model in self.settings.models}
-        if data is None:
+    def _p4(self) -> dict[str, RealReport]:
+        """Measure real photographs, in each folder and together."""
+        if self.test_set.data is None:
             raise CRFNetError("p4 needs real photographs; give --data instead of --quick")
-        cases = real_cases(data)
-        files = self._files("p4", real_settings(cases))
-        measure_real(cases, models, files, self.material.curves)
-        self.report["P4"] = real_table(cases, files, self._names, seed=self.settings.seed)
-        for name in self._names:
-            draw_real(self._path(f"p4-{name}.png"), cases, files[name], files[BASELINE_PARTY], name)
-        trusted = [case.name for case in cases if case.is_trusted]
-        self._keep_for_calibration("P4", {name: files[name].columns(trusted)[name] for name in self._names})
+        names, sets = self.settings.names, real_photographs(self.test_set.data)
+        tables = {name: self._real_table(name, photographs) for name, photographs in sets.items()}
+        if len(tables) > 1:
+            tables[BOTH] = RealTable.joined([table.trusted for table in tables.values()])
+        for name, table in tables.items():
+            self._with_uncertainty[f"P4 {name}"] = {model: table.trusted.columns(model) for model in names}
+        return {name: real_report(table, names, seed=self.settings.seed) for name, table in tables.items()}
 
-    def _keep_for_calibration(self, protocol: str, columns: dict[str, dict[str, np.ndarray]]) -> None:
-        """Remember the cases of a protocol for P5."""
-        self._calibrated[protocol] = {name: columns[name] for name in self._names}
+    def _real_table(self, name: str, photographs: Sequence[RealPhotograph]) -> RealTable:
+        """Measure the real photographs of one folder, and draw them."""
+        files = self._files(f"p4-{name}", {"photographs": [photograph.name for photograph in photographs]})
+        measure_real(photographs, self._folders, files, self.test_set.curves, title=f"P4 {name}")
+        table = RealTable.of(photographs, files)
+        for model in self.settings.names:
+            draw_real(self._path(f"p4-{name}-{model}.png"), table, model, f"P4, data/{name}: {model}")
+        return table
 
-    def _p5(self) -> None:
+    def _p5(self) -> dict[str, dict[str, Reliability]]:
         """Compare uncertainties with errors."""
-        self.report["P5"] = {
+        report = {
             protocol: {
-                name: calibration(part["estimation"], part["uncertainty"], part["coverage"])
-                for name, part in models.items()
+                name: reliability(columns.errors.estimation, columns.uncertainty, columns.coverage)
+                for name, columns in models.items()
             }
-            for protocol, models in self._calibrated.items()
+            for protocol, models in self._with_uncertainty.items()
         }
-        draw_calibration(self._path("p5.png"), self._calibrated, self.report["P5"])
-
-    def _path(self, name: str) -> Path:
-        """Return the path of a file of the report."""
-        return self.settings.out / name
-
-    def _write(self) -> None:
-        """Write report.json and report.md."""
-        atomic_write_text(self._path("report.json"), json.dumps(self.report, indent=1) + "\n", overwrite=True)
-        atomic_write_text(self._path("report.md"), report_text(self.report), overwrite=True)
+        draw_reliability(self._path("p5.png"), self._with_uncertainty, report)
+        return report

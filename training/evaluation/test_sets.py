@@ -1,4 +1,4 @@
-"""What photographs are taken of and with: scenes, responses, and the exposure s_crf of each response."""
+"""What models are measured on: scenes, responses, and the exposure s_crf that belongs to each response."""
 
 from __future__ import annotations
 
@@ -12,20 +12,21 @@ from scipy.stats import norm
 from crfnet_core.emor import EmorBasis
 from crfnet_core.response import ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import IRRADIANCE, read_dorf
 from training.data.scenes import Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
 from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, read_light
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
-#: Spread of the log-normal luminance, in stops, that sets the exposures where there are no training scenes: about that
-#: of the training scenes, each scaled to a geometric mean of 1.
+#: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
+#: scenes: about that of the training scenes, each scaled to a geometric mean of 1.
 REFERENCE_STOPS = 2.0
 
 
 @dataclass(frozen=True)
 class SceneFile:
-    """A scene on disk; `kind` is "panorama" or "photograph", and `is_light` one of Blender's studio lights."""
+    """A scene on disk; `kind` is "panorama" or "photograph", and `is_light` marks a studio light of Blender."""
 
     name: str
     kind: str
@@ -38,31 +39,33 @@ class SceneFile:
 
 
 @dataclass(frozen=True, eq=False)
-class Material:
+class TestSet:
     """Scenes that no model was trained on, and responses.
 
     Parameters
     ----------
     scenes : tuple of SceneFile
         The test scenes.
-    curves : ndarray, shape (N, 1024)
-        True responses.
+    curves : ndarray, float64, shape (N, 1024)
+        True responses at 1024 uniform irradiances.
     curve_names : tuple of str
         Their N names.
     held_out : tuple of int
-        The curves that P2 holds out; empty where there is no such split.
+        Numbers of the responses that P2 holds out; empty where there is no such split.
     data : Path, optional
-        The folder of the data; None for the bundled material.
+        The folder of the data; None for the bundled test set.
     """
 
+    __test__ = False  # no test class of pytest
+
     scenes: tuple[SceneFile, ...]
-    curves: np.ndarray
+    curves: Float64Array
     curve_names: tuple[str, ...]
     held_out: tuple[int, ...] = ()
     data: Path | None = None
 
-    def exposures(self) -> np.ndarray:
-        """Return s_crf of every curve, shape (N,): it belongs to the curve and not to the photograph."""
+    def exposures(self) -> Float64Array:
+        """Return s_crf of every response, shape (N,): it belongs to the response and not to the photograph."""
         luminance = log_normal_luminance() if self.data is None else training_luminance(self.data)
         return np.array([automatic_exposure(curve, luminance) for curve in self.curves])
 
@@ -73,7 +76,7 @@ class Material:
         return hashlib.sha256(names.encode() + np.round(self.curves, 6).tobytes()).hexdigest()[:16]
 
 
-def dorf_material(data: Path) -> Material:
+def dorf_test_set(data: Path) -> TestSet:
     """Return the test scenes of the folder `data` and the 201 responses of DoRF.
 
     Raises
@@ -88,17 +91,17 @@ def dorf_material(data: Path) -> Material:
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
     )
-    return Material(scenes, curves, tuple(f"DoRF {k}" for k in range(len(curves))), tuple(held_out), data)
+    return TestSet(scenes, curves, tuple(f"DoRF {k}" for k in range(len(curves))), tuple(held_out), data)
 
 
-def bundled_material(lights: Path = LIGHTS_FOLDER) -> Material:
-    """Return Blender's studio lights and responses made from formulas: what the repository itself holds."""
+def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:
+    """Return studio lights of Blender and responses made from formulas: what the repository itself holds."""
     scenes = tuple(SceneFile(Path(light.file).stem, "panorama", lights / light.file, True) for light in LIGHTS)
     named = formula_curves()
-    return Material(scenes, np.stack(list(named.values())), tuple(named))
+    return TestSet(scenes, np.stack(list(named.values())), tuple(named))
 
 
-def formula_curves() -> dict[str, np.ndarray]:
+def formula_curves() -> dict[str, Float64Array]:
     """Return name -> response, shape (1024,): powers, standards, logarithms, an S-curve, and steps along EMoR."""
     basis, encoded = EmorBasis.load(), srgb_encode(IRRADIANCE)
     steps = {"0": (), "-4 h1": (-4,), "+4 h1": (4,), "+2 h2": (0, 2), "-2 h1 - 1.5 h2": (-2, -1.5)}
@@ -110,7 +113,7 @@ def formula_curves() -> dict[str, np.ndarray]:
     return {name: ResponseCurve.from_samples(row).brightness for name, row in samples.items()}
 
 
-def training_luminance(data: Path) -> np.ndarray:
+def training_luminance(data: Path) -> Float32Array:
     """Return luminances of the training scenes of the folder `data`, without those that were imported later.
 
     So the test photographs stay the same when training gets more scenes.
@@ -119,7 +122,7 @@ def training_luminance(data: Path) -> np.ndarray:
     return reference_luminance([read_scene(data / "linear" / name, is_panorama) for name, is_panorama in files])
 
 
-def log_normal_luminance(size: int = 4096) -> np.ndarray:
-    """Return evenly spread quantiles, float32 (size,), of a log-normal luminance with a geometric mean of 1."""
+def log_normal_luminance(size: int = 4096) -> Float32Array:
+    """Return evenly spaced quantiles, float32 (size,), of a log-normal luminance with a geometric mean of 1."""
     quantiles = norm.ppf((np.arange(size) + 0.5) / size)
     return np.exp2(REFERENCE_STOPS * quantiles).astype(np.float32)

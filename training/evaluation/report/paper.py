@@ -10,14 +10,14 @@ class PaperFigures:
     """Mean E_est and E_lin (x 1e-2) of one row of the paper."""
 
     estimation: float
-    linearisation: float
+    linearization: float
 
 
 #: Sec. 4: all 201 curves on unseen photographs. Every row of Table 2 is worse: it seems to be exposure s_crf itself.
 OVERALL = PaperFigures(1.607, 2.089)
 #: Sec. 4: gamma 2.2 on the same photographs.
 GAMMA = PaperFigures(3.132, 5.821)
-#: Ratios to gamma 2.2 and shares of photographs on which the network wins.
+#: Ratios to gamma 2.2, and fractions of photographs on which the network wins.
 RATIO = PaperFigures(0.513, 0.359)
 WIN_RATE = PaperFigures(0.78, 0.86)
 

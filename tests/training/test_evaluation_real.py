@@ -1,0 +1,173 @@
+"""P4 on made-up folders of real photographs."""
+
+import csv
+import shutil
+from dataclasses import astuple, replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+pytest.importorskip("matplotlib", reason="training needs the train extra")
+
+from crfnet_core.metrics import estimation_error, shape_error
+from crfnet_core.response import ResponseCurve
+from training.evaluation.measure.case_files import CaseFile
+from training.evaluation.measure.real import measure_real
+from training.evaluation.measure.real_photographs import mean_of_other_bodies, real_photographs
+from training.evaluation.protocols import Evaluation
+from training.evaluation.report.accuracy import accuracy, bodies_table
+from training.evaluation.settings import Model, Settings
+from training.evaluation.test_sets import bundled_test_set
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+#: Exponents of the measured responses.
+POWERS = {"two": 1.8, "three": 1.4, "four": 2.6}
+
+
+@pytest.fixture
+def model(fixed_model):
+    return Model.find(str(fixed_model))
+
+
+@pytest.fixture
+def data(tmp_path, root):
+    """Real photographs: all are the bundled plate, "one" with its true response, the others with powers."""
+    folder = tmp_path / "data"
+    for name in ("real/input", "real/gt", "real_bodies/photos", "real_bodies/gt"):
+        (folder / name).mkdir(parents=True)
+    shutil.copy(root / "tests/data/plate.jpg", folder / "real/input/plate.jpg")
+    shutil.copy(root / "tests/data/plate.jpg", folder / "real_bodies/photos/plate.jpg")
+    shutil.copy(root / "tests/data/plate_response.csv", folder / "real/gt/one.csv")
+    for name in ("two", "three"):
+        write_response(folder / f"real/gt/{name}.csv", POWERS[name])
+    for name in ("three", "four"):
+        write_response(folder / f"real_bodies/gt/{name}.csv", POWERS[name])
+    write_rows(
+        folder / "real/cases.csv",
+        ["id", "camera", "grade", "input_file"],
+        [
+            ["one", "Nikon D90", "A", "input/plate.jpg"],
+            ["two", "X2", "B", "input/plate.jpg"],
+            ["three", "X3", "C", "input/plate.jpg"],
+        ],
+    )
+    photo = "photos/plate.jpg"
+    write_rows(
+        folder / "real_bodies/cases.csv",
+        ["id", "body", "kind", "use", "grade", "file", "gt", "fold"],
+        [
+            ["b1", "NIKON D90", "camera", "yes", "B", photo, "gt/three.csv", "0"],
+            ["b2", "NIKON D90", "camera", "yes", "B", photo, "gt/four.csv", "0"],
+            ["b3", "P1", "phone", "yes", "B", photo, "gt/four.csv", "1"],
+            ["b4", "P2", "phone", "caution: few frames", "C", photo, "gt/four.csv", "2"],
+        ],
+    )
+    return folder
+
+
+def write_response(path, power):
+    table = np.stack([UNIFORM, UNIFORM ** (1 / power)], axis=1)
+    np.savetxt(path, table, delimiter=",", header="e,b", comments="")
+
+
+def write_rows(path, header, rows):
+    with path.open("w", newline="") as file:
+        csv.writer(file).writerows([header, *rows])
+
+
+def measured(model, out, data):
+    test_set = replace(bundled_test_set(), data=data)
+    return Evaluation(Settings(out, (model,), protocols=("p4",), workers=1), test_set).run()
+
+
+def errors(summary, name):
+    return summary.estimators[name].errors
+
+
+def test_p4_means_are_over_bodies(model, tmp_path, data):
+    report = measured(model, tmp_path / "out", data).p4
+    assert list(report) == ["real", "real_bodies", "both"]
+    real, bodies, both = report.values()
+    assert [(part.trusted.bodies, part.trusted.photographs) for part in (real, bodies, both)] == [
+        (2, 2),
+        (2, 3),
+        (3, 5),
+    ]
+    assert (real.all_grades.bodies, bodies.all_grades) == (3, None)
+    assert list(bodies.kinds) == ["camera", "phone"]
+    assert [row.name for row in both.bodies] == ["Nikon D90", "X2", "P1"]  # one of them from two folders
+    (difference,) = both.trusted.differences
+    assert (difference.first, difference.second) == ("fixed_model", "mean of the other bodies")
+    three, four = (
+        estimation_error(ResponseCurve.gamma(POWERS[k]), ResponseCurve.gamma(2.2)) for k in ("three", "four")
+    )
+    assert errors(bodies.trusted, "gamma 2.2").estimation.mean.value == pytest.approx(
+        ((three + four) / 2 + four) / 2, abs=1e-3
+    )
+
+
+def test_p4_knows_the_model_and_the_mean_of_the_other_bodies(model, tmp_path, data):
+    report = measured(model, tmp_path / "out", data).p4["real"]
+    one, two, _ = report.photographs
+    assert one.estimators["fixed_model"].errors.estimation < 0.02
+    assert one.estimators["fixed_model"].errors.shape < 0.01
+    assert two.estimators["fixed_model"].errors.estimation == pytest.approx(5.269, abs=0.01)
+    truth = ResponseCurve.gamma((POWERS["two"] + POWERS["three"]) / 2)  # by hand, from the other bodies of "one"
+    expected = [metric(plate_response(data), truth) for metric in (estimation_error, shape_error)]
+    found = one.estimators["mean of the other bodies"].errors
+    assert (found.estimation, found.shape) == pytest.approx(expected, abs=5e-3)
+    assert {path.name for path in (tmp_path / "out").glob("*.png")} == {
+        "p4-real-fixed_model.png",
+        "p4-real_bodies-fixed_model.png",
+        "p5.png",
+    }
+
+
+def plate_response(data):
+    return ResponseCurve.from_samples(np.loadtxt(data / "real/gt/one.csv", delimiter=",", skiprows=1)[:, 1])
+
+
+def test_the_mean_leaves_out_the_fold_and_counts_a_body_once(data):
+    photographs = real_photographs(data)["real_bodies"]
+    truths = {photograph.measured: photograph.truth() for photograph in photographs}
+    of_first, _, of_phone = (mean_of_other_bodies(photograph, photographs, truths) for photograph in photographs)
+    assert estimation_error(of_first, ResponseCurve.gamma(POWERS["four"])) < 0.02  # the phone alone
+    between = ResponseCurve.gamma((POWERS["three"] + POWERS["four"]) / 2)
+    assert estimation_error(of_phone, between) < 0.02  # the mean of the two stacks of the camera
+
+
+def test_without_the_folder_of_more_bodies_its_tables_are_left_out(model, tmp_path, data):
+    shutil.rmtree(data / "real_bodies")
+    report = measured(model, tmp_path / "out", data)
+    assert (list(report.p4), list(report.p5)) == (["real"], ["P4 real"])
+    text = (tmp_path / "out/report.md").read_text()
+    assert "### data/real: responses of grade A and B: 2 photographs of 2 bodies" in text
+    assert "data/real_bodies" not in text
+
+
+def test_model_json_gets_the_figures_of_every_set(model, tmp_path, data):
+    report = measured(model, tmp_path / "out", data)
+    figures = accuracy(report, "fixed_model")
+    assert list(figures) == ["P4 real", "P4 real_bodies", "P4 both"]
+    both = report.p4["both"].trusted
+    found = figures["P4 both"]
+    assert (found["photographs"], found["bodies"]) == (5, 3)
+    assert found["shape mean"] == errors(both, "fixed_model").shape.mean.value
+    assert found["shape mean of the other bodies"] == errors(both, "mean of the other bodies").shape.mean.value
+    assert "| Nikon D90 | AB | 3 |" in bodies_table(report, "fixed_model")
+
+
+def test_real_photographs_are_measured_once(model, tmp_path, data, monkeypatch):
+    photographs = real_photographs(data)["real"]
+    files = {model.name: CaseFile.opened(tmp_path / "p4.json", {}, "c")}
+    curves = bundled_test_set().curves
+    measure_real(photographs, {model.name: model.folder}, files, curves)
+    before = {label: astuple(row[model.name]) for label, row in files[model.name].rows.items()}
+    monkeypatch.setattr(
+        "training.evaluation.measure.real.read_photo", lambda path: pytest.fail(f"{path} was read again")
+    )
+    measure_real(photographs, {model.name: model.folder}, files, curves)
+    assert {label: astuple(row[model.name]) for label, row in files[model.name].rows.items()} == before

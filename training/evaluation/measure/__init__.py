@@ -1,0 +1,9 @@
+"""From photographs to figures: every estimator (model or baseline) is asked about every photograph.
+
+- `figures`: what is measured of one estimator on one photograph.
+- `case_files`: these figures on disk, so that an interrupted evaluation goes on.
+- `jobs`: a part of the simulated photographs, taken and measured by one process.
+- `simulated`: all simulated photographs, on several processes.
+- `real_photographs`: the folders of real photographs with measured responses, and the mean of other bodies.
+- `real`: all real photographs.
+"""

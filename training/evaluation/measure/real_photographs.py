@@ -1,0 +1,149 @@
+"""Real photographs of cameras whose responses were measured; no model is trained on their pixels."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.response import ResponseCurve
+from training.evaluation.baselines import mean_in_log_irradiance
+
+#: The two folders of real photographs, which are also their names in the report.
+REAL, REAL_BODIES = "real", "real_bodies"
+
+#: Grades of the measured responses of DATA/real that count; the others are shown.
+TRUSTED_GRADES = ("A", "B")
+
+#: What `use` says in DATA/real_bodies of a photograph that counts; the others are not measured.
+USED = "yes"
+
+#: The kinds of the bodies of DATA/real, whose list has no such column.
+KINDS = {
+    "Sony XQ-CT72 (Xperia 1 IV)": "phone",
+    "samsung SM-A528B (Galaxy A52s)": "phone",
+    "Nikon D90": "camera",
+    "Nikon D90 (second body)": "camera",
+    "unknown Nikon DSC_ (SSARCandy, resized PNG)": "camera",
+    "Canon EOS 600D": "camera",
+    "Samsung EX2F (resized via Photoshop)": "compact",
+    "Panasonic DMC-LX7": "compact",
+    "Canon PowerShot S45": "compact",
+    "Canon PowerShot S3 IS": "compact",
+}
+
+
+@dataclass(frozen=True)
+class RealPhotograph:
+    """A photograph, its camera, and how well the camera's response was measured.
+
+    Parameters
+    ----------
+    name : str
+        Of the photograph.
+    body : str
+        The camera.
+    kind : str
+        "phone", "compact", "camera" (with interchangeable lenses) or "unknown".
+    grade : str
+        How well the response was measured: A, B or C.
+    is_trusted : bool
+        Whether the measured response is good enough to count.
+    fold : str
+        Bodies of one fold are left out of a mean together.
+    photograph, measured : Path
+        The files of the photograph and of its response.
+    """
+
+    name: str
+    body: str
+    kind: str
+    grade: str
+    is_trusted: bool
+    fold: str
+    photograph: Path
+    measured: Path
+
+    @property
+    def body_key(self) -> str:
+        """What bodies are told apart by: two folders may write a name in different case."""
+        return self.body.casefold()
+
+    def truth(self) -> ResponseCurve:
+        """Return the measured response."""
+        return ResponseCurve.from_samples(np.loadtxt(self.measured, delimiter=",", skiprows=1)[:, 1])
+
+
+def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
+    """Return folder -> photographs, in the order of its list; DATA/real_bodies may be absent.
+
+    In DATA/real each body is a fold of its own; DATA/real_bodies says which bodies share one.
+    """
+    sets = {REAL: [_of_real(data / REAL, row) for row in _rows(data / REAL)]}
+    if (data / REAL_BODIES).is_dir():
+        folder = data / REAL_BODIES
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in _rows(folder) if row["use"] == USED]
+    return sets
+
+
+def _rows(folder: Path) -> list[dict[str, str]]:
+    """Return the rows of a folder's cases.csv."""
+    with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
+        return list(csv.DictReader(file))
+
+
+def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
+    """Return the photograph of a row of DATA/real/cases.csv."""
+    return RealPhotograph(
+        name=row["id"],
+        body=row["camera"],
+        kind=KINDS.get(row["camera"], "unknown"),
+        grade=row["grade"],
+        is_trusted=row["grade"] in TRUSTED_GRADES,
+        fold=row["camera"],
+        photograph=folder / row["input_file"],
+        measured=folder / "gt" / f"{row['id']}.csv",
+    )
+
+
+def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
+    """Return the photograph of a row of DATA/real_bodies/cases.csv; those of one exposure stack share a response."""
+    return RealPhotograph(
+        name=row["id"],
+        body=row["body"],
+        kind=row["kind"],
+        grade=row["grade"],
+        is_trusted=True,
+        fold=row["fold"],
+        photograph=folder / row["file"],
+        measured=folder / row["gt"],
+    )
+
+
+def mean_of_other_bodies(
+    photograph: RealPhotograph, photographs: Sequence[RealPhotograph], truths: dict[Path, ResponseCurve]
+) -> ResponseCurve:
+    """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
+
+    This is the estimate of someone who knows cameras and does not look at the photograph. Where there is no other
+    body it is gamma 2.2.
+
+    Parameters
+    ----------
+    photograph : RealPhotograph
+        Whose fold is left out.
+    photographs : sequence of RealPhotograph
+        All of the folder.
+    truths : dict
+        File of a measured response -> response.
+    """
+    bodies: dict[str, dict[Path, ResponseCurve]] = {}
+    for other in photographs:
+        if other.fold != photograph.fold:
+            bodies.setdefault(other.body_key, {})[other.measured] = truths[other.measured]
+    if not bodies:
+        return ResponseCurve.gamma(2.2)
+    return mean_in_log_irradiance([mean_in_log_irradiance(list(curves.values())) for curves in bodies.values()])

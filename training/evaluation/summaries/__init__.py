@@ -1,0 +1,9 @@
+"""From figures of photographs to what the report says of them, with confidence intervals.
+
+- `bootstrap`: 95 % intervals by resampling scenes and responses together.
+- `error_table`: the errors of all estimators on the same photographs, side by side, and their summaries.
+- `clean`: P0, P1 and P2.
+- `stress`: P3.
+- `bodies`: P4, means over the bodies of real cameras.
+- `reliability`: P5, whether the uncertainty foretells the error.
+"""

@@ -1,0 +1,130 @@
+"""Sum up P4: the mean of each body, and the means over bodies, each counted once."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from training.evaluation.baselines import GAMMA, OTHER_BODIES
+from training.evaluation.measure.case_files import CaseFile
+from training.evaluation.measure.figures import PhotographFigures
+from training.evaluation.measure.real_photographs import RealPhotograph
+from training.evaluation.report.content import BodySummary, RealFigures, RealReport, RealRow
+from training.evaluation.report.errors import PerError
+from training.evaluation.summaries.bootstrap import Resampling
+from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
+
+#: The baselines that stand beside the models in the rows of bodies and of photographs.
+SHOWN_BASELINES = (GAMMA, OTHER_BODIES)
+
+
+@dataclass(frozen=True)
+class RealTable:
+    """Real photographs, and the figures of every estimator on them.
+
+    Parameters
+    ----------
+    photographs : tuple of RealPhotograph
+        The N photographs.
+    figures : dict
+        Name of a model or baseline -> its figures on the N photographs.
+    """
+
+    photographs: tuple[RealPhotograph, ...]
+    figures: dict[str, list[PhotographFigures]]
+
+    @classmethod
+    def of(cls, photographs: Sequence[RealPhotograph], files: dict[str, CaseFile]) -> RealTable:
+        """Return the figures that case files hold of real photographs."""
+        names = [photograph.name for photograph in photographs]
+        figures = {name: rows for file in files.values() for name, rows in file.figures(names).items()}
+        return cls(tuple(photographs), figures)
+
+    @classmethod
+    def joined(cls, tables: Sequence[RealTable]) -> RealTable:
+        """Return the photographs of several tables, one after the other."""
+        figures = {name: [row for table in tables for row in table.figures[name]] for name in tables[0].figures}
+        return cls(tuple(photograph for table in tables for photograph in table.photographs), figures)
+
+    def subset(self, chosen: Iterable[int]) -> RealTable:
+        """Return the photographs at some positions."""
+        index = list(chosen)
+        figures = {name: [rows[k] for k in index] for name, rows in self.figures.items()}
+        return RealTable(tuple(self.photographs[k] for k in index), figures)
+
+    @property
+    def trusted(self) -> RealTable:
+        """The photographs whose response was measured well enough to count."""
+        return self.subset(k for k, photograph in enumerate(self.photographs) if photograph.is_trusted)
+
+    def of_kind(self, kind: str) -> RealTable:
+        """Return the photographs of bodies of one kind."""
+        return self.subset(k for k, photograph in enumerate(self.photographs) if photograph.kind == kind)
+
+    @property
+    def bodies(self) -> list[RealTable]:
+        """The photographs of each body."""
+        keys = [photograph.body_key for photograph in self.photographs]
+        return [self.subset(k for k, key in enumerate(keys) if key == body) for body in dict.fromkeys(keys)]
+
+    def columns(self, name: str) -> ErrorColumns:
+        """Return the figures of one estimator as columns."""
+        return ErrorColumns.of(self.figures[name])
+
+
+def real_report(table: RealTable, models: Sequence[str], *, seed: int) -> RealReport:
+    """Return the report of P4 on a set of real photographs; `seed` is that of the bootstrap."""
+    trusted = table.trusted
+    kinds = sorted({photograph.kind for photograph in trusted.photographs})
+    has_others = len(trusted.photographs) < len(table.photographs)
+    singles = [table.subset([k]) for k in range(len(table.photographs))]
+    return RealReport(
+        trusted=_summary(trusted, models, seed),
+        all_grades=_summary(table, models, seed) if has_others else None,
+        kinds={kind: _summary(trusted.of_kind(kind), models, seed) for kind in kinds},
+        bodies=tuple(_row(part.photographs[0].body, part, models) for part in table.bodies),
+        photographs=tuple(_row(part.photographs[0].name, part, models) for part in singles),
+    )
+
+
+def _summary(table: RealTable, models: Sequence[str], seed: int) -> BodySummary:
+    """Return the means over bodies; bodies, not photographs, are resampled and count equally."""
+    keys, body = np.unique([photograph.body_key for photograph in table.photographs], return_inverse=True)
+    resampling = Resampling.of(body, np.zeros(len(body), dtype=int), seed=seed).scaled(1 / np.bincount(body)[body])
+    errors = ErrorTable({name: table.columns(name) for name in table.figures}, resampling)
+    return BodySummary(
+        bodies=len(keys),
+        photographs=len(table.photographs),
+        estimators={name: errors.summary(name) for name in errors.names(models)},
+        differences=errors.differences([*models, OTHER_BODIES]),
+    )
+
+
+def _row(name: str, table: RealTable, models: Sequence[str]) -> RealRow:
+    """Return the mean figures on the photographs of one body, or on one photograph."""
+    first = table.photographs[0]
+    return RealRow(
+        name=name,
+        body=first.body,
+        kind=first.kind,
+        grade="".join(sorted({photograph.grade for photograph in table.photographs})),
+        photographs=len(table.photographs),
+        estimators={estimator: _means(table.figures[estimator]) for estimator in [*models, *SHOWN_BASELINES]},
+    )
+
+
+def _means(figures: Sequence[PhotographFigures]) -> RealFigures:
+    """Return the mean of every figure; a baseline has neither uncertainty nor coverage."""
+    return RealFigures(
+        errors=PerError.combined(lambda *values: float(np.mean(values)), *(row.errors for row in figures)),
+        uncertainty=_mean([row.uncertainty for row in figures]),
+        coverage=_mean([row.coverage for row in figures]),
+    )
+
+
+def _mean(values: Sequence[float | None]) -> float | None:
+    """Return the mean of values, or None where one is absent."""
+    known = [value for value in values if value is not None]
+    return float(np.mean(known)) if len(known) == len(values) else None

@@ -1,0 +1,91 @@
+"""Confidence intervals by resampling scenes and responses together."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crfnet_core.types import BoolArray, Float64Array, IndexArray
+from training.evaluation.report.errors import Interval
+
+#: Resamples, and the fraction of them inside an interval.
+RESAMPLES, CONFIDENCE = 1000, 0.95
+
+
+@dataclass(frozen=True, eq=False)
+class Resampling:
+    """How often each of N photographs counts: once in the first row, at random in the R others.
+
+    Every photograph belongs to a scene and to a response, and both are only samples of what there is. So scenes and
+    responses are drawn with replacement, each on its own, and a photograph counts as often as its scene times as its
+    response. The same weights serve every estimator, so that differences are paired.
+
+    Source: Owen, "The pigeonhole bootstrap", Annals of Applied Statistics 2007; its intervals are a little too wide.
+
+    Parameters
+    ----------
+    weights : ndarray, float64, shape (1 + R, N)
+        No row is all 0.
+    """
+
+    weights: Float64Array
+
+    @classmethod
+    def of(
+        cls, scenes: NDArray[np.generic], curves: NDArray[np.generic], *, seed: int, resamples: int = RESAMPLES
+    ) -> Resampling:
+        """Return the weights of photographs that belong to `scenes` and `curves`, labels of shape (N,)."""
+        rng = np.random.default_rng(seed)
+        parts = []
+        for labels in (scenes, curves):
+            _, level = np.unique(labels, return_inverse=True)
+            levels = level.max() + 1
+            counts = rng.multinomial(levels, np.full(levels, 1 / levels), size=resamples)  # (R, levels)
+            parts.append(counts[:, level].astype(np.float64))
+        drawn = parts[0] * parts[1]
+        return cls(np.concatenate([np.ones((1, len(scenes))), drawn[drawn.any(axis=1)]]))
+
+    def subset(self, chosen: BoolArray | IndexArray) -> Resampling:
+        """Return the weights of some photographs, from a mask (N,) or indices."""
+        weights = self.weights[:, chosen]
+        return Resampling(weights[weights.any(axis=1)])
+
+    def scaled(self, factors: Float64Array) -> Resampling:
+        """Return the weights times positive factors (N,), as for a mean over groups of different sizes."""
+        return Resampling(self.weights * factors)
+
+    def means(self, values: Float64Array) -> Float64Array:
+        """Return the weighted means, shape (1 + R,), of values (N,)."""
+        return self.weights @ values / self.weights.sum(axis=1)
+
+    def quantiles(self, values: Float64Array, fraction: float) -> Float64Array:
+        """Return the weighted quantiles, shape (1 + R,): the least value with this fraction of the weight up to it."""
+        order = np.argsort(values)
+        below = np.cumsum(self.weights[:, order], axis=1)  # (1 + R, N)
+        reached = below >= fraction * below[:, -1:] - 1e-9
+        return values[order][np.argmax(reached, axis=1)]
+
+    def mean(self, values: Float64Array) -> Interval:
+        """Return the mean of values (N,)."""
+        return interval(self.means(values))
+
+    def quantile(self, values: Float64Array, fraction: float) -> Interval:
+        """Return a quantile of values (N,)."""
+        return interval(self.quantiles(values, fraction))
+
+    def ratio(self, values: Float64Array, others: Float64Array) -> Interval:
+        """Return the mean of values (N,) divided by that of others (N,)."""
+        return interval(self.means(values) / self.means(others))
+
+    def difference(self, values: Float64Array, others: Float64Array) -> Interval:
+        """Return the mean of the paired differences of values (N,) and others (N,)."""
+        return interval(self.means(values - others))
+
+
+def interval(samples: Float64Array) -> Interval:
+    """Return the first sample with the interval of the others; without others the interval is that sample itself."""
+    drawn = samples[1:] if len(samples) > 1 else samples
+    low, high = np.quantile(drawn, [(1 - CONFIDENCE) / 2, (1 + CONFIDENCE) / 2])
+    return Interval(float(samples[0]), float(low), float(high))
