@@ -1,21 +1,33 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Estimate Camera Response: from a photograph to its camera's response and the linear plate, inside Blender.
 
-Nothing here imports the estimator while Blender starts: see `libraries`.
+ui           what the user sees: operators, panel, settings, preferences; gathers a job from Blender
+scene        what is read from and changed in Blender's data: plates, node groups, stored estimates
+work         what a job does in its own thread: estimate and write files; no module of it imports bpy
+lazy_import  loads the modules that need the estimator, when they are first used
+build        builds the zips of the extension
+
+`ui` may import `scene`, and both may import `work`. No room is imported before `register`, so that `work` can be
+imported where there is no Blender. Registering does not import the estimator: see `lazy_import`.
 """
 
-from . import handlers, operators, panels, preferences, settings
-
-_MODULES = (preferences, settings, operators, panels, handlers)
+from types import ModuleType
 
 
 def register() -> None:
-    """Register everything; Blender calls this."""
-    for module in _MODULES:
+    """Register the classes, properties and handlers; Blender calls this when the add-on is enabled."""
+    for module in _registered():
         module.register()
 
 
 def unregister() -> None:
-    """Take everything back; Blender calls this."""
-    for module in reversed(_MODULES):
+    """Undo `register`; Blender calls this when the add-on is disabled."""
+    for module in reversed(_registered()):
         module.unregister()
+
+
+def _registered() -> tuple[ModuleType, ...]:
+    """Return the modules with something to register, in order: the settings use the preferences."""
+    from .ui import handlers, operators, panel, plate_settings, preferences
+
+    return preferences, plate_settings, operators, panel, handlers

@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build the Blender extension, one zip per platform: `make addon`. Needs the standard library and pip.
+"""Build the Blender extension, one zip per platform: `make addon`. Needs only the standard library and pip.
 
-The downloads are those of wheels.sha256 and stay in build/wheels, so that the next build needs no network. Same
-sources, same bytes: every zip is stored in the order of its names with one date, and our own packages become a wheel
-with the setuptools of wheels.sha256, in a folder that holds nothing else.
+The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so the next build needs no network. The
+same sources give the same bytes: the members of a zip are sorted by name, uncompressed, and all of one date; the wheel
+of `crfnet_core` and `ocio` is built by the setuptools of wheels.sha256 from a folder that holds nothing else.
 """
 
 from __future__ import annotations
@@ -22,13 +22,14 @@ import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
+#: The exit code after a failure.
 FAILED = 2
 
 ADDON = Path(__file__).resolve().parent
 ROOT = ADDON.parent
 MANIFEST = "blender_manifest.toml"
 
-#: What Blender calls a platform, and how the platform tags of its wheels begin and end.
+#: Blender's name of each platform, and how the platform tags of its wheels begin and end.
 WHEEL_PLATFORMS = {
     "linux-x64": ("manylinux", "x86_64"),
     "macos-arm64": ("macosx", "arm64"),
@@ -36,9 +37,11 @@ WHEEL_PLATFORMS = {
     "windows-x64": ("win", "amd64"),
 }
 
-#: What of this folder goes into the zip, and what of the project goes into our wheel.
+#: Files of this folder that go into the zip, and exceptions from them.
 SHIPPED = ("LICENSE", "**/*.py")
 NOT_SHIPPED = ("build.py",)
+
+#: Files and folders of the project from which our own wheel is built.
 WHEEL_SOURCES = ("pyproject.toml", "README.md", "LICENSE", "crfnet_core", "ocio")
 
 #: The earliest date that a zip can hold.
@@ -46,11 +49,11 @@ DATE = (1980, 1, 1, 0, 0, 0)
 
 
 class BuildError(Exception):
-    """What keeps the extension from being built, in one line."""
+    """A reason why the extension cannot be built, in one line."""
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Build the zips that the command line asks for; return the exit code, 0 or `FAILED`."""
+    """Build the zips that the command line asks for, and return the exit code, 0 or `FAILED`."""
     options = _parser().parse_args(argv)
     try:
         for path in build_addon(options.platform or list(WHEEL_PLATFORMS), out=options.out, cache=options.cache):
@@ -67,16 +70,16 @@ def build_addon(platforms: Sequence[str], *, out: Path, cache: Path) -> list[Pat
     Parameters
     ----------
     platforms : sequence of str
-        Blender's names, keys of `WHEEL_PLATFORMS`.
+        Blender's names of the platforms: keys of `WHEEL_PLATFORMS`.
     out : Path
-        Where the zips go; older ones of the same name are replaced.
+        The folder for the zips; older zips of the same name are replaced.
     cache : Path
-        Where downloads are kept.
+        The folder that keeps the downloads.
 
     Raises
     ------
     BuildError
-        If a wheel cannot be downloaded or is not the expected one, or the version numbers disagree.
+        If a wheel cannot be downloaded or has another SHA-256 than expected, or the version numbers disagree.
     """
     text = (ADDON / MANIFEST).read_text(encoding="utf-8")
     manifest = tomllib.loads(text)
@@ -97,22 +100,22 @@ def build_addon(platforms: Sequence[str], *, out: Path, cache: Path) -> list[Pat
 
 
 def shipped_files() -> list[Path]:
-    """Return the files of this folder that go into every zip, the manifest excepted."""
+    """Return the files of this folder that go into every zip; the manifest, which differs, is not among them."""
     found = {path for pattern in SHIPPED for path in ADDON.glob(pattern)}
     return sorted(path for path in found if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
 
 
 def platform_wheels(wheels: Sequence[str], platform: str) -> list[str]:
-    """Return those of the manifest's wheels that run on a platform, for either Python."""
+    """Return the wheels of the manifest that run on a platform, for every version of Python."""
     system, machine = WHEEL_PLATFORMS[platform]
     tags = {wheel: Path(wheel).stem.rpartition("-")[2] for wheel in wheels}
     return [wheel for wheel, tag in tags.items() if tag == "any" or (tag.startswith(system) and tag.endswith(machine))]
 
 
 def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
-    """Return the manifest's text with one platform and its wheels.
+    """Return the text of the manifest with only one platform and its wheels.
 
-    Blender's own `--split-platforms` adds a table [build.generated] instead, which only its installer reads.
+    Blender's own `--split-platforms` adds a table [build.generated] instead, which nothing but its installer reads.
     """
     for key, values in (("platforms", [platform]), ("wheels", wheels)):
         lines = "".join(f"    {json.dumps(value)},\n" for value in values)
@@ -123,10 +126,10 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
 
 
 def build_own_wheel(version: str, cache: Path) -> Path:
-    """Return the path of the wheel that holds `crfnet_core` and `ocio`, made anew beside the downloads.
+    """Build the wheel that holds `crfnet_core` and `ocio`, beside the downloads, and return its path.
 
-    It declares what `pip install` needs of it; Blender resolves no dependencies and brings numpy, OpenImageIO and
-    OpenColorIO itself. What only the command line imports (tqdm, shtab, matplotlib) the add-on never imports.
+    The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
+    and OpenColorIO, and the add-on does not import what only the command needs (tqdm, shtab, matplotlib).
     """
     fetch_wheel(_setuptools(), cache)
     with tempfile.TemporaryDirectory() as folder:
@@ -145,7 +148,7 @@ def build_own_wheel(version: str, cache: Path) -> Path:
 
 
 def fetch_wheel(name: str, cache: Path) -> Path:
-    """Return the path of a wheel of wheels.sha256 in the cache, after downloading it if it is not there yet."""
+    """Return the path of a wheel of wheels.sha256 in the cache; download it if it is absent or damaged."""
     expected = _expected_hashes().get(name)
     if expected is None:
         raise BuildError(f"{name}: has no line in wheels.sha256; download it and add what sha256sum says")
@@ -163,16 +166,16 @@ def fetch_wheel(name: str, cache: Path) -> Path:
 
 
 def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
-    """Write a zip whose bytes depend on the names and contents of its members alone.
+    """Write a zip whose bytes depend only on the names and contents of its members.
 
-    They are stored, because what deflate makes of them differs between versions of zlib; nearly all of it is wheels,
-    which are compressed already.
+    The members are stored uncompressed, because the output of deflate differs between versions of zlib. Most of them
+    are wheels, which are compressed already.
     """
     temporary = path.with_name(f".{path.name}")
     with zipfile.ZipFile(temporary, "w") as archive:
         for name in sorted(contents):
             info = zipfile.ZipInfo(name, DATE)
-            info.create_system = 3  # Unix, wherever this runs
+            info.create_system = 3  # Unix, on every system
             info.external_attr = 0o100644 << 16
             archive.writestr(info, contents[name])
     temporary.replace(path)
@@ -188,13 +191,13 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _expected_hashes() -> dict[str, str]:
-    """Return the SHA-256 of every wheel that may be downloaded, by its name."""
+    """Return the SHA-256 of every wheel that may be downloaded, by the name of the wheel."""
     lines = (ADDON / "wheels.sha256").read_text(encoding="utf-8").splitlines()
     return {name: digest for digest, name in map(str.split, lines)}
 
 
 def _setuptools() -> str:
-    """Return the name of the setuptools wheel that builds ours."""
+    """Return the name of the setuptools wheel that builds our own."""
     (name,) = (name for name in _expected_hashes() if name.startswith("setuptools-"))
     return name
 
@@ -205,7 +208,7 @@ def _sha256(path: Path) -> str:
 
 
 def _download(name: str, folder: Path) -> None:
-    """Let pip download the wheel of this name, of whatever platform and Python."""
+    """Download the wheel of this name with pip, for any platform and version of Python."""
     project, version, python, _, tags = Path(name).stem.split("-")
     arguments = ["download", "--no-deps", "--only-binary=:all:", f"--dest={folder}", f"{project}=={version}"]
     if python.startswith("cp"):
@@ -217,7 +220,7 @@ def _download(name: str, folder: Path) -> None:
 
 
 def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] | None = None) -> None:
-    """Run pip, with `options` in place of the user's if there are any, or say in one line what it said."""
+    """Run pip; raise a BuildError with its last error if it fails. `options` replace those of the environment."""
     users = {name: value for name, value in os.environ.items() if options is None or not name.startswith("PIP_")}
     command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
     done = subprocess.run(command, env=users | dict(options or {}), capture_output=True, text=True, check=False)
@@ -228,7 +231,7 @@ def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] |
 
 
 def _copy(source: Path, target: Path) -> None:
-    """Copy a file or a folder, without what Python compiled."""
+    """Copy a file, or a folder without the bytecode that Python leaves in it."""
     if source.is_dir():
         shutil.copytree(source, target, ignore=shutil.ignore_patterns("__pycache__"))
     else:

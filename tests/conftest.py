@@ -13,8 +13,10 @@ import numpy as np
 import pytest
 
 from ocio.cli import main
+from tests.helpers.images import write_image
 
 if TYPE_CHECKING:
+    from crfnet_core import ResponseEstimate
     from crfnet_core.response import ResponseCurve
 
 
@@ -95,3 +97,26 @@ def oiiotool() -> Callable[..., None]:
         subprocess.run(command, check=True, capture_output=True, text=True)
 
     return run
+
+
+@pytest.fixture(scope="session")
+def codes() -> np.ndarray:
+    """Code values, uint8, shape (256, 256, 3): every 8-bit code in each channel, in a different order in each."""
+    ramp = np.arange(256, dtype=np.uint8)
+    red = np.repeat(ramp[None], 256, axis=0)
+    return np.stack([red, red.T, red[:, ::-1]], axis=2)
+
+
+@pytest.fixture
+def plate_file(tmp_path, codes) -> Path:
+    """A photograph of these code values."""
+    return write_image(tmp_path / "plate.png", codes)
+
+
+@pytest.fixture
+def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
+    """Estimate the response of files with the fixed model: estimate(path, ...)."""
+    from crfnet_core import ResponseNetwork, estimate_response, read_photo
+
+    network = ResponseNetwork.load(fixed_model)
+    return lambda *paths: estimate_response([read_photo(path) for path in paths], network=network)

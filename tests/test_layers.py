@@ -1,4 +1,4 @@
-"""Who may import whom: `ocio -> crfnet_core <- training`, and no heavy guest in the core."""
+"""Who may import whom: `ocio -> crfnet_core <- training`, and no heavy guest in the core; and how large each may be."""
 
 import subprocess
 import sys
@@ -6,6 +6,11 @@ import sys
 import pytest
 
 GUESTS = ("bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy")
+
+PACKAGES = ("blender_addon", "crfnet_core", "ocio", "training")
+
+#: The most lines of a module, and the most modules of a package beside its `__init__.py`: more want another room.
+MOST_LINES, MOST_MODULES = 300, 12
 
 IMPORT_ALL = """
 import importlib, pkgutil, sys
@@ -51,3 +56,18 @@ def test_the_import_contracts_are_kept(root, monkeypatch, capsys):
     cli = pytest.importorskip("importlinter.cli", reason="import-linter comes with the dev extra")
     monkeypatch.chdir(root)
     assert cli.lint_imports(cache_dir=None, no_cache=True) == 0, capsys.readouterr().out
+
+
+def test_no_module_is_long(root):
+    lines = {
+        str(path.relative_to(root)): len(path.read_text(encoding="utf-8").splitlines())
+        for folder in (*PACKAGES, "tests")
+        for path in (root / folder).rglob("*.py")
+    }
+    assert {name: count for name, count in lines.items() if count > MOST_LINES} == {}
+
+
+def test_no_package_has_many_modules(root):
+    packages = [path.parent for folder in PACKAGES for path in (root / folder).rglob("__init__.py")]
+    modules = {str(path.relative_to(root)): len(list(path.glob("*.py"))) - 1 for path in packages}
+    assert {name: count for name, count in modules.items() if count > MOST_MODULES} == {}

@@ -7,8 +7,9 @@ import shutil
 import tempfile
 from pathlib import Path
 
-import numpy as np
 import pytest
+
+from tests.helpers.images import read_image
 
 #: The user's folders, for this process and those that it starts.
 USER = Path(tempfile.mkdtemp(prefix="crf_blender_user_"))
@@ -24,38 +25,6 @@ if importlib.util.find_spec("bpy") is not None:
 
 def pytest_sessionfinish():
     shutil.rmtree(USER, ignore_errors=True)
-
-
-class Files:
-    """Writes and reads images with OpenImageIO, as they are."""
-
-    @staticmethod
-    def write(path, pixels, **attributes):
-        import OpenImageIO as oiio
-
-        kind = {"uint8": oiio.UINT8, "uint16": oiio.UINT16, "float32": oiio.FLOAT}[str(pixels.dtype)]
-        header = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], kind)
-        header.attribute("oiio:UnassociatedAlpha", 1)
-        for name, value in attributes.items():
-            header.attribute(name.replace("__", ":"), value)
-        output = oiio.ImageOutput.create(str(path))
-        assert output.open(str(path), header), output.geterror()
-        assert output.write_image(np.ascontiguousarray(pixels))
-        output.close()
-        return path
-
-    @staticmethod
-    def read(path):
-        import OpenImageIO as oiio
-
-        image = oiio.ImageBuf(str(path))
-        assert not image.has_error, image.geterror()
-        return image.get_pixels(oiio.FLOAT)
-
-
-@pytest.fixture(scope="session")
-def files():
-    return Files
 
 
 @pytest.fixture
@@ -87,31 +56,8 @@ def in_editor():
     return show
 
 
-@pytest.fixture(scope="session")
-def codes():
-    """Code values, shape (256, 256, 3): all 8-bit codes in every channel, in different order."""
-    ramp = np.arange(256, dtype=np.uint8)
-    red = np.repeat(ramp[None], 256, axis=0)
-    return np.stack([red, red.T, red[:, ::-1]], axis=2)
-
-
 @pytest.fixture
-def plate_file(tmp_path, files, codes):
-    """A photograph of these code values."""
-    return files.write(tmp_path / "plate.png", codes)
-
-
-@pytest.fixture
-def estimate(fixed_model):
-    """What the estimator itself says of files, with the fixed model."""
-    from crfnet_core import ResponseNetwork, estimate_response, read_photo
-
-    network = ResponseNetwork.load(fixed_model)
-    return lambda *paths: estimate_response([read_photo(path) for path in paths], network=network)
-
-
-@pytest.fixture
-def composited(tmp_path, files):
+def composited(tmp_path):
     """Render what comes out of a compositor socket, on the CPU, and return its pixels, shape (H, W, 4)."""
 
     def render(socket, size=(256, 256)):
@@ -121,12 +67,12 @@ def composited(tmp_path, files):
         else:
             outputs = [node for node in tree.nodes if node.type == "COMPOSITE"]
         tree.links.new(socket, outputs[0].inputs[0])
-        return rendered(scene, tmp_path / "rendered.exr", files, size)
+        return rendered(scene, tmp_path / "rendered.exr", size)
 
     return render
 
 
-def rendered(scene, path, files, size):
+def rendered(scene, path, size):
     """Render a scene's compositor to an EXR file and return its pixels."""
     render = scene.render
     render.resolution_x, render.resolution_y = size
@@ -142,7 +88,7 @@ def rendered(scene, path, files, size):
     for node in [node for node in _tree(scene).nodes if node.type == "R_LAYERS"]:
         _tree(scene).nodes.remove(node)  # nothing is to be rendered
     bpy.ops.render.render(write_still=True)
-    return files.read(path)
+    return read_image(path)
 
 
 def _tree(scene):

@@ -9,6 +9,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from tests.helpers.images import read_image
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 FLOAT, HALF = 1e-6, 2**-11
@@ -24,7 +26,7 @@ job = json.loads(sys.argv[-1])
 assert addon_utils.enable("blender_addon", default_set=True)
 bpy.ops.wm.open_mainfile(filepath=job["blend"])
 image = bpy.data.images[job["image"]]
-from blender_addon.compositor import compositor_tree
+from blender_addon.scene.compositor import compositor_tree
 tree = compositor_tree(bpy.context.scene)
 output = next(node for node in tree.nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
 for node in list(tree.nodes):
@@ -66,10 +68,10 @@ def run(image, **choices):
 
 
 @pytest.mark.parametrize(("depth", "limit"), [("float", FLOAT), ("half", HALF)])
-def test_bake(image, plate_file, files, codes, estimate, depth, limit):
+def test_bake(image, plate_file, codes, estimate, depth, limit):
     assert run(image, apply="BAKE", depth=depth, exposure=1) == {"FINISHED"}
     expected = 2 * estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(files.read(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
+    assert np.abs(read_image(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
     baked = bpy.data.images["plate_linear.exr"]
     assert baked.colorspace_settings.name == "Linear Rec.709"
     pixels = np.array(baked.pixels[:]).reshape(256, 256, -1)[::-1, :, :3]
@@ -124,8 +126,8 @@ def test_files_need_a_folder_that_can_be_written(image, tmp_path):
     assert "camera_response" not in image
 
 
-def test_color_space_after_a_restart(image, plate_file, tmp_path, files, codes, estimate, root):
-    from blender_addon.color_management import user_folder
+def test_color_space_after_a_restart(image, plate_file, tmp_path, codes, estimate, root):
+    from blender_addon.scene.color_management import user_folder
 
     expected = estimate(plate_file).curve.inverse(codes / 255)
     try:
@@ -134,7 +136,7 @@ def test_color_space_after_a_restart(image, plate_file, tmp_path, files, codes, 
         image.use_fake_user = True
         bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
         found = restarted(tmp_path, root)
-        linear = files.read(tmp_path / "linear.exr")
+        linear = read_image(tmp_path / "linear.exr")
         assert np.abs(converted(user_folder() / "config.ocio", codes) - expected).max() < 1e-5
     finally:
         bpy.ops.crf.restore_config()
@@ -213,7 +215,7 @@ def test_the_environments_config_is_never_touched(image, tmp_path, monkeypatch):
 @pytest.mark.parametrize("is_users", [True, False])
 def test_an_environment_that_names_the_usual_config_demands_nothing(addon, monkeypatch, is_users):
     """Blender 5.2 sets OCIO to its own choice, and programs that it starts inherit it."""
-    from blender_addon import color_management
+    from blender_addon.scene import color_management
 
     usual = color_management.running_config()
     monkeypatch.setenv("OCIO", str(color_management.user_folder() / "config.ocio") if is_users else usual)

@@ -1,9 +1,11 @@
-"""The modal path, with its timer driven by hand: progress, Esc, errors; and the task beneath it."""
+"""The modal path, with its timer driven by hand: progress, Esc, errors."""
 
 import time
 from types import SimpleNamespace
 
 import pytest
+
+from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
@@ -53,7 +55,7 @@ def interface(addon):
 @pytest.fixture
 def operator(addon):
     """An operator of the class that Blender registered, without Blender's part: properties and reports."""
-    from blender_addon.operators import PlateOperator
+    from blender_addon.ui.operators import PlateOperator
 
     class Driven(PlateOperator):
         def __init__(self, image, **choices):
@@ -84,7 +86,7 @@ def drive(operator, interface, seconds=60):
 
 
 def test_runs_to_its_end(operator, interface, image, plate_file, estimate):
-    from blender_addon.storage import restored
+    from blender_addon.scene.stored_estimate import restored
 
     run = operator(image.name, apply="NODES")
     assert run.invoke(interface, None) == {"RUNNING_MODAL"}
@@ -112,9 +114,9 @@ def test_esc_cancels_and_changes_nothing(operator, interface, image):
     assert interface.status[-1] is None
 
 
-def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, files, codes, monkeypatch):
+def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, codes, monkeypatch):
     for number in range(8):
-        files.write(tmp_path / f"shot.{number:04d}.png", codes)
+        write_image(tmp_path / f"shot.{number:04d}.png", codes)
     image = bpy.data.images.load(str(tmp_path / "shot.0000.png"))
     image.source = "SEQUENCE"
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
@@ -163,40 +165,3 @@ def test_closing_blender_stops_the_run(operator, interface, image):
     assert interface.timers == []
     run._task.wait(30)
     assert not run._task.is_running
-
-
-def test_the_network_is_loaded_once(addon, image, monkeypatch):
-    from blender_addon import libraries
-
-    pipeline = libraries.load("pipeline")
-    loads, load = [], pipeline.ResponseNetwork.load
-    monkeypatch.setattr(
-        pipeline.ResponseNetwork, "load", lambda *args, **options: loads.append(1) or load(*args, **options)
-    )
-    pipeline._network.cache_clear()
-    for _ in range(3):
-        bpy.ops.crf.estimate_response(image=image.name)
-    assert loads == [1]
-
-
-def test_task():
-    from blender_addon.errors import CancelledError
-    from blender_addon.task import Task
-
-    task = Task(lambda progress: progress(1, 2) or "found")
-    task.start()
-    task.wait(10)
-    assert (task.result(), task.done, task.total, task.is_running) == ("found", 1, 2, False)
-
-    task = Task(lambda progress: 1 / 0)
-    task.start()
-    task.wait(10)
-    with pytest.raises(ZeroDivisionError):
-        task.result()
-
-    task = Task(lambda progress: progress(1, 2))
-    task.cancel()
-    task.start()
-    task.wait(10)
-    with pytest.raises(CancelledError):
-        task.result()

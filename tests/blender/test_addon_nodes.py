@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tests.helpers.images import write_image
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 #: Largest differences against numpy: 8-bit plates, and others. In 4.5 it is half a step of the LUT image.
@@ -33,9 +35,9 @@ def test_every_8_bit_code(load, composited, plate_file, codes, estimate):
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
-def test_a_16_bit_plate(load, composited, tmp_path, files, estimate):
+def test_a_16_bit_plate(load, composited, tmp_path, estimate):
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
-    path = files.write(tmp_path / "deep.png", samples)
+    path = write_image(tmp_path / "deep.png", samples)
     _, group = load(path)
     expected = estimate(path).curve.inverse(samples / 65535)
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < FLOATS
@@ -49,10 +51,10 @@ def test_exposure_is_a_socket_in_stops(load, composited, plate_file, codes, esti
 
 
 @pytest.mark.parametrize("depth", ["uint8", "uint16"])
-def test_alpha(load, composited, tmp_path, files, codes, estimate, depth):
+def test_alpha(load, composited, tmp_path, codes, estimate, depth):
     alpha = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
     stored = np.concatenate([codes, alpha], axis=2).astype(depth) * (257 if depth == "uint16" else 1)
-    path = files.write(tmp_path / "cut_out.png", stored.astype(depth))
+    path = write_image(tmp_path / "cut_out.png", stored.astype(depth), oiio__UnassociatedAlpha=1)
     _, group = load(path)
     expected = estimate(path).curve.inverse(codes / 255) * (alpha / 255)
     pixels = composited(group.outputs[0])
@@ -75,7 +77,7 @@ def test_another_working_space(load, composited, plate_file, codes, estimate, sp
     """The EXR, which Blender writes as linear Rec.709 or says otherwise, holds the same light."""
     import PyOpenColorIO as OCIO
 
-    from blender_addon.color_management import running_config
+    from blender_addon.scene.color_management import running_config
 
     _, group = load(plate_file)
     bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=False)
@@ -135,17 +137,17 @@ def test_a_clip(addon, plate_file, composited, codes, estimate):
 
 def new_tree():
     """Return the scene's empty compositor tree."""
-    from blender_addon.compositor import compositor_tree
+    from blender_addon.scene.compositor import compositor_tree
 
     tree = compositor_tree(bpy.context.scene)
     tree.nodes.clear()
     return tree
 
 
-def test_the_frames_of_a_sequence(addon, tmp_path, files, codes, composited, estimate):
+def test_the_frames_of_a_sequence(addon, tmp_path, codes, composited, estimate):
     """A new node shows the file of each frame number on that frame."""
     frames = {number: np.roll(codes, number, axis=0) for number in (7, 8, 10)}
-    paths = [files.write(tmp_path / f"shot.{number:04d}.png", pixels) for number, pixels in frames.items()]
+    paths = [write_image(tmp_path / f"shot.{number:04d}.png", pixels) for number, pixels in frames.items()]
     image = bpy.data.images.load(str(paths[0]))
     image.source = "SEQUENCE"
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")

@@ -1,4 +1,4 @@
-"""The panel's picture and words."""
+"""What the panel shows: settings, words and the icon of the response."""
 
 import numpy as np
 import pytest
@@ -34,7 +34,7 @@ class Panel:
 
 @pytest.mark.parametrize("mode", ["NODES", "COLORSPACE", "BAKE", "EXPORT"])
 def test_it_draws_every_mode(image, in_editor, mode):
-    from blender_addon.panels import ResponsePanel
+    from blender_addon.ui.panel import ResponsePanel
 
     image.camera_response_settings.apply = mode
     panel = Panel()
@@ -50,7 +50,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
 
 
 def test_every_property_that_it_draws_exists(image, in_editor):
-    from blender_addon.panels import ResponsePanel
+    from blender_addon.ui.panel import ResponsePanel
 
     panel = Panel()
     with in_editor("IMAGE_EDITOR") as space:
@@ -63,8 +63,8 @@ def test_every_property_that_it_draws_exists(image, in_editor):
 
 @pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
 def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
-    from blender_addon.panels import ResponsePanel
-    from blender_addon.plates import OPEN_A_PLATE
+    from blender_addon.scene.plates import OPEN_A_PLATE
+    from blender_addon.ui.panel import ResponsePanel
 
     panel = Panel()
     with in_editor(editor):
@@ -74,25 +74,10 @@ def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
 
 
 def test_the_icon_is_drawn_once_per_estimate(image):
-    from blender_addon import panels
+    from blender_addon.ui import panel
 
-    panels.curve_icon(image)
-    panels.curve_icon(image)
-    (preview,) = panels._previews.values()
+    panel.curve_icon(image)
+    panel.curve_icon(image)
+    (preview,) = panel._previews.values()
     assert tuple(preview.image_size) == (256, 256)
     assert np.ptp(preview.image_pixels_float[:]) > 0.5
-
-
-def test_the_picture():
-    from blender_addon.curve_image import BACKGROUND, CURVE, MARGIN, SIZE, draw_response
-
-    uniform = np.linspace(0, 1, 1024)
-    picture = draw_response(np.sqrt(uniform), np.clip(np.sqrt(uniform) - 0.1, 0, 1), np.sqrt(uniform))
-    assert picture.shape == (SIZE, SIZE, 4)
-    assert picture.dtype == np.float32
-    assert (picture[..., 3] == 1).all()
-    assert ((picture >= 0) & (picture <= 1)).all()
-    np.testing.assert_allclose(picture[0, 0, :3], BACKGROUND)
-    column = MARGIN + (SIZE - 2 * MARGIN - 1) // 4
-    row = round(MARGIN + np.sqrt((column - MARGIN) / (SIZE - 2 * MARGIN - 1)) * (SIZE - 2 * MARGIN - 1))
-    np.testing.assert_allclose(picture[row, column, :3], CURVE, atol=1e-6)

@@ -11,7 +11,8 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.response import ResponseCurve
-from ocio.configs.plate_color_space import PlateColorSpace, write_config
+from ocio.configs.files import write_config
+from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import write_spi1d

@@ -15,10 +15,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from blender_addon import build
 from crfnet_core import ResponseNetwork, estimate_response, read_photo
 from ocio.luts.spi1d import read_spi1d
 
-needs_blender = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
+pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 
 MODULE = "bl_ext.user_default.crf_response"
 
@@ -63,137 +64,11 @@ print("FOUND " + json.dumps(found))
 
 
 @pytest.fixture(scope="module")
-def builder(root):
-    """blender_addon/build.py as a module; it must load without Blender."""
-    spec = importlib.util.spec_from_file_location("build_addon", root / "blender_addon" / "build.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
+def manifest(root):
+    return tomllib.loads((root / "blender_addon" / "blender_manifest.toml").read_text(encoding="utf-8"))
 
 
-@pytest.fixture(scope="module")
-def manifest_text(root):
-    return (root / "blender_addon" / "blender_manifest.toml").read_text(encoding="utf-8")
-
-
-@pytest.fixture(scope="module")
-def manifest(manifest_text):
-    return tomllib.loads(manifest_text)
-
-
-@pytest.fixture(scope="module")
-def hashes(root):
-    lines = (root / "blender_addon" / "wheels.sha256").read_text(encoding="utf-8").splitlines()
-    return {name: digest for digest, name in map(str.split, lines)}
-
-
-def names(wheels):
-    return {wheel.removeprefix("./wheels/") for wheel in wheels}
-
-
-def pythons(wheels):
-    return sorted(name.split("-")[2] for name in names(wheels))
-
-
-# The manifest and the builder, without Blender
-
-
-def test_the_version_is_the_projects(root, manifest):
-    version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
-    assert manifest["version"] == version
-    assert f"crfnet-{version}-py3-none-any.whl" in names(manifest["wheels"])
-
-
-def test_the_manifest_asks_for_files_only(manifest):
-    assert list(manifest["permissions"]) == ["files"]
-    assert manifest["license"] == ["SPDX:GPL-3.0-or-later"]
-    assert manifest["blender_version_min"] == "4.5.0"
-    assert "blender_version_max" not in manifest
-
-
-def test_every_wheel_has_its_hash(manifest, hashes):
-    ours = {f"crfnet-{manifest['version']}-py3-none-any.whl"}
-    builds_ours = {name for name in hashes if name.startswith("setuptools-")}
-    assert names(manifest["wheels"]) - ours == set(hashes) - builds_ours
-    assert len(builds_ours) == 1
-    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in hashes.values())
-
-
-def test_every_platform_of_the_manifest_is_built(builder, manifest):
-    assert list(builder.WHEEL_PLATFORMS) == manifest["platforms"]
-    assert set().union(*(builder.platform_wheels(manifest["wheels"], name) for name in manifest["platforms"])) == set(
-        manifest["wheels"]
-    )
-
-
-@pytest.mark.parametrize("name", ["linux-x64", "macos-arm64", "windows-x64"])
-def test_a_platform_has_wheels_for_both_pythons(builder, manifest, name):
-    assert pythons(builder.platform_wheels(manifest["wheels"], name)) == ["cp311", "cp313", "py3"]
-
-
-def test_intel_macs_have_one_for_the_last_blender_there(builder, manifest):
-    assert pythons(builder.platform_wheels(manifest["wheels"], "macos-x64")) == ["cp311", "py3"]
-
-
-def test_a_zips_manifest_lists_what_is_in_it(builder, manifest, manifest_text):
-    wheels = ["./wheels/one-1-py3-none-any.whl"]
-    narrowed = tomllib.loads(builder.platform_manifest(manifest_text, "macos-arm64", wheels))
-    assert narrowed == manifest | {"platforms": ["macos-arm64"], "wheels": wheels}
-
-
-def test_a_manifest_without_the_lists_is_refused(builder):
-    with pytest.raises(builder.BuildError, match=r"needs one list `platforms` .* found 0"):
-        builder.platform_manifest('id = "crf_response"\n', "macos-arm64", [])
-
-
-def test_a_zip_depends_on_its_contents_alone(builder, tmp_path):
-    contents = {"b.py": b"two", "a.py": b"one"}
-    builder.write_zip(tmp_path / "first.zip", contents)
-    builder.write_zip(tmp_path / "second.zip", dict(reversed(contents.items())))
-    assert (tmp_path / "first.zip").read_bytes() == (tmp_path / "second.zip").read_bytes()
-    assert sorted(path.name for path in tmp_path.iterdir()) == ["first.zip", "second.zip"]
-    with zipfile.ZipFile(tmp_path / "first.zip") as archive:
-        assert {name: archive.read(name) for name in archive.namelist()} == contents
-        assert archive.namelist() == sorted(contents)
-
-
-def test_a_wheel_without_a_hash_is_refused(builder, tmp_path):
-    with pytest.raises(builder.BuildError, match=r"^other-1-py3-none-any.whl: has no line in wheels.sha256"):
-        builder.fetch_wheel("other-1-py3-none-any.whl", tmp_path)
-
-
-def test_a_download_with_another_hash_is_refused(builder, hashes, tmp_path, monkeypatch):
-    name = next(iter(hashes))
-    monkeypatch.setattr(builder, "_download", lambda name, folder: (folder / name).write_bytes(b"tampered with"))
-    with pytest.raises(builder.BuildError, match=f"{re.escape(name)}: the download has SHA-256"):
-        builder.fetch_wheel(name, tmp_path)
-    assert list(tmp_path.iterdir()) == []
-
-
-def test_a_damaged_file_in_the_cache_is_downloaded_again(builder, tmp_path, monkeypatch):
-    good = b"as published"
-    monkeypatch.setattr(
-        builder, "_expected_hashes", lambda: {"one-1-py3-none-any.whl": builder.hashlib.sha256(good).hexdigest()}
-    )
-    monkeypatch.setattr(builder, "_download", lambda name, folder: (folder / name).write_bytes(good))
-    (tmp_path / "one-1-py3-none-any.whl").write_bytes(b"cut sho")
-    assert builder.fetch_wheel("one-1-py3-none-any.whl", tmp_path).read_bytes() == good
-
-
-def test_no_network_is_one_line(root, tmp_path):
-    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(tmp_path), "PIP_CONFIG_FILE": os.devnull}
-    command = [sys.executable, str(root / "blender_addon" / "build.py"), "--out", str(tmp_path / "out")]
-    command += ["--cache", str(tmp_path / "cache")]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
-    assert done.returncode == 2
-    assert re.fullmatch(r"setuptools-\S+: cannot be downloaded; check the network \(pip: .*\)\n", done.stderr)
-    assert not (tmp_path / "out").exists()
-
-
-# The zip of this machine, in Blender
-
-
-def build(root, out, umask):
+def build_zip(root, out, umask):
     """The zip of this machine's platform, built by the command that make runs."""
     if PLATFORM is None:
         pytest.skip(f"no zip is made for {platform.system()} on {platform.machine()}")
@@ -208,7 +83,7 @@ def build(root, out, umask):
 
 @pytest.fixture(scope="module")
 def package(root, tmp_path_factory):
-    return build(root, tmp_path_factory.mktemp("dist"), umask=0o022)
+    return build_zip(root, tmp_path_factory.mktemp("dist"), umask=0o022)
 
 
 def bpy_requirements(name="bpy"):
@@ -270,16 +145,14 @@ def found(addons, bare_python, user, plate, look):
     return run_blender(bare_python, user, ESTIMATE, MODULE, plate, look)
 
 
-@needs_blender
 def test_the_same_sources_give_the_same_bytes(root, package, tmp_path):
-    again = build(root, tmp_path / "again", umask=0o077)
+    again = build_zip(root, tmp_path / "again", umask=0o077)
     assert again.name == package.name
     assert again.read_bytes() == package.read_bytes()
 
 
-@needs_blender
-def test_the_zip_holds_the_add_on_and_its_wheels(root, package, builder):
-    modules = {path.relative_to(root / "blender_addon").as_posix() for path in builder.shipped_files()}
+def test_the_zip_holds_the_add_on_and_its_wheels(root, package):
+    modules = {path.relative_to(root / "blender_addon").as_posix() for path in build.shipped_files()}
     with zipfile.ZipFile(package) as archive:
         inside = tomllib.loads(archive.read("blender_manifest.toml").decode())
         wheels = {wheel.removeprefix("./") for wheel in inside["wheels"]}
@@ -289,7 +162,6 @@ def test_the_zip_holds_the_add_on_and_its_wheels(root, package, builder):
     assert "build.py" not in modules
 
 
-@needs_blender
 def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
     with zipfile.ZipFile(package) as archive:
         wheel = archive.extract(f"wheels/crfnet-{manifest['version']}-py3-none-any.whl", tmp_path)
@@ -301,7 +173,6 @@ def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
     assert [name for name in inside if re.fullmatch("crfnet_core/models/[^/]+/model.(onnx|json)", name)]
 
 
-@needs_blender
 def test_blender_finds_nothing_wrong_with_it(package):
     (scripts,) = Path(importlib.util.find_spec("bpy").origin).parent.glob("*/scripts")
     command = [sys.executable, str(scripts / "addons_core/bl_pkg/cli/blender_ext.py"), "validate", str(package)]
@@ -310,12 +181,10 @@ def test_blender_finds_nothing_wrong_with_it(package):
     assert done.returncode == 0, done.stdout + done.stderr
 
 
-@needs_blender
 def test_it_is_installed_and_enabled(addons):
     assert MODULE in addons
 
 
-@needs_blender
 def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
     site_packages = user / "extensions" / ".local" / "lib"
     for name in ("crfnet_core", "ocio", "onnxruntime"):
@@ -326,20 +195,17 @@ def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
     assert found["stray"] == []
 
 
-@needs_blender
 def test_the_operators_estimate_is_that_of_the_api(found, tolerance):
     (weights, model), (api_weights, api_model) = found["operator"], found["api"]
     assert model == api_model
     np.testing.assert_allclose(weights, api_weights, atol=tolerance.exact)
 
 
-@needs_blender
 def test_the_bundled_onnxruntime_agrees_with_this_one(found, plate, tolerance):
     here = estimate_response(read_photo(plate), network=ResponseNetwork.load())
     np.testing.assert_allclose(found["api"][0], here.weights, atol=tolerance.parity)
 
 
-@needs_blender
 def test_the_exported_lut_is_the_inverse_response(found, look, plate, tolerance):
     (path,) = look.glob("*.spi1d")
     here = estimate_response(read_photo(plate), network=ResponseNetwork.load())

@@ -47,20 +47,20 @@ def source(bases, **options):
     return CurveSource(dorf, tuple(bases.values()), **options)
 
 
-@pytest.mark.parametrize("camera_share", [0.0, 0.5, 1.0])
-def test_every_drawn_curve_is_a_response(bases, camera_share):
+@pytest.mark.parametrize("camera_fraction", [0.0, 0.5, 1.0])
+def test_every_drawn_curve_is_a_response(bases, camera_fraction):
     rng = np.random.default_rng(0)
-    drawn = [source(bases, camera_share=camera_share).draw(rng) for _ in range(50)]
+    drawn = [source(bases, camera_fraction=camera_fraction).draw(rng) for _ in range(50)]
     for curve in drawn:
         assert curve.shape == (1024,)
         assert curve[0] == pytest.approx(0, abs=1e-9)
         assert curve[-1] == pytest.approx(1, abs=1e-9)
         assert (np.diff(curve) >= -1e-9).all()
-    assert len({curve.tobytes() for curve in drawn}) > 3 - 2 * camera_share
+    assert len({curve.tobytes() for curve in drawn}) > 3 - 2 * camera_fraction
 
 
 def test_plain_dorf_curves_are_left_as_measured(bases):
     rng = np.random.default_rng(0)
-    only_plain = source(bases, camera_share=0.0, plain_share=1.0)
+    only_plain = source(bases, camera_fraction=0.0, plain_fraction=1.0)
     measured = {round(0.5004887585532747**exponent, 4) for exponent in (0.4, 0.5, 0.6)}
     assert {round(float(only_plain.draw(rng)[512]), 4) for _ in range(30)} == measured

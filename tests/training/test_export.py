@@ -50,7 +50,7 @@ def test_a_disagreement_stops_the_export(exported, tmp_path):
 def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
-    found = network.predict(np.zeros((2, 227, 227, 3), np.float32))
+    found = network.predict(network.inputs(np.zeros((2, 227, 227, 3), np.float32)))
     assert np.isfinite(found.weights).all()
     assert np.isfinite(found.pooled.weights).all()
     assert found.weights.shape == (2, 11)

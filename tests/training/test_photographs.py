@@ -23,7 +23,7 @@ def scene():
 
 @pytest.fixture
 def source(scene):
-    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_share=0, plain_share=1) for power in (0.3, 0.5))
+    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_fraction=0, plain_fraction=1) for power in (0.3, 0.5))
     return PhotographSource([scene], sets, (0.25, 0.75), reference_luminance([scene]))
 
 
@@ -60,7 +60,7 @@ def test_a_photograph_shows_scenes_of_its_fold_only(scene):
     """Scenes of one colour each, by fold; the augmentation keeps which is the brightest channel as a rule."""
     colors = np.eye(3, dtype=np.float32) * 0.9 + 0.1
     scenes = [Scene(str(n), scene.pixels[:, :, :1] * colors[n % FOLDS], False) for n in range(2 * FOLDS)]
-    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_share=0, plain_share=1),)
+    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_fraction=0, plain_fraction=1),)
     source = PhotographSource(scenes, sets, (1.0,), reference_luminance(scenes), cameras=1)
     photos = [photo for seed in range(12) for photo in source.draw(np.random.default_rng(seed))]
     assert {photo.fold for photo in photos} == set(range(FOLDS))

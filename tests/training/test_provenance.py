@@ -4,6 +4,7 @@ import pytest
 
 pytest.importorskip("torch", reason="training needs the train extra")
 
+from crfnet_core.network import MODELS, ModelConfig
 from training import provenance
 from training.provenance import data_record, read_run, record_making, record_run, training_commit
 
@@ -75,3 +76,11 @@ def test_without_a_repository_the_commit_is_unknown(shards, monkeypatch):
 def test_a_folder_without_a_record_is_named(tmp_path):
     with pytest.raises(SystemExit, match=r"holds no run\.json"):
         read_run(tmp_path)
+
+
+def test_the_packaged_models_carry_a_record_that_agrees_with_model_json():
+    for folder in sorted(path.parent for path in MODELS.glob("*/model.json")):
+        entries = read_run(folder)
+        assert training_commit(entries) == ModelConfig.read(folder / "model.json").training_commit
+        assert {"recorded", "command", "versions", "seed", "start", "recipe", "data", "resumed"} <= set(entries)
+        assert f"## {folder.name} - " in (MODELS / "CHANGELOG.md").read_text()

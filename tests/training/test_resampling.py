@@ -14,7 +14,7 @@ def scene():
     return Scene("made", np.stack([1 + y, 1 + x, 2 + np.sin(y / 9) + np.cos(x / 9)], axis=-1), False)
 
 
-def test_an_upright_view_shows_the_pixels(scene):
+def test_an_upright_window_shows_the_pixels(scene):
     light = AffineResampling(scene, np.eye(2), np.array([150.0, 200.0])).window()
     assert light.shape == (227, 227, 3)
     assert light.dtype == np.float32
@@ -22,7 +22,7 @@ def test_an_upright_view_shows_the_pixels(scene):
     np.testing.assert_allclose(light[113, 113, :2], [151, 201], atol=1)
 
 
-def test_a_view_from_farther_away_shows_more_and_turns(scene):
+def test_a_window_of_twice_the_scale_shows_more_and_turns(scene):
     quarter = np.array([[0.0, -2.0], [2.0, 0.0]])
     light = AffineResampling(scene, quarter, np.array([150.0, 250.0])).window()
     inner = light[100:130, 100:130]
@@ -32,8 +32,8 @@ def test_a_view_from_farther_away_shows_more_and_turns(scene):
 
 def test_a_thumbnail_is_every_fourth_sample(scene):
     for seed in range(5):
-        view = AffineResampling.draw(scene, np.random.default_rng(seed))
-        thumbnail, window = view.thumbnail(), view.window()
+        resampling = AffineResampling.draw(scene, np.random.default_rng(seed))
+        thumbnail, window = resampling.thumbnail(), resampling.window()
         assert thumbnail.shape == (57, 57, 3)
         assert np.median(np.abs(thumbnail - window[::4, ::4])[2:-2, 2:-2] / thumbnail[2:-2, 2:-2]) < 0.02
 

@@ -133,12 +133,12 @@ class Trainer:
     def validation_figure(self) -> float:
         """Return the mean figure of the held-out windows: top-1 accuracy, or E_est."""
         network = self.state.network.eval()
-        found = []
+        figures = []
         with torch.inference_mode():
             for batch in self.validation.split(VALIDATION_BATCH):
                 batch = batch.to(self.context.device)
-                found.append(self.task.figures(self._outputs(network, batch), batch.classes))
-        return float(torch.cat(found).mean())
+                figures.append(self.task.figures(self._outputs(network, batch), batch.classes))
+        return float(torch.cat(figures).mean())
 
     def _outputs(self, network: nn.Module, batch: LinearWindows) -> Tensor:
         """Return the network's outputs for a batch on its device."""

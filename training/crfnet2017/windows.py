@@ -87,10 +87,10 @@ def draw_windows(pack: ScenePack, count: int, rng: np.random.Generator, *, per_p
     exposures: list[float] = []
     while len(windows) < count:
         curve = int(rng.integers(len(pack.curves)))
-        found, exposure = _photograph_windows(pack, curve, min(per_photograph, count - len(windows)), rng)
-        windows += found
-        classes += [curve] * len(found)
-        exposures += [exposure] * len(found)
+        chosen, exposure = _photograph_windows(pack, curve, min(per_photograph, count - len(windows)), rng)
+        windows += chosen
+        classes += [curve] * len(chosen)
+        exposures += [exposure] * len(chosen)
     irradiance = torch.from_numpy(np.stack(windows))
     return LinearWindows(irradiance, torch.tensor(classes), torch.tensor(exposures, dtype=torch.float32))
 
@@ -166,16 +166,16 @@ def _photograph_windows(
         scene = pack.scenes[rng.integers(len(pack.scenes))]
         exposure = float(pack.exposures[curve] * rng.choice(EXPOSURE_FACTORS))
         codes = code_table(pack.curves[curve], exposure)
-        found: list[np.ndarray] = []
+        chosen: list[np.ndarray] = []
         for _ in range(POSITIONS_TRIED):
             y, x = (int(rng.integers(side - WINDOW_SIZE + 1)) for side in scene.shape[:2])
             window = scene[y : y + WINDOW_SIZE, x : x + WINDOW_SIZE]
             if _covers_range(window, codes):
-                found.append(np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window))
-            if len(found) == count:
+                chosen.append(np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window))
+            if len(chosen) == count:
                 break
-        if found:
-            return found, exposure
+        if chosen:
+            return chosen, exposure
     return [], exposure
 
 

@@ -50,25 +50,25 @@ class CurveSource:
         Measured responses.
     bases : tuple of callables
         In-camera base curves.
-    camera_share : float
+    camera_fraction : float
         Fraction, in [0, 1], of the responses that come from `bases`.
     warp : float
         Standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response.
-    plain_share : float
+    plain_fraction : float
         Fraction, in [0, 1], of the responses from `dorf` that are left as they were measured.
     """
 
     dorf: Float64Array
     bases: tuple[PchipInterpolator, ...]
-    camera_share: float = 0.5
+    camera_fraction: float = 0.5
     warp: float = 0.15
-    plain_share: float = 0.5
+    plain_fraction: float = 0.5
 
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""
-        if rng.random() < self.camera_share:
+        if rng.random() < self.camera_fraction:
             return self._warped(self._mixed(self._camera_curves(rng), rng), rng, self.warp / 2)
-        if rng.random() < self.plain_share:
+        if rng.random() < self.plain_fraction:
             return self.dorf[rng.integers(len(self.dorf))]
         return self._warped(self._mixed(self.dorf[rng.integers(len(self.dorf), size=3)], rng), rng, self.warp)
 

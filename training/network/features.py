@@ -28,8 +28,9 @@ EDGE_FEATURES = 2 * len(STRIDES) * GRID**2
 EQUATION_FEATURES = len(EQUATION_STRIDES) * (len(SMOOTHNESS) + 1) * EQUATION_LEVELS
 CANDIDATE_FEATURES = sum(math.prod(SHAPES[name]) for pair in COUNTS_OF.items() for name in pair)
 
-#: Pseudo-counts: a mean is taken as if so many more samples of value 0 had been seen, so that few samples say little.
-#: Of samples at a level and edges in a cell; and of mixtures and shaded pairs under a candidate response.
+#: Pseudo-counts (docs/METHOD.md, Eq. 15): a mean is taken as if so many more samples of value 0 had been seen, so that
+#: few samples say little. The first is for samples at a level and edges in a cell, the second for mixtures and shaded
+#: pairs under a candidate response.
 SAMPLE_PSEUDO_COUNT, CANDIDATE_PSEUDO_COUNT = 4.0, 50.0
 
 #: The same for the curvature: evidence, in squared codes, that it is 0 at a level.
@@ -87,8 +88,8 @@ def edge_features(edges: Tensor, samples: Tensor) -> Tensor:
 def curvature_features(equations: Tensor) -> Tensor:
     """Return the curvature of the inverse response at every level, and log evidence, (..., EQUATION_FEATURES).
 
-    The least-squares solution of docs/METHOD.md, Eq. 3, from the normal equations that `crfnet_core.statistics` adds
-    up: once with each weight of `SMOOTHNESS`.
+    The curvature k of docs/METHOD.md, Eq. 3, is the solution of the normal equations that `crfnet_core.statistics` adds
+    up, with a smoothness penalty (Eq. 16): once with each weight of `SMOOTHNESS`.
     """
     matrix, right = equations[..., :-1, :], equations[..., -1, :]  # (..., 4, 20, 20) and (..., 4, 20)
     evidence = torch.diagonal(matrix, dim1=-2, dim2=-1)

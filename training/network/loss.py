@@ -1,4 +1,4 @@
-"""The loss: the estimation error of the responses, and the likelihood of the errors that the network expects."""
+"""The loss (docs/METHOD.md, Eq. 18): E_est of the responses, and the likelihood of the errors that are expected."""
 
 from __future__ import annotations
 

@@ -103,8 +103,8 @@ class Head(nn.Module):
 class PhotographNet(nn.Module):
     """Windows of photographs to EMoR weights and log expected errors, of each window and of each photograph.
 
-    The pooling is learned. The vector of a photograph has two parts: the mean of its windows' vectors, weighted by a
-    score that each window earns, and the vector of the sum of its windows' statistics.
+    The pooling is learned (docs/METHOD.md, Eq. 17). The vector of a photograph has two parts: the mean of its windows'
+    vectors, weighted by a score that each window earns, and the vector of the sum of its windows' statistics.
     """
 
     def __init__(self, config: NetworkConfig) -> None:

@@ -81,19 +81,19 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
     bases = tuple(read_base_curves(base_curves_file).values())
     sets = {
-        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_share=0),
-        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_share=0),
-        CurveSet.IN_CAMERA: CurveSource(dorf, bases, camera_share=1),
+        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
+        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
+        CurveSet.IN_CAMERA: CurveSource(dorf, bases, camera_fraction=1),
     }
     of_dorf, held_out = 1 - CAMERA_FRACTION, float(is_held_out.mean())
-    shares = {
+    fractions = {
         CurveSet.DORF: of_dorf * float((~is_held_out).mean()),
         CurveSet.HELD_OUT: of_dorf * held_out,
         CurveSet.IN_CAMERA: CAMERA_FRACTION,
     }
     luminance = reference_luminance(read_scenes(data / "linear", "train"))
     scenes = read_scenes(data / "linear", split)
-    return PhotographSource(scenes, tuple(sets.values()), tuple(shares.values()), luminance)
+    return PhotographSource(scenes, tuple(sets.values()), tuple(fractions.values()), luminance)
 
 
 def make_shard(data: Path, out: Path, split: str, number: int) -> Path:

@@ -65,7 +65,7 @@ class PhotographSource:
         The scenes of one split.
     curve_sets : tuple of CurveSource
         Responses, in sets of which a training run may leave some out.
-    shares : tuple of float
+    fractions : tuple of float
         Fraction of the photographs with each set; their sum is 1.
     luminance : ndarray, shape (N,)
         See `training.synthesis.camera.automatic_exposure`.
@@ -75,7 +75,7 @@ class PhotographSource:
 
     scenes: list[Scene]
     curve_sets: tuple[CurveSource, ...]
-    shares: tuple[float, ...]
+    fractions: tuple[float, ...]
     luminance: Float32Array
     cameras: int = 3
 
@@ -88,7 +88,7 @@ class PhotographSource:
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
         """Return a response, shape (1024,), and the number of its set."""
-        chosen = int(rng.choice(len(self.shares), p=self.shares))
+        chosen = int(rng.choice(len(self.fractions), p=self.fractions))
         return self.curve_sets[chosen].draw(rng), chosen
 
     def _windows(self, scenes: list[Scene], rng: np.random.Generator) -> Float32Array:

@@ -1,11 +1,14 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences."""
+"""The add-on's preferences: choices that hold for every .blend file."""
 
 from pathlib import Path
 
 import bpy
 
-#: What can be done with a response. The numbers are stored in .blend files.
+#: The name by which Blender knows the add-on: that of its root package.
+ADDON = __package__.rpartition(".")[0]
+
+#: The ways to apply a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files.
 APPLY_MODES = (
     ("NODES", "Compositor Nodes", "A node group that linearises the plate in the compositor, at once", "NODETREE", 0),
     ("COLORSPACE", "Color Space", "A colour space in Blender's list, after one restart", "COLOR", 1),
@@ -15,9 +18,9 @@ APPLY_MODES = (
 
 
 class CRF_AddonPreferences(bpy.types.AddonPreferences):
-    """Choices for every file."""
+    """Choices that hold for every .blend file."""
 
-    bl_idname = __package__
+    bl_idname = ADDON
 
     model: bpy.props.StringProperty(
         name="Model",
@@ -42,7 +45,7 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     apply: bpy.props.EnumProperty(name="Apply As", description="What the first estimate does", items=APPLY_MODES)
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the choices, and the way back to Blender's own config."""
+        """Draw the choices, and the button that restores an earlier OpenColorIO config."""
         layout = self.layout
         layout.use_property_split = True
         for name in ("model", "threads", "lut_length", "folder", "apply"):
@@ -52,11 +55,14 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
 
 def preferences() -> CRF_AddonPreferences:
     """Return the add-on's preferences."""
-    return bpy.context.preferences.addons[__package__].preferences
+    return bpy.context.preferences.addons[ADDON].preferences
 
 
 def absolute(folder: str) -> Path | None:
-    """Return a folder chosen in the interface, where ``//`` is that of the .blend file; None for an empty choice."""
+    """Return the path of a folder chosen in the interface, or None for an empty choice.
+
+    Blender writes ``//`` for the folder of the .blend file.
+    """
     return Path(bpy.path.abspath(folder)) if folder else None
 
 
@@ -66,5 +72,5 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them back."""
+    """Unregister the preferences."""
     bpy.utils.unregister_class(CRF_AddonPreferences)

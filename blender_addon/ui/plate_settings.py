@@ -1,25 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What is chosen for one plate; kept on its image or clip and so in the .blend file."""
+"""The settings of one plate, stored on its image or clip and so in the .blend file."""
 
 import bpy
 
 from .preferences import APPLY_MODES, preferences
 
+#: The anchors of the exposure, `work.job.Anchor`.
 ANCHORS = (
     ("WHITE", "White", "The plate's white, code value 1, becomes a linear 1"),
     ("GRAY", "Middle Gray", "The brightness given becomes a linear 0.18"),
 )
 
+#: The samples of linear EXR files.
 DEPTHS = (
     ("half", "Half", "16-bit floats: smaller files, 11 bits of precision"),
     ("float", "Float", "32-bit floats: exact"),
 )
 
+#: The number of each way to apply a response, as its enumeration property stores it.
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 
 
 class PlateChoices:
-    """What can be chosen for a plate, in the panel and in a call of the operators."""
+    """The choices for a plate that the panel offers and the operators take as arguments."""
 
     anchor: bpy.props.EnumProperty(
         name="Exposure Anchor",
@@ -50,12 +53,12 @@ class PlateChoices:
     )
 
 
-#: The names of all choices.
+#: The names of all choices; the panel and the operators differ in how they define `apply`.
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
-    """How a plate's response is applied."""
+    """The settings of one plate; until `apply` is set, it is that of the preferences."""
 
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
     apply: bpy.props.EnumProperty(
@@ -68,14 +71,14 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
 
 
 def register() -> None:
-    """Give images and clips their settings."""
+    """Add the settings to images and clips."""
     bpy.utils.register_class(CRF_PlateSettings)
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
 
 
 def unregister() -> None:
-    """Take them back."""
+    """Remove the settings from images and clips."""
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         del kind.camera_response_settings
     bpy.utils.unregister_class(CRF_PlateSettings)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Where a plate's node group goes in the compositor."""
+"""Find a plate in the compositor, and put its node group behind it."""
 
 from __future__ import annotations
 
@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 
 import bpy
 
-from .plates import Datablock, node_plate
+from .plates import Datablock, datablock_of_node
 
+#: Distance between a plate's node and its node group, in units of the node editor.
 _GAP = 60
 
 
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
-    """Return the scene's compositor tree; a new one passes the render through, so that nothing looks different."""
+    """Return the scene's compositor tree; a new one hands the render through, so that the picture stays the same."""
     if bpy.app.version < (5, 0, 0):
         scene.use_nodes = True
         return scene.node_tree
@@ -35,9 +36,9 @@ def apply_group(
     *,
     frames: Sequence[int] = (),
 ) -> None:
-    """Put a node group behind every node of a tree that shows the plate.
+    """Insert a node group after every node of a tree that shows the plate.
 
-    What the plate was linked to is linked to the group; a group that is there already is only brought up to date. If
+    The links from the plate then start at the group. Where the group was inserted before, only its exposure is set. If
     no node shows the plate, one is added, with a viewer.
 
     Parameters
@@ -49,32 +50,32 @@ def apply_group(
     group : NodeTree
         The plate's node group.
     exposure : float
-        For the Exposure socket.
+        The value of the Exposure socket, in stops.
     frames : sequence of int
-        The plate's frame numbers, for a new node.
+        The frame numbers of the plate, for a node that is added; empty for a single file.
     """
-    sources = [node for node in tree.nodes if node_plate(node) == datablock] or [_plate_node(tree, datablock, frames)]
-    for source in sources:
-        node = next(_followers(source, group), None) or _inserted(tree, source, group)
+    sources = [node for node in tree.nodes if datablock_of_node(node) == datablock]
+    for source in sources or [_add_plate(tree, datablock, frames)]:
+        node = next(_group_nodes(source, group), None) or _insert(tree, source, group)
         node.inputs["Exposure"].default_value = exposure
 
 
 def show_frames(user: bpy.types.ImageUser | bpy.types.CompositorNodeImage, frames: Sequence[int]) -> None:
-    """Let an image sequence show the file of each frame number on that frame."""
+    """Make an image sequence show every file on the frame of its number."""
     if frames:
         user.frame_duration = frames[-1] - frames[0] + 1
         user.frame_start, user.frame_offset = frames[0], frames[0] - 1
 
 
-def _followers(source: bpy.types.Node, group: bpy.types.NodeTree) -> Iterator[bpy.types.Node]:
-    """Yield the nodes of the group that a plate is linked to."""
+def _group_nodes(source: bpy.types.Node, group: bpy.types.NodeTree) -> Iterator[bpy.types.Node]:
+    """Yield the nodes of the group that a plate's node is linked to."""
     for link in source.outputs["Image"].links:
         if getattr(link.to_node, "node_tree", None) == group:
             yield link.to_node
 
 
-def _inserted(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
-    """Return a new node of the group between a plate and what the plate was linked to."""
+def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
+    """Return a new node of the group between a plate's node and the nodes that it was linked to."""
     node = tree.nodes.new("CompositorNodeGroup")
     node.node_tree = group
     node.width = 220
@@ -86,8 +87,8 @@ def _inserted(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types
     return node
 
 
-def _plate_node(tree: bpy.types.NodeTree, datablock: Datablock, frames: Sequence[int]) -> bpy.types.Node:
-    """Return a new node that shows the plate, below the others, linked to a viewer."""
+def _add_plate(tree: bpy.types.NodeTree, datablock: Datablock, frames: Sequence[int]) -> bpy.types.Node:
+    """Return a new node that shows the plate, below all others and linked to a viewer."""
     bottom = min((node.location.y - node.height for node in tree.nodes), default=0)
     if isinstance(datablock, bpy.types.Image):
         node = tree.nodes.new("CompositorNodeImage")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write the code values of an image that has no file of its own to a temporary file."""
+"""Write the code values of an image that has no file of its own, packed or generated, to a temporary file."""
 
 from __future__ import annotations
 
@@ -10,13 +10,15 @@ import bpy
 import numpy as np
 import OpenImageIO as oiio
 
-from .errors import AddonError
+from crfnet_core.types import Uint8Array
+
+from ..work.errors import AddonError
 
 
-def written_temporarily(image: bpy.types.Image) -> Path:
-    """Return a file, in Blender's folder for the session, with the code values of a packed or generated image.
+def write_temporary_file(image: bpy.types.Image) -> Path:
+    """Write the code values of a packed or generated image to a file in Blender's temporary folder; return its path.
 
-    A packed file is written as it is, byte by byte. An 8-bit generated image becomes a PNG: its pixels are code values
+    A packed file is written byte for byte. A generated 8-bit image becomes a PNG file: its pixels are code values,
     whatever its colour space.
 
     Raises
@@ -39,8 +41,8 @@ def written_temporarily(image: bpy.types.Image) -> Path:
     return path
 
 
-def _code_values(image: bpy.types.Image) -> np.ndarray:
-    """Return an 8-bit image's codes, shape (H, W, 3 or 4), the top row first."""
+def _code_values(image: bpy.types.Image) -> Uint8Array:
+    """Return the code values of an 8-bit image, shape (H, W, 3 or 4), the top row first."""
     width, height = image.size
     if not width * height or not len(image.pixels):
         raise AddonError(f"{image.name}: has no pixels; open a photograph")
@@ -51,11 +53,13 @@ def _code_values(image: bpy.types.Image) -> np.ndarray:
     return np.ascontiguousarray(codes[..., :3] if is_opaque else codes)
 
 
-def _write_png(path: Path, codes: np.ndarray) -> None:
-    """Write codes as they are, alpha not multiplied in."""
+def _write_png(path: Path, codes: Uint8Array) -> None:
+    """Write code values unchanged: colours are not multiplied by alpha."""
     header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
     header.attribute("oiio:UnassociatedAlpha", 1)
-    header.attribute("png:compressionLevel", 1)
+    header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once
     output = oiio.ImageOutput.create(str(path))
-    if not (output and output.open(str(path), header) and output.write_image(codes) and output.close()):
-        raise AddonError(f"{path}: cannot be written ({oiio.geterror() or output.geterror()}); free some space")
+    if output is None:
+        raise AddonError(f"{path}: cannot be written ({oiio.geterror()}); install Blender again")
+    if not (output.open(str(path), header) and output.write_image(codes) and output.close()):
+        raise AddonError(f"{path}: cannot be written ({output.geterror()}); free some space")

@@ -1,26 +1,31 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: gather a request, let the pipeline work, apply the outcome, report."""
+"""The operators: gather a job, run it, apply what it found to the scene, report."""
 
-from pathlib import Path
-from typing import Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar
 
 import bpy
 
-from . import color_management, libraries, plates, storage
-from .errors import AddonError, CancelledError, expected_errors
+from .. import lazy_import
+from ..scene import color_management, plates, stored_estimate
+from ..work.background import BackgroundTask
+from ..work.errors import AddonError, CancelledError, expected_errors
+from .plate_settings import CHOICES, PlateChoices
 from .preferences import APPLY_MODES, absolute
-from .request import Request, request_for
-from .settings import CHOICES, PlateChoices
-from .task import Task
 
-#: Seconds between two looks at the other thread.
+if TYPE_CHECKING:
+    from ..work.job import Job
+    from ..work.run import CompletedJob
+
+#: Seconds between two checks of how far the job is.
 TICK = 0.1
 
 
 class PlateOperator(PlateChoices):
-    """What both operators share: a run that blocks in scripts and in the background, and a modal one in the interface.
+    """What "Estimate Camera Response" and "Apply Camera Response" share.
 
-    Nothing in Blender's data changes before the run has succeeded, so that errors and Esc leave everything as it was.
+    A script, and Blender in the background, calls `execute`, which returns when the job is done. The interface calls
+    `invoke`, which starts the job in another thread, and then `modal` at every event. Either way, nothing in Blender's
+    data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
     image: bpy.props.StringProperty(
@@ -31,82 +36,88 @@ class PlateOperator(PlateChoices):
     )
     apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
 
+    #: Whether the operator uses the stored estimate instead of a new one.
     is_estimated = False
 
+    if TYPE_CHECKING:  # of bpy.types.Operator
+        properties: Any
+        report: Any
+
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Run to the end."""
+        """Run the job, and return when it is done."""
         try:
-            request = self._request(context)
-            return self._finished(context, request, libraries.load("pipeline").run(request, _ignore))
+            job = self._gather_job(context)
+            return self._apply(context, lazy_import.load(".work.run").run(job))
         except expected_errors() as problem:
-            return self._failed(problem)
+            return self._fail(problem)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Start a run in another thread and watch it."""
+        """Start the job in another thread, and a timer that watches it."""
         try:
-            self._job = self._request(context)
-            pipeline = libraries.load("pipeline")
+            job = self._gather_job(context)
+            run = lazy_import.load(".work.run").run
         except expected_errors() as problem:
-            return self._failed(problem)
-        self._task = Task(lambda progress: pipeline.run(self._job, progress))
+            return self._fail(problem)
+        self._task: BackgroundTask[CompletedJob] = BackgroundTask(lambda progress: run(job, progress))
         manager = context.window_manager
         self._timer = manager.event_timer_add(TICK, window=context.window)
         manager.progress_begin(0, 100)
         manager.modal_handler_add(self)
-        self._show(context)
+        self._show_progress(context)
         self._task.start()
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show how far the run is, cancel it on Esc, apply it once it is through."""
+        """Show the progress; cancel the job on Esc; apply what it found when it has ended."""
         if event.type == "ESC" and event.value == "PRESS":
             self._task.cancel()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        self._show(context)
+        self._show_progress(context)
         if self._task.is_running:
             return {"PASS_THROUGH"}
-        self._hide(context)
+        self._hide_progress(context)
         try:
-            return self._finished(context, self._job, self._task.result())
+            return self._apply(context, self._task.result())
         except expected_errors() as problem:
-            return self._failed(problem)
+            return self._fail(problem)
 
     def cancel(self, context: bpy.types.Context) -> None:
-        """Stop when Blender closes or opens another file."""
+        """Cancel the job, because Blender closes or opens another file."""
         self._task.cancel()
-        self._hide(context)
+        self._hide_progress(context)
 
-    def _request(self, context: bpy.types.Context) -> Request:
-        """Return what to do; choices given in the call come before the plate's."""
+    def _gather_job(self, context: bpy.types.Context) -> "Job":
+        """Return the job; arguments of the call take precedence over the settings of the plate."""
         datablock = plates.chosen_datablock(context, self.image, self.clip)
-        if self.is_estimated and not storage.is_stored(datablock):
+        if self.is_estimated and not stored_estimate.is_stored(datablock):
             raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
-        chosen = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
-        return request_for(datablock, is_estimated=self.is_estimated, choices=chosen)
+        arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
+        gather = lazy_import.load(".ui.gather")
+        return gather.gather_job(datablock, is_estimated=self.is_estimated, arguments=arguments)
 
-    def _finished(self, context: bpy.types.Context, request: Request, outcome: Any) -> set[str]:
-        """Apply the outcome and say so."""
-        done = libraries.load("finish").finish(context, request, outcome)
-        kind = "WARNING" if outcome.estimate.warnings or outcome.estimate.verdict == "do not trust" else "INFO"
-        self.report({kind}, f"{request.plate.name}: response is {outcome.estimate.verdict}; {done}")
+    def _apply(self, context: bpy.types.Context, completed: "CompletedJob") -> set[str]:
+        """Apply a completed job to the scene, and report what was done."""
+        done = lazy_import.load(".scene.apply").apply(context, completed)
+        message = f"{completed.job.plate.name}: response is {completed.estimate.verdict}; {done}"
+        self.report({"WARNING"} if completed.is_doubtful else {"INFO"}, message)
         return {"FINISHED"}
 
-    def _failed(self, problem: Exception) -> set[str]:
-        """Say why nothing was done."""
+    def _fail(self, problem: Exception) -> set[str]:
+        """Report why nothing was done."""
         self.report({"WARNING" if isinstance(problem, CancelledError) else "ERROR"}, str(problem))
         return {"CANCELLED"}
 
-    def _show(self, context: bpy.types.Context) -> None:
-        """Show the progress in the status bar."""
-        share = 100 * self._task.done // max(1, self._task.total)
-        what = "Cancelling" if self._task.is_cancelled else f"Camera response: {share} %  |  Esc to cancel"
-        context.workspace.status_text_set(what)
-        context.window_manager.progress_update(share)
+    def _show_progress(self, context: bpy.types.Context) -> None:
+        """Show the progress in the status bar and at the mouse pointer."""
+        percent = self._task.percent
+        text = "Cancelling" if self._task.is_cancelled else f"Camera response: {percent} %  |  Esc to cancel"
+        context.workspace.status_text_set(text)
+        context.window_manager.progress_update(percent)
 
-    def _hide(self, context: bpy.types.Context) -> None:
-        """Take the progress away."""
+    def _hide_progress(self, context: bpy.types.Context) -> None:
+        """Remove the timer and the display of the progress."""
         context.window_manager.event_timer_remove(self._timer)
         context.window_manager.progress_end()
         context.workspace.status_text_set(None)
@@ -122,7 +133,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate, and say why not; scripts outside the editors name theirs."""
+        """Return whether there is a plate, and tell why if not; outside the editors, a script names its plate."""
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
         datablock = plates.active_datablock(context)
@@ -144,10 +155,10 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has an estimate, and say why not; scripts outside the editors name theirs."""
+        """Return whether the plate has an estimate, and tell so if not; a script names its plate."""
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
-        if storage.is_stored(plates.active_datablock(context)):
+        if stored_estimate.is_stored(plates.active_datablock(context)):
             return True
         cls.poll_message_set("Estimate the camera response of a plate first")
         return False
@@ -165,18 +176,16 @@ class CRF_OT_restore_config(bpy.types.Operator):
     )
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
-        """Restore, and say what is there now."""
-        folder: Path = absolute(self.folder) or color_management.user_folder()
+        """Restore the config, and report what was done."""
+        folder = absolute(self.folder) or color_management.user_folder()
         try:
-            self.report({"INFO"}, libraries.load("config_files").restore(folder))
+            restored = lazy_import.load("ocio.configs.installed").restore(folder)
         except expected_errors() as problem:
             self.report({"ERROR"}, str(problem))
             return {"CANCELLED"}
+        done = "removed, so Blender uses its own again" if restored.is_removed else "again as it was"
+        self.report({"INFO"}, f"{restored.config} is {done}; restart Blender")
         return {"FINISHED"}
-
-
-def _ignore(_done: int, _total: int) -> None:
-    """Show no progress."""
 
 
 _CLASSES = (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_restore_config)
@@ -189,6 +198,6 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Take them back."""
+    """Unregister the operators."""
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)

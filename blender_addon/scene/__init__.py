@@ -1,0 +1,11 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the add-on reads from Blender's data and changes in it; in Blender's own thread only.
+
+plates            which image or clip is meant, and where its code values lie on disk
+packed_images     a temporary file for an image that has no file of its own
+stored_estimate   the estimate as a custom property of its image or clip
+apply             what a completed job changes
+node_group        the inverse response as a compositor node group
+compositor        where the node group goes in the compositor
+color_management  the OpenColorIO config that this Blender runs on
+"""

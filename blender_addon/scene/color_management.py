@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The OpenColorIO config that this Blender runs on, and its colour spaces."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import bpy
+
+#: The name under which Blender looks for a config.
+CONFIG_NAME = "config.ocio"
+
+
+def color_spaces() -> list[str]:
+    """Return the names that the colour space of an image or clip can have in this session."""
+    return bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties["name"].enum_items.keys()
+
+
+def environment_config() -> str:
+    """Return the config that the environment demands instead of the user's or Blender's own; empty if none.
+
+    Blender 5.2 itself sets the variable OCIO to the config that it has found, which demands nothing.
+    """
+    names = ("BLENDER_OCIO", "OCIO") if bpy.app.version >= (5, 0, 0) else ("OCIO",)
+    demanded = next((os.environ[name] for name in names if os.environ.get(name)), "")
+    is_usual = demanded and Path(demanded).resolve() in (_own_config().resolve(), _user_config().resolve())
+    return "" if is_usual else demanded
+
+
+def user_folder() -> Path:
+    """Return the folder in which Blender looks for the user's config when it starts; it may not exist."""
+    return Path(bpy.utils.user_resource("DATAFILES", path="colormanagement"))
+
+
+def running_config() -> str:
+    """Return the config that this Blender was started with: the environment's, the user's or Blender's own."""
+    return environment_config() or str(_user_config() if _user_config().is_file() else _own_config())
+
+
+def _user_config() -> Path:
+    """Return the file of the user's config, which may not exist."""
+    return user_folder() / CONFIG_NAME
+
+
+def _own_config() -> Path:
+    """Return the config that comes with Blender."""
+    return Path(bpy.utils.system_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)

@@ -1,0 +1,224 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The inverse response as a compositor node group, which looks the code values up in an image of the LUT.
+
+A Map UV node reads the LUT image, N x 1 pixels, at u = B (N - 1) / N + 0.5 / N, which is the centre of the pixel of
+brightness B. Blender 5.0 and later interpolate between the pixels; 4.5 takes the nearest one, so the image is longer
+there. Curve nodes would be 50 times less exact.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+import PyOpenColorIO as OCIO
+
+from crfnet_core import ResponseCurve
+from crfnet_core.errors import ConfigError
+from ocio.configs.files import role_name
+from ocio.configs.plate_color_space import LINEAR_REC709
+from ocio.defaults import LUT_LENGTH
+from ocio.luts.lut1d import inverse_response_lut
+
+from .color_management import color_spaces, running_config
+
+#: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
+IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
+
+#: Pixels of the LUT image. Either length has a pixel at every 8-bit code.
+LENGTH = LUT_LENGTH if IS_BLENDER_5 else 16321
+
+#: The custom property that marks the add-on's node groups and LUT images; its value is the plate's name.
+TAG = "camera_response_of"
+
+#: Nodes that Blender 5.0 replaced by those of shaders.
+_MATH, _COMBINE = (
+    ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
+)
+
+#: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
+_COLUMN, _ROW = 190, -230
+
+_CHANNELS = ("Red", "Green", "Blue")
+
+
+def build_group(name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
+    """Return the node group "Camera Response <name>"; one that exists already is updated.
+
+    Parameters
+    ----------
+    name : str
+        The plate's name.
+    curve : ResponseCurve
+        The plate's response.
+    exposure : float
+        The default of the Exposure socket, in stops.
+
+    Raises
+    ------
+    ConfigError
+        If the config has no linear Rec.709, the colour space to which the inverse response leads.
+    """
+    source = linear_rec709()
+    group = _tagged(bpy.data.node_groups, name) or _new_group(name)
+    group.nodes.clear()
+    sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
+    sockets["Exposure"].default_value = exposure
+    _add_nodes(group, _lut_image(name, curve), source)
+    return group
+
+
+def check_config() -> None:
+    """Raise a ConfigError unless the config of this session has the colour spaces that the node group needs."""
+    linear_rec709(), data_space(), working_space()
+
+
+def linear_rec709() -> str:
+    """Return the name of linear Rec.709 in the config of this session."""
+    known = color_spaces()
+    for name in LINEAR_REC709:
+        if name in known:
+            return name
+    raise ConfigError("this config has no linear Rec.709 space, which the nodes need; choose another way to apply it")
+
+
+def data_space() -> str:
+    """Return the name of the colour space that leaves pixels as they are; in Blender's own config, "Non-Color"."""
+    return "Non-Color" if "Non-Color" in color_spaces() else role_name(running_config(), OCIO.ROLE_DATA)
+
+
+def working_space() -> str:
+    """Return the name that the Convert Colorspace node has for the scene's working space."""
+    kinds = bpy.types.CompositorNodeConvertColorSpace.bl_rna.properties["to_color_space"].enum_items
+    return "scene_linear" if "scene_linear" in kinds else role_name(running_config(), OCIO.ROLE_SCENE_LINEAR)
+
+
+def _new_group(name: str) -> bpy.types.NodeTree:
+    """Return a node group that has sockets and no nodes."""
+    group = bpy.data.node_groups.new(f"Camera Response {name}", "CompositorNodeTree")
+    group[TAG] = name
+    group.use_fake_user = True
+    group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+    group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
+    exposure = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
+    exposure.description = "Stops added to the linear plate"
+    exposure.min_value, exposure.max_value = -20, 20
+    return group
+
+
+def _lut_image(name: str, curve: ResponseCurve) -> bpy.types.Image:
+    """Return the packed image of a plate's LUT; one that exists already gets new pixels."""
+    image = _tagged(bpy.data.images, name)
+    if image is not None and tuple(image.size) != (LENGTH, 1):
+        bpy.data.images.remove(image)
+        image = None
+    if image is None:
+        image = bpy.data.images.new(f"Camera Response {name} LUT", LENGTH, 1, alpha=False, float_buffer=True)
+        image[TAG] = name
+        image.colorspace_settings.name = data_space()  # before the pixels, which this would remove
+    pixels = np.ones((LENGTH, 4), np.float32)
+    pixels[:, :3] = inverse_response_lut(curve, length=LENGTH).values[:, None]
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.pack()
+    return image
+
+
+def _tagged(collection: bpy.types.bpy_prop_collection, name: str) -> bpy.types.ID | None:
+    """Return the node group or image that was made for a plate of this name; not one linked from another file."""
+    return next((item for item in collection if item.get(TAG) == name and item.library is None), None)
+
+
+def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> None:
+    """Add the nodes: a look-up for each channel, exposure, conversion to the working space, multiplication by alpha.
+
+    The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored.
+    """
+    grid = _NodeGrid(group)
+    start = grid.node("NodeGroupInput", 0)
+    table = grid.node("CompositorNodeImage", 1, row=-1)
+    table.image = lut
+    split = grid.node("CompositorNodeSeparateColor", 1)
+    grid.link(start.outputs["Image"], split.inputs[0])
+    join = grid.node("CompositorNodeCombineColor", 7)
+    grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
+    for row, channel in enumerate(_CHANNELS):
+        irradiance = _look_up(grid, split.outputs[channel], table.outputs["Image"], row)
+        grid.link(irradiance, join.inputs[channel])
+    exposed = grid.node("CompositorNodeExposure", 8)
+    grid.link(join.outputs[0], exposed.inputs["Image"])
+    grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
+    converted = _convert_to_working_space(grid, source, exposed.outputs[0], 9)
+    end = grid.node("NodeGroupOutput", 11)
+    grid.link(_multiply_by_alpha(grid, converted, 10), end.inputs["Image"])
+
+
+def _look_up(
+    grid: _NodeGrid, brightness: bpy.types.NodeSocket, table: bpy.types.NodeSocket, row: int
+) -> bpy.types.NodeSocket:
+    """Return the socket of a channel's irradiance, which is read from the LUT image at the channel's brightness."""
+    vector = grid.node(_COMBINE, 4, row=row)
+    grid.link(_coordinate(grid, brightness, row), vector.inputs["X"])
+    vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
+    look_up = grid.node("CompositorNodeMapUV", 5, row=row)
+    if IS_BLENDER_5:
+        look_up.inputs["Interpolation"].default_value = "Bilinear"
+        look_up.inputs["Extension X"].default_value = look_up.inputs["Extension Y"].default_value = "Extend"
+    else:
+        look_up.filter_type = "NEAREST"
+    grid.link(table, look_up.inputs["Image"])
+    grid.link(vector.outputs[0], look_up.inputs["UV"])
+    split = grid.node("CompositorNodeSeparateColor", 6, row=row)
+    grid.link(look_up.outputs[0], split.inputs[0])
+    return split.outputs["Red"]
+
+
+def _coordinate(grid: _NodeGrid, brightness: bpy.types.NodeSocket, row: int) -> bpy.types.NodeSocket:
+    """Return the socket of u = B (N - 1) / N + 0.5 / N, for a brightness B clamped to [0, 1]."""
+    clamped = grid.node(_MATH, 2, row=row)
+    clamped.operation, clamped.use_clamp = "ADD", True
+    grid.link(brightness, clamped.inputs[0])
+    clamped.inputs[1].default_value = 0
+    coordinate = grid.node(_MATH, 3, row=row)
+    coordinate.operation = "MULTIPLY_ADD"
+    grid.link(clamped.outputs[0], coordinate.inputs[0])
+    coordinate.inputs[1].default_value, coordinate.inputs[2].default_value = (LENGTH - 1) / LENGTH, 0.5 / LENGTH
+    return coordinate.outputs[0]
+
+
+def _convert_to_working_space(
+    grid: _NodeGrid, space: str, colors: bpy.types.NodeSocket, column: int
+) -> bpy.types.NodeSocket:
+    """Return the socket of colours that are converted from a colour space to the scene's working space."""
+    node = grid.node("CompositorNodeConvertColorSpace", column)
+    node.from_color_space = space
+    node.to_color_space = working_space()
+    grid.link(colors, node.inputs["Image"])
+    return node.outputs[0]
+
+
+def _multiply_by_alpha(grid: _NodeGrid, colors: bpy.types.NodeSocket, column: int) -> bpy.types.NodeSocket:
+    """Return the socket of colours that are multiplied by their alpha."""
+    node = grid.node("CompositorNodePremulKey", column)
+    if IS_BLENDER_5:
+        node.inputs["Type"].default_value = "To Premultiplied"
+    else:
+        node.mapping = "STRAIGHT_TO_PREMUL"
+    grid.link(colors, node.inputs["Image"])
+    return node.outputs[0]
+
+
+class _NodeGrid:
+    """A node tree whose nodes are placed in columns and rows."""
+
+    def __init__(self, tree: bpy.types.NodeTree) -> None:
+        self._tree = tree
+
+    def node(self, kind: str, column: int, *, row: int = 0) -> bpy.types.Node:
+        """Return a new node."""
+        node = self._tree.nodes.new(kind)
+        node.location = (_COLUMN * column, _ROW * row)
+        return node
+
+    def link(self, source: bpy.types.NodeSocket, target: bpy.types.NodeSocket) -> None:
+        """Link an output to an input."""
+        self._tree.links.new(source, target)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The whole estimate as a custom property of its image or clip, so that it is saved in the .blend file.
+
+What the panel draws is read here without importing the estimator.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from .. import lazy_import
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseEstimate
+    from crfnet_core.types import Float64Array
+
+    from .plates import Datablock
+
+#: The name of the custom property.
+KEY = "camera_response"
+
+#: The version of its entries.
+LAYOUT = 1
+
+#: Entries that are set later: the exposure that was applied, in stops, and the colour space that the plate gets once
+#: Blender has been started with the new config.
+EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
+
+
+def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
+    """Store an estimate on its image or clip.
+
+    Parameters
+    ----------
+    datablock : Image or MovieClip
+        Gets the custom property `KEY`.
+    estimate : ResponseEstimate
+        Stored whole and in double precision: `restored` returns its equal.
+    lines : iterable of str
+        What the panel says of the estimate.
+    """
+    entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
+    datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
+
+
+def is_stored(datablock: Datablock | None) -> bool:
+    """Return whether an image or clip has a stored estimate of this layout."""
+    entries: Any = datablock.get(KEY) if datablock is not None else None
+    return hasattr(entries, "get") and entries.get("layout") == LAYOUT
+
+
+def lines(datablock: Datablock) -> list[str]:
+    """Return what the panel says of the stored estimate."""
+    return datablock[KEY]["lines"].split("\n")
+
+
+def curve_and_band(datablock: Datablock) -> Float64Array:
+    """Return the stored response and the lower and upper end of its band, shape (3, 1024)."""
+    entries = datablock[KEY]
+    return np.array([entries[name].to_list() for name in ("brightness", "lower", "upper")])
+
+
+def restored(datablock: Datablock) -> ResponseEstimate:
+    """Return the stored estimate.
+
+    Raises
+    ------
+    CurveError
+        If the stored curve is no longer that of a response, because another program changed it.
+    """
+    return lazy_import.load(".work.estimate_record").estimate_of(datablock[KEY].to_dict())
+
+
+def set_entry(datablock: Datablock, name: str, value: Any) -> None:
+    """Set one more entry of the stored estimate."""
+    datablock[KEY][name] = value
+
+
+def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> str:
+    """Return the colour space that a plate waits for, and end the wait, if it is available; else an empty text."""
+    name = datablock[KEY].get(PENDING_COLOR_SPACE) if is_stored(datablock) else None
+    if name is None or name not in available:
+        return ""
+    datablock[KEY].pop(PENDING_COLOR_SPACE, None)
+    return name
+
+
+def fingerprint(datablock: Datablock) -> str:
+    """Return a text that differs between different estimates."""
+    entries = datablock[KEY]
+    return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"

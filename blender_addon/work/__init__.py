@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What a job does outside Blender's data, in any thread; nothing here imports bpy.
+
+job              what to do: the plate, where its response comes from, what is written
+run              the job, done
+writers          the files of each way to apply a response
+encoding_check   refuses plates that are logarithmic or linear already
+background       a job in another thread, with progress and cancellation
+estimate_record  an estimate as the entries that a .blend file keeps
+curve_picture    a drawing of the response
+errors           the add-on's own errors
+"""

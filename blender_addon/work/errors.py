@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The errors of the add-on itself.
+
+They are no `crfnet_core.errors.CRFNetError`, because the add-on must be able to say that the estimator cannot be
+imported.
+"""
+
+from __future__ import annotations
+
+import sys
+
+
+class AddonError(Exception):
+    """A problem that the user can solve; the message says in one line what was found and what to do."""
+
+
+class CancelledError(AddonError):
+    """The user cancelled a job."""
+
+
+def expected_errors() -> tuple[type[Exception], ...]:
+    """Return the errors whose messages are written for the user.
+
+    The estimator's errors are among them once it has been imported; before that, it cannot have raised any.
+    """
+    core = sys.modules.get("crfnet_core.errors")
+    return (AddonError,) if core is None else (AddonError, core.CRFNetError)

@@ -1,0 +1,190 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""A job: everything that is known of a plate and of what is to be done with it, before another thread takes over.
+
+Nothing here refers to Blender's data, so a job may travel between threads, and a test may make one by hand.
+"""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseEstimate
+    from ocio.options import EstimateOptions
+
+#: A file name without suffix, split around its last number, which is the frame number.
+_FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
+
+
+class ApplyMode(StrEnum):
+    """The ways to apply a response: in the compositor, as a colour space, as linear EXR files, as files to hand on."""
+
+    NODES = "NODES"
+    COLORSPACE = "COLORSPACE"
+    BAKE = "BAKE"
+    EXPORT = "EXPORT"
+
+
+class Anchor(StrEnum):
+    """Which brightness has a given linear value."""
+
+    WHITE = "WHITE"
+    GRAY = "GRAY"
+
+
+@dataclass(frozen=True, kw_only=True)
+class Plate:
+    """The files of a plate, and its names.
+
+    Parameters
+    ----------
+    name : str
+        The name of the file without suffix and frame number: for messages, new files and nodes.
+    uid : int
+        The `session_uid` of the plate's image or clip, by which it is found again after the run.
+    file : Path
+        The file; of a sequence, its pattern with a placeholder for the frame number, like ``shot.%04d.png``.
+    pattern : str
+        The file names with ``*`` for the frame number, like ``shot.*.png``.
+    is_sequence : bool
+        Whether `file` is the pattern of a sequence.
+    color_space : str
+        The colour space that Blender takes the file for.
+    folder : Path or None
+        The folder for new files unless the user chooses one; None for a plate without a file of its own.
+    """
+
+    name: str
+    uid: int
+    file: Path
+    pattern: str
+    is_sequence: bool
+    color_space: str
+    folder: Path | None
+
+    @classmethod
+    def of_file(
+        cls,
+        path: Path,
+        *,
+        is_sequence: bool,
+        datablock_name: str,
+        uid: int,
+        color_space: str,
+        folder: Path | None,
+    ) -> Plate:
+        """Return the plate of a file, or of the sequence that the file belongs to.
+
+        A file name without a number belongs to no sequence. If the frame number is the whole file name, the plate has
+        the name of its image or clip.
+        """
+        number = _FRAME_NUMBER.fullmatch(path.stem) if is_sequence else None
+        name, pattern, file = path.stem, path.name, path
+        if number is not None:
+            before, digits, after = number.groups()
+            name = (before.rstrip("._- ") + after) or Path(datablock_name).stem
+            pattern = f"{before}*{after}{path.suffix}"
+            file = path.with_name(f"{before}%0{len(digits)}d{after}{path.suffix}")
+        return cls(
+            name=name,
+            uid=uid,
+            file=file,
+            pattern=pattern,
+            is_sequence=number is not None,
+            color_space=color_space,
+            folder=folder,
+        )
+
+
+@dataclass(frozen=True, kw_only=True)
+class Estimation:
+    """Where the response of the plate comes from.
+
+    Parameters
+    ----------
+    options : EstimateOptions
+        How it is estimated.
+    is_forced : bool
+        Whether it is estimated even if the plate is said to be logarithmic or linear.
+    stored : ResponseEstimate or None
+        An earlier estimate, which is used instead of a new one.
+    """
+
+    options: EstimateOptions
+    is_forced: bool
+    stored: ResponseEstimate | None = None
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exposure:
+    """The scale of the linear values, which a response alone leaves open.
+
+    Parameters
+    ----------
+    anchor : Anchor
+        WHITE: brightness 1 becomes linear 1; GRAY: brightness `gray` becomes linear 0.18.
+    gray : float
+        The brightness of middle gray in the plate, in (0, 1]; for the anchor GRAY only.
+    stops : float
+        Stops added on top of the anchor.
+    """
+
+    anchor: Anchor
+    gray: float
+    stops: float
+
+
+@dataclass(frozen=True, kw_only=True)
+class Output:
+    """What becomes of the response.
+
+    Parameters
+    ----------
+    mode : ApplyMode
+        The way to apply it.
+    folder : Path or None
+        The folder for files; None if none is known.
+    depth : {"half", "float"}
+        The samples of baked files.
+    lut_length : int
+        The entries of LUT files.
+    overwrite : bool
+        Whether existing files may be replaced.
+    """
+
+    mode: ApplyMode
+    folder: Path | None
+    depth: str
+    lut_length: int
+    overwrite: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class RunningConfig:
+    """The OpenColorIO config that this Blender was started with.
+
+    Parameters
+    ----------
+    path : str
+        Its file.
+    is_demanded : bool
+        Whether the environment names it, so that Blender looks for a config nowhere else.
+    """
+
+    path: str
+    is_demanded: bool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Job:
+    """A plate, and what is to be done with it."""
+
+    plate: Plate
+    estimation: Estimation
+    exposure: Exposure
+    output: Output
+    config: RunningConfig

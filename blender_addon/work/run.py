@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Run a job: estimate the response and write files, through `ocio.pipeline`, the pipeline of the `crfnet` command."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, lru_cache, partial
+
+from crfnet_core import ResponseEstimate
+from crfnet_core.network import Verdict
+from crfnet_core.types import Progress
+from ocio.pipeline import anchored_exposure, estimate_frames, load_network, response_lut
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.report import verdict_lines
+
+from . import writers
+from .encoding_check import check_is_encoded
+from .job import Anchor, ApplyMode, Job
+
+#: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
+_SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
+
+#: The network of the last estimate stays loaded.
+_load_network = lru_cache(maxsize=1)(load_network)
+
+
+@dataclass(frozen=True, eq=False)
+class CompletedJob:
+    """A job, what it found and what it wrote.
+
+    Parameters
+    ----------
+    job : Job
+        The job.
+    estimate : ResponseEstimate
+        The response of the plate.
+    stops : float
+        The stops to add after the inverse response.
+    frames : tuple of int
+        The frame numbers of a sequence that Blender is to show; empty for a single file.
+    files : Baked, Exported, Installed or None
+        What was written; None for nodes, which need no file.
+    """
+
+    job: Job
+    estimate: ResponseEstimate
+    stops: float
+    frames: tuple[int, ...]
+    files: writers.Written | None
+
+    @property
+    def lines(self) -> tuple[str, ...]:
+        """The verdict and the warnings in words, one line each."""
+        return tuple(verdict_lines(self.estimate))
+
+    @property
+    def is_doubtful(self) -> bool:
+        """Whether the estimate has warnings or is not to be trusted."""
+        return bool(self.estimate.warnings) or self.estimate.verdict is Verdict.DO_NOT_TRUST
+
+
+def run(job: Job, progress: Progress | None = None) -> CompletedJob:
+    """Return what a job found and wrote.
+
+    Parameters
+    ----------
+    job : Job
+        What to do.
+    progress : callable or None
+        Called with (done, total) after every step; what it raises ends the job.
+
+    Raises
+    ------
+    CRFNetError, AddonError
+        If the plate, the model or a folder cannot be used; files that the job has written are removed again.
+    """
+    sequence = cache(partial(find_frames, job.plate.file))  # looks for the frames at most once, and only if needed
+    estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
+    gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
+    stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
+    shows_frames = job.plate.is_sequence and job.output.mode in _SHOWING_FRAMES
+    files: writers.Written | None = None
+    if job.output.mode is not ApplyMode.NODES:
+        lut = response_lut(estimate, length=job.output.lut_length)
+        files = writers.write(job, lut, stops, sequence, progress)
+    return CompletedJob(job, estimate, stops, sequence().numbers if shows_frames else (), files)
+
+
+def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> ResponseEstimate:
+    """Return the response of a plate, estimated from its file or from several of its frames.
+
+    Raises
+    ------
+    AddonError
+        If the plate is logarithmic or linear and the job does not force the estimate.
+    CRFNetError
+        If a file or the model cannot be read.
+    """
+    if progress is not None:
+        progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
+    if not job.estimation.is_forced:
+        check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
+    options = job.estimation.options
+    return estimate_frames(sequence, _load_network(options), options, progress=progress)

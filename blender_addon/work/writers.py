@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The files of each way to apply a response, named as the `crfnet` command would name them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+from crfnet_core.types import Progress
+from ocio.configs.installed import Installed, install
+from ocio.configs.plate_color_space import PlateColorSpace
+from ocio.luts.lut1d import Lut1D
+from ocio.options import PlateOptions
+from ocio.output_files import OutputFiles, plain_stem
+from ocio.pipeline import bake_plates, export_luts
+from ocio.plates.frames import FramePattern, FrameSequence
+from ocio.plates.linear import linear_targets
+
+from .errors import AddonError
+from .job import ApplyMode, Job, Plate
+
+
+@dataclass(frozen=True)
+class Baked:
+    """Linear EXR files.
+
+    Parameters
+    ----------
+    files : tuple of Path
+        The files, in the order of their frames.
+    is_sequence : bool
+        Whether they are the frames of a sequence.
+    """
+
+    files: tuple[Path, ...]
+    is_sequence: bool
+
+
+@dataclass(frozen=True)
+class Exported:
+    """LUT files and a config, and the folder that they are in."""
+
+    folder: Path
+    files: tuple[Path, ...]
+
+
+Written = Baked | Exported | Installed
+
+
+def write(
+    job: Job,
+    lut: Lut1D,
+    stops: float,
+    sequence: Callable[[], FrameSequence],
+    progress: Progress | None = None,
+) -> Written:
+    """Write the files of a job.
+
+    Parameters
+    ----------
+    job : Job
+        In any mode but NODES, which need no file.
+    lut : Lut1D
+        The inverse response.
+    stops : float
+        Stops added after the inverse response.
+    sequence : callable
+        Returns the frames of the plate; called only if they are written.
+    progress : callable or None
+        Called with (done, total) after every frame; what it raises ends the job.
+
+    Raises
+    ------
+    CRFNetError, AddonError
+        If there is no folder, a file exists and may not be replaced, or a file cannot be written. New files are
+        removed again.
+    """
+    if job.output.mode is ApplyMode.BAKE:
+        return bake(job, lut, stops, sequence(), progress)
+    return export(job, lut, stops) if job.output.mode is ApplyMode.EXPORT else install_color_space(job, lut, stops)
+
+
+def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
+    """Write the linear plate, or all its frames; a cancelled or failed job leaves no new file."""
+    targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
+    options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite)
+    bake_plates(sequence, targets, lut, options, progress=progress)
+    return Baked(targets, job.plate.is_sequence)
+
+
+def export(job: Job, lut: Lut1D, stops: float) -> Exported:
+    """Write the LUT in three formats, and a portable config with the plate's colour space."""
+    folder = _folder(job)
+    files = output_files(job.plate, folder)
+    space = color_space(job.plate, files, stops)
+    return Exported(folder, export_luts(files, space, lut, overwrite=job.output.overwrite))
+
+
+def install_color_space(job: Job, lut: Lut1D, stops: float) -> Installed:
+    """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
+    folder = _folder(job)
+    space = color_space(job.plate, output_files(job.plate, folder), stops)
+    return install(folder, job.config.path, space, lut)
+
+
+def output_files(plate: Plate, folder: Path) -> OutputFiles:
+    """Return the files that the `crfnet` command would write for a plate into a folder."""
+    return OutputFiles.named(folder, [_photo(plate)], has_sheet=False)
+
+
+def color_space(plate: Plate, files: OutputFiles, stops: float) -> PlateColorSpace:
+    """Return the plate's colour space, with a file rule for all its files."""
+    return files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
+
+
+def baked_name(plate: Plate) -> str:
+    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate."""
+    stem = plain_stem(Path(plate.name + ".exr"))
+    pattern = FramePattern.parse(plate.file) if plate.is_sequence else None
+    return f"{stem}_linear.exr" if pattern is None else f"{stem}_linear.%0{pattern.width}d.exr"
+
+
+def _photo(plate: Plate) -> Path:
+    """Return the file name of the plate without frame number, after which its files are named."""
+    return Path(plate.name + plate.file.suffix)
+
+
+def _folder(job: Job) -> Path:
+    """Return the folder for files; an AddonError if the job has none."""
+    if job.output.folder is None:
+        raise AddonError(f"{job.plate.name}: has no folder of its own; choose one under Folder")
+    return job.output.folder

@@ -1,0 +1,128 @@
+"""The manifest of the extension, and the builder of its zips; without Blender."""
+
+import os
+import re
+import subprocess
+import sys
+import tomllib
+import zipfile
+
+import pytest
+
+from blender_addon import build
+
+
+@pytest.fixture(scope="module")
+def manifest_text(root):
+    return (root / "blender_addon" / "blender_manifest.toml").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def manifest(manifest_text):
+    return tomllib.loads(manifest_text)
+
+
+@pytest.fixture(scope="module")
+def hashes(root):
+    lines = (root / "blender_addon" / "wheels.sha256").read_text(encoding="utf-8").splitlines()
+    return {name: digest for digest, name in map(str.split, lines)}
+
+
+def names(wheels):
+    return {wheel.removeprefix("./wheels/") for wheel in wheels}
+
+
+def pythons(wheels):
+    return sorted(name.split("-")[2] for name in names(wheels))
+
+
+def test_the_version_is_the_projects(root, manifest):
+    version = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]["version"]
+    assert manifest["version"] == version
+    assert f"crfnet-{version}-py3-none-any.whl" in names(manifest["wheels"])
+
+
+def test_the_manifest_asks_for_files_only(manifest):
+    assert list(manifest["permissions"]) == ["files"]
+    assert manifest["license"] == ["SPDX:GPL-3.0-or-later"]
+    assert manifest["blender_version_min"] == "4.5.0"
+    assert "blender_version_max" not in manifest
+
+
+def test_every_wheel_has_its_hash(manifest, hashes):
+    ours = {f"crfnet-{manifest['version']}-py3-none-any.whl"}
+    builds_ours = {name for name in hashes if name.startswith("setuptools-")}
+    assert names(manifest["wheels"]) - ours == set(hashes) - builds_ours
+    assert len(builds_ours) == 1
+    assert all(re.fullmatch("[0-9a-f]{64}", digest) for digest in hashes.values())
+
+
+def test_every_platform_of_the_manifest_is_built(manifest):
+    assert list(build.WHEEL_PLATFORMS) == manifest["platforms"]
+    assert set().union(*(build.platform_wheels(manifest["wheels"], name) for name in manifest["platforms"])) == set(
+        manifest["wheels"]
+    )
+
+
+@pytest.mark.parametrize("name", ["linux-x64", "macos-arm64", "windows-x64"])
+def test_a_platform_has_wheels_for_both_pythons(manifest, name):
+    assert pythons(build.platform_wheels(manifest["wheels"], name)) == ["cp311", "cp313", "py3"]
+
+
+def test_intel_macs_have_one_for_the_last_blender_there(manifest):
+    assert pythons(build.platform_wheels(manifest["wheels"], "macos-x64")) == ["cp311", "py3"]
+
+
+def test_a_zips_manifest_lists_what_is_in_it(manifest, manifest_text):
+    wheels = ["./wheels/one-1-py3-none-any.whl"]
+    narrowed = tomllib.loads(build.platform_manifest(manifest_text, "macos-arm64", wheels))
+    assert narrowed == manifest | {"platforms": ["macos-arm64"], "wheels": wheels}
+
+
+def test_a_manifest_without_the_lists_is_refused():
+    with pytest.raises(build.BuildError, match=r"needs one list `platforms` .* found 0"):
+        build.platform_manifest('id = "crf_response"\n', "macos-arm64", [])
+
+
+def test_a_zip_depends_on_its_contents_alone(tmp_path):
+    contents = {"b.py": b"two", "a.py": b"one"}
+    build.write_zip(tmp_path / "first.zip", contents)
+    build.write_zip(tmp_path / "second.zip", dict(reversed(contents.items())))
+    assert (tmp_path / "first.zip").read_bytes() == (tmp_path / "second.zip").read_bytes()
+    assert sorted(path.name for path in tmp_path.iterdir()) == ["first.zip", "second.zip"]
+    with zipfile.ZipFile(tmp_path / "first.zip") as archive:
+        assert {name: archive.read(name) for name in archive.namelist()} == contents
+        assert archive.namelist() == sorted(contents)
+
+
+def test_a_wheel_without_a_hash_is_refused(tmp_path):
+    with pytest.raises(build.BuildError, match=r"^other-1-py3-none-any.whl: has no line in wheels.sha256"):
+        build.fetch_wheel("other-1-py3-none-any.whl", tmp_path)
+
+
+def test_a_download_with_another_hash_is_refused(hashes, tmp_path, monkeypatch):
+    name = next(iter(hashes))
+    monkeypatch.setattr(build, "_download", lambda name, folder: (folder / name).write_bytes(b"tampered with"))
+    with pytest.raises(build.BuildError, match=f"{re.escape(name)}: the download has SHA-256"):
+        build.fetch_wheel(name, tmp_path)
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_a_damaged_file_in_the_cache_is_downloaded_again(tmp_path, monkeypatch):
+    good = b"as published"
+    monkeypatch.setattr(
+        build, "_expected_hashes", lambda: {"one-1-py3-none-any.whl": build.hashlib.sha256(good).hexdigest()}
+    )
+    monkeypatch.setattr(build, "_download", lambda name, folder: (folder / name).write_bytes(good))
+    (tmp_path / "one-1-py3-none-any.whl").write_bytes(b"cut sho")
+    assert build.fetch_wheel("one-1-py3-none-any.whl", tmp_path).read_bytes() == good
+
+
+def test_no_network_is_one_line(root, tmp_path):
+    environment = {**os.environ, "PIP_NO_INDEX": "1", "PIP_FIND_LINKS": str(tmp_path), "PIP_CONFIG_FILE": os.devnull}
+    command = [sys.executable, str(root / "blender_addon" / "build.py"), "--out", str(tmp_path / "out")]
+    command += ["--cache", str(tmp_path / "cache")]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert re.fullmatch(r"setuptools-\S+: cannot be downloaded; check the network \(pip: .*\)\n", done.stderr)
+    assert not (tmp_path / "out").exists()

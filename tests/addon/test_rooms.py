@@ -1,0 +1,102 @@
+"""The rooms of the add-on: `work` needs no Blender, and registering needs no estimator."""
+
+import ast
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ESTIMATOR = {"crfnet_core", "ocio", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
+
+#: Modules of `work` that Blender imports when it enables the add-on.
+LIGHT = ("background", "curve_picture", "errors", "job")
+
+IMPORT_WORK = """
+import importlib, pkgutil, sys
+sys.modules["bpy"] = None
+import blender_addon.work
+for module in pkgutil.iter_modules(blender_addon.work.__path__, "blender_addon.work."):
+    importlib.import_module(module.name)
+print(*sys.modules)
+"""
+
+IMPORT_LIGHT = f"""
+import importlib, sys
+for name in {LIGHT}:
+    importlib.import_module("blender_addon.work." + name)
+print(*sys.modules)
+"""
+
+
+@pytest.fixture
+def addon_folder(root) -> Path:
+    return root / "blender_addon"
+
+
+def loaded_by(code, root):
+    """Modules that a fresh interpreter holds after running code that prints sys.modules."""
+    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return set(done.stdout.split())
+
+
+def imports_at_start(path, module):
+    """Names of the modules that a module imports when it is imported itself, those for types excepted."""
+    for node in ast.parse(path.read_text(encoding="utf-8")).body:
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            parents = module.split(".")[: -node.level] if node.level else []
+            source = ".".join([*parents, *filter(None, [node.module])])
+            yield source
+            yield from (f"{source}.{alias.name}" for alias in node.names)
+
+
+def imported_with(module, folder):
+    """Names of everything that is imported together with a module of the add-on, itself included."""
+    seen, pending = set(), [module]
+    while pending:
+        name = pending.pop()
+        if name in seen:
+            continue
+        seen.add(name)
+        path = folder.parent.joinpath(*name.split(".")).with_suffix(".py")
+        if name.startswith(folder.name) and path.is_file():
+            pending += imports_at_start(path, name)
+    return seen
+
+
+def test_work_imports_neither_blender_nor_another_room(root):
+    loaded = loaded_by(IMPORT_WORK, root)
+    assert not [name for name in loaded if name.startswith(("blender_addon.ui", "blender_addon.scene"))]
+    assert "blender_addon.lazy_import" not in loaded
+
+
+def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):
+    for path in (addon_folder / "work").glob("*.py"):
+        nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
+        assert "bpy" not in names, path
+
+
+def test_what_blender_imports_of_work_at_its_start_is_light(root):
+    assert not {name.partition(".")[0] for name in loaded_by(IMPORT_LIGHT, root)} & ESTIMATOR
+
+
+@pytest.mark.parametrize("module", ["handlers", "operators", "panel", "plate_settings", "preferences"])
+def test_what_is_registered_imports_no_estimator(addon_folder, module):
+    names = imported_with(f"blender_addon.ui.{module}", addon_folder)
+    assert "bpy" in names
+    assert not {name.partition(".")[0] for name in names} & ESTIMATOR
+    of_work = {name.split(".")[2] for name in names if name.startswith("blender_addon.work.")} & {
+        path.stem for path in (addon_folder / "work").glob("*.py")
+    }
+    assert of_work <= set(LIGHT)
+
+
+@pytest.mark.parametrize("room", ["ui", "scene", "work"])
+def test_the_map_of_a_room_names_its_modules(addon_folder, room):
+    modules = {path.stem for path in (addon_folder / room).glob("*.py")} - {"__init__"}
+    text = ast.get_docstring(ast.parse((addon_folder / room / "__init__.py").read_text(encoding="utf-8")))
+    assert {line.split()[0] for line in text.split("\n\n")[1].splitlines()} == modules

@@ -1,0 +1,121 @@
+"""A job from its plate to what was found, with the fixed model: the API's estimate, and no step done twice."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from blender_addon.work import run as run_module
+from blender_addon.work import writers
+from blender_addon.work.errors import AddonError, CancelledError
+from blender_addon.work.job import Anchor, ApplyMode
+from blender_addon.work.run import run
+from crfnet_core.errors import CRFNetError, ModelError, PlateError
+from crfnet_core.network import ResponseNetwork
+from tests.helpers.images import write_image
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Count the calls of functions of a module: calls(module, name) -> a list that grows."""
+
+    def count(module, name):
+        made, function = [], getattr(module, name)
+        monkeypatch.setattr(module, name, lambda *args, **options: made.append(args) or function(*args, **options))
+        return made
+
+    return count
+
+
+def cancel(_done, _total):
+    raise CancelledError("Cancelled")
+
+
+def test_the_estimate_is_the_apis(make_job, plate_file, estimate):
+    completed = run(make_job(mode=ApplyMode.NODES))
+    np.testing.assert_array_equal(completed.estimate.weights, estimate(plate_file).weights)
+    assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
+    assert completed.lines[0].endswith("of 10 windows agree.")
+
+
+def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
+    luts = calls(run_module, "response_lut")
+    completed = run(make_job(mode=ApplyMode.NODES))
+    assert (completed.files, completed.frames, luts) == (None, (), [])
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, sequence_file):
+    scans, luts = calls(run_module, "find_frames"), calls(run_module, "response_lut")
+    completed = run(make_job(sequence_file, is_sequence=True))
+    assert (len(scans), len(luts)) == (1, 1)
+    assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
+    assert len(completed.files.files) == 8
+
+
+def test_nodes_know_the_frames_of_a_sequence(make_job, sequence_file):
+    completed = run(make_job(sequence_file, is_sequence=True, mode=ApplyMode.NODES))
+    assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
+
+
+def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, monkeypatch):
+    """Its LUT can be exported even where the frames are not."""
+    stored = estimate(sequence_file)
+    monkeypatch.setattr(run_module, "estimate_plate", None)
+    shutil.rmtree(sequence_file.parent)
+    completed = run(make_job(sequence_file, is_sequence=True, mode=ApplyMode.EXPORT, stored=stored))
+    assert completed.estimate is stored
+    assert completed.frames == ()
+    assert isinstance(completed.files, writers.Exported)
+
+
+def test_the_network_is_loaded_once(make_job, calls):
+    loads = calls(ResponseNetwork, "load")
+    run_module._load_network.cache_clear()
+    for _ in range(3):
+        run(make_job(mode=ApplyMode.NODES))
+    assert len(loads) == 1
+
+
+def test_white_is_the_anchor_by_default(make_job):
+    assert run(make_job(mode=ApplyMode.NODES, stops=1.5)).stops == 1.5
+
+
+def test_a_gray_anchor_becomes_018(make_job):
+    completed = run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.4, stops=1))
+    assert completed.estimate.curve.inverse(0.4) * 2 ** (completed.stops - 1) == pytest.approx(0.18)
+
+
+def test_a_gray_that_is_black_is_refused(make_job):
+    with pytest.raises(CRFNetError, match="is black in this response"):
+        run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.0))
+
+
+def test_a_doubtful_estimate_is_one_with_warnings(make_job, tmp_path):
+    assert not run(make_job(mode=ApplyMode.NODES)).is_doubtful
+    gray = write_image(tmp_path / "gray.png", np.tile(np.arange(256, dtype=np.uint8)[None, :, None], (256, 1, 1)))
+    completed = run(make_job(gray, mode=ApplyMode.NODES))
+    assert completed.is_doubtful
+    assert any(line.startswith("Warning: gray photograph") for line in completed.lines)
+
+
+def test_a_linear_plate_is_refused_unless_forced(make_job):
+    with pytest.raises(AddonError, match="is logarithmic or linear"):
+        run(make_job(color_space="lin_rec709_scene", mode=ApplyMode.NODES))
+    assert run(make_job(color_space="lin_rec709_scene", mode=ApplyMode.NODES, is_forced=True)).stops == 0
+
+
+def test_a_cancelled_job_ends_before_the_network_is_loaded(make_job, calls):
+    loads = calls(run_module, "_load_network")
+    with pytest.raises(CancelledError):
+        run(make_job(), cancel)
+    assert loads == []
+
+
+def test_a_missing_plate_and_a_missing_model_are_told(make_job, tmp_path, plate_file):
+    job = make_job()
+    plate_file.unlink()
+    with pytest.raises(PlateError, match="there is no such file"):
+        run(job)
+    with pytest.raises(ModelError, match=r"model\.json"):
+        run_module._load_network(type(job.estimation.options)(model=tmp_path))

@@ -1,0 +1,140 @@
+"""The files of a job: their names and contents; all of them or none."""
+
+import dataclasses
+import stat
+
+import numpy as np
+import pytest
+
+from blender_addon.work import writers
+from blender_addon.work.errors import AddonError, CancelledError
+from blender_addon.work.job import ApplyMode
+from crfnet_core.errors import ConfigError, CRFNetError
+from crfnet_core.response import ResponseCurve
+from ocio.luts.files import read_lut
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.plates.frames import find_frames
+from tests.helpers.images import read_image
+
+CURVE = ResponseCurve.gamma(2.2)
+LUT = inverse_response_lut(CURVE)
+
+
+def write(job, progress=None, stops=0.0):
+    return writers.write(job, LUT, stops, lambda: find_frames(job.plate.file), progress)
+
+
+def files_in(folder):
+    return sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+
+
+def cancelled_after(steps):
+    def progress(done, total):
+        if done >= steps:
+            raise CancelledError("Cancelled; nothing was changed")
+
+    return progress
+
+
+def test_a_baked_plate_is_linear(make_job, tmp_path, codes):
+    baked = write(make_job(), stops=1)
+    assert baked == writers.Baked((tmp_path / "out" / "plate_linear.exr",), is_sequence=False)
+    assert np.abs(read_image(baked.files[0]) - 2 * CURVE.inverse(codes / 255)).max() < 1e-5
+
+
+def test_baked_frames_keep_their_numbers(make_job, sequence_file, tmp_path):
+    baked = write(make_job(sequence_file, is_sequence=True))
+    assert baked.is_sequence
+    assert [path.name for path in baked.files] == [f"shot_linear.{n:04d}.exr" for n in (1, 2, 3, 5, 6, 7, 8, 9)]
+    assert all(path.is_file() for path in baked.files)
+
+
+@pytest.mark.parametrize("steps", [0, 1, 5])
+def test_a_cancelled_bake_leaves_nothing(make_job, sequence_file, tmp_path, steps):
+    with pytest.raises(CancelledError):
+        write(make_job(sequence_file, is_sequence=True), cancelled_after(steps))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_cancelled_bake_leaves_what_was_there(make_job, sequence_file, tmp_path):
+    """Files of an earlier run stay, replaced or not; they are whole either way."""
+    job = make_job(sequence_file, is_sequence=True, overwrite=True)
+    earlier = tmp_path / "out" / "shot_linear.0002.exr"
+    earlier.parent.mkdir()
+    earlier.write_bytes(b"earlier")
+    with pytest.raises(CancelledError):
+        write(job, cancelled_after(1))
+    assert files_in(tmp_path / "out") == ["shot_linear.0002.exr"]
+
+
+def test_a_frame_that_fails_takes_the_others_back(make_job, sequence_file, tmp_path):
+    sequence_file.with_name("shot.0005.png").write_bytes(b"no picture")
+    with pytest.raises(CRFNetError, match=r"shot\.0005\.png"):
+        write(make_job(sequence_file, is_sequence=True))
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
+def test_existing_files_are_replaced_only_when_asked(make_job, mode):
+    write(make_job(mode=mode))
+    with pytest.raises(CRFNetError, match="exists already"):
+        write(make_job(mode=mode))
+    write(make_job(mode=mode, overwrite=True))
+
+
+def test_an_export_is_that_of_the_command(make_job, tmp_path, plate_file, codes):
+    exported = write(make_job(mode=ApplyMode.EXPORT))
+    assert exported.folder == tmp_path / "out"
+    assert files_in(exported.folder) == ["config.ocio", "plate.clf", "plate.cube", "plate.spi1d"]
+    assert sorted(exported.files) == sorted(exported.folder.iterdir())
+    for suffix in ("spi1d", "cube", "clf"):
+        np.testing.assert_array_equal(read_lut(exported.folder / f"plate.{suffix}").values, LUT.values)
+
+
+def test_an_export_whose_config_is_refused_leaves_nothing(make_job, tmp_path, monkeypatch):
+    def refuse(*_arguments, **_options):
+        raise ConfigError("OpenColorIO refuses it")
+
+    monkeypatch.setattr("ocio.pipeline.delivery.write_config", refuse)
+    with pytest.raises(ConfigError, match="refuses"):
+        write(make_job(mode=ApplyMode.EXPORT))
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_color_space_is_installed_beside_the_running_config(make_job, tmp_path, running_config):
+    import PyOpenColorIO as OCIO
+
+    before = running_config.read_bytes()
+    installed = write(make_job(mode=ApplyMode.COLORSPACE))
+    assert (installed.color_space, installed.is_changed) == ("CRF plate", True)
+    names = [space.getName() for space in OCIO.Config.CreateFromFile(str(installed.config)).getColorSpaces()]
+    assert names.count("CRF plate") == 1
+    assert running_config.read_bytes() == before
+    assert not write(make_job(mode=ApplyMode.COLORSPACE)).is_changed
+
+
+def test_the_file_rule_is_for_every_frame(make_job, sequence_file, tmp_path):
+    job = make_job(sequence_file, is_sequence=True)
+    space = writers.color_space(job.plate, writers.output_files(job.plate, tmp_path), 1.5)
+    assert (space.name, space.file_pattern, space.exposure) == ("CRF shot", "shot.*.png", 1.5)
+
+
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT, ApplyMode.COLORSPACE])
+def test_a_folder_is_needed_that_can_be_written(make_job, tmp_path, mode):
+    with pytest.raises(AddonError, match="choose one under Folder"):
+        write(make_job(mode=mode, folder=None))
+    (tmp_path / "file").write_text("")
+    with pytest.raises(CRFNetError, match="is not a folder"):
+        write(make_job(mode=mode, folder=tmp_path / "file" / "look"))
+
+
+def test_names_with_placeholders_of_configs_are_made_plain(make_job, tmp_path):
+    plate = dataclasses.replace(make_job().plate, name="50% gray")
+    assert writers.baked_name(plate) == "50_ gray_linear.exr"
+    assert writers.output_files(plate, tmp_path).spi1d.name == "50_ gray.spi1d"
+
+
+def test_baked_files_can_be_read_by_everybody(make_job):
+    """They are made as temporary files, which are private."""
+    (path,) = write(make_job()).files
+    assert path.stat().st_mode & stat.S_IRUSR
