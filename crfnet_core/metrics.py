@@ -56,13 +56,3 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 def peak_signal_to_noise(linearisation: float) -> float:
     """Return the PSNR in decibels of a linearisation error (peak of the true linear image = 1)."""
     return float(-20 * np.log10(linearisation))
-
-
-def ratio_to_gamma(errors: ArrayLike, gamma_errors: ArrayLike) -> float:
-    """Return the mean error divided by that of gamma 2.2 on the same photographs."""
-    return float(np.mean(np.asarray(errors)) / np.mean(np.asarray(gamma_errors)))
-
-
-def win_rate(errors: ArrayLike, gamma_errors: ArrayLike) -> float:
-    """Return the share in [0, 1] of photographs on which the error is below that of gamma 2.2."""
-    return float(np.mean(np.asarray(errors) < np.asarray(gamma_errors)))

@@ -5,9 +5,7 @@ from crfnet_core.metrics import (
     estimation_error,
     linearization_error,
     peak_signal_to_noise,
-    ratio_to_gamma,
     shape_error,
-    win_rate,
 )
 from crfnet_core.response import SAMPLES, ResponseCurve
 
@@ -52,8 +50,3 @@ def test_the_shape_error_ignores_the_exposure():
 
 def test_psnr():
     assert peak_signal_to_noise(0.01) == pytest.approx(40)
-
-
-def test_ratio_and_win_rate():
-    assert ratio_to_gamma([1, 2], [4, 2]) == 0.5
-    assert win_rate([1, 2, 3, 4], [2, 2, 4, 5]) == 0.75
