@@ -22,7 +22,7 @@ comma := ,
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo addon test test-training test-blender check format model bench clean
+.PHONY: help demo addon test test-training test-blender check format model docs bench clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
@@ -62,6 +62,10 @@ model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): m
 	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden_predictions.npz
 	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --out $(RUN)/evaluation
 	$(TRAIN)/bin/python -m training.export.model_card --model $(MODEL) --report $(RUN)/evaluation/report.json
+
+docs: $(PLOT)/ready  ## the sample and the picture in docs/ anew
+	$(PLOT)/bin/python docs/make_sample.py
+	$(PLOT)/bin/python docs/make_picture.py
 
 bench: $(PLOT)/ready  ## time and memory of `crfnet estimate` beside oiiotool, 24 megapixels
 	$(PLOT)/bin/python tests/bench.py
