@@ -7,7 +7,6 @@ import subprocess
 import sys
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.response import ResponseCurve
@@ -16,6 +15,7 @@ from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import write_spi1d
+from tests.helpers.images import read_image, write_image
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 
@@ -71,20 +71,6 @@ print("FOUND " + json.dumps({"spaces": spaces, "views": views, "version": bpy.ap
 """
 
 
-def write_image(path, pixels, kind):
-    spec = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], 3, kind)
-    output = oiio.ImageOutput.create(str(path))
-    assert output.open(str(path), spec)
-    assert output.write_image(pixels)
-    output.close()
-
-
-def read_pixels(path):
-    image = oiio.ImageBuf(str(path))
-    assert not image.has_error, image.geterror()
-    return image.get_pixels(oiio.FLOAT)
-
-
 @pytest.fixture(scope="module")
 def blender(tmp_path_factory):
     """The plates' code values, and what Blender made of them under our config."""
@@ -96,8 +82,8 @@ def blender(tmp_path_factory):
 
     codes = np.repeat(np.arange(256, dtype=np.uint8).reshape(SIZE, SIZE, 1), 3, axis=2)
     floats = np.random.default_rng(0).uniform(-0.1, 1.1, (SIZE, SIZE, 3)).astype(np.float32)
-    write_image(folder / "codes.png", codes, oiio.UINT8)
-    write_image(folder / "floats.exr", floats, oiio.FLOAT)
+    write_image(folder / "codes.png", codes)
+    write_image(folder / "floats.exr", floats)
 
     plates = [[str(folder / name), str(folder / f"linear_{name[:-4]}.exr")] for name in ("codes.png", "floats.exr")]
     job = json.dumps({"size": SIZE, "space": space.name, "plates": plates})
@@ -107,7 +93,7 @@ def blender(tmp_path_factory):
     run = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert run.returncode == 0, run.stdout + run.stderr
     found = next(line for line in run.stdout.splitlines() if line.startswith("FOUND "))
-    linear = {name: read_pixels(path) for (_, path), name in zip(plates, ("codes", "floats"), strict=True)}
+    linear = {name: read_image(path) for (_, path), name in zip(plates, ("codes", "floats"), strict=True)}
     log = run.stdout + run.stderr
     return {"lut": lut, "codes": codes / 255, "floats": floats, "linear": linear, "log": log} | json.loads(found[6:])
 

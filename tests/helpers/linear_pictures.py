@@ -3,7 +3,8 @@
 import struct
 
 import numpy as np
-import OpenImageIO as oiio
+
+from tests.helpers.images import write_image
 
 #: Linear Rec.709 to CIE XYZ (IEC 61966-2-1), and XYZ to the RGB of two cameras: in the order of magnitude of real ones.
 XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])
@@ -107,12 +108,6 @@ def packed(kind, numbers):
     return numbers if kind == ASCII else struct.pack(f"<{len(flat)}{kind[1]}", *flat)
 
 
-def write_float(path, pixels, kind=oiio.FLOAT, names="RGB"):
-    """Write (H, W, C) samples as OpenEXR or Radiance HDR, by the suffix."""
-    height, width, channels = pixels.shape
-    spec = oiio.ImageSpec(width, height, channels, kind)
-    spec.channelnames = tuple(names)
-    image = oiio.ImageBuf(spec)
-    image.set_pixels(image.roi, np.ascontiguousarray(pixels, dtype=np.float32))
-    assert image.write(str(path)), image.geterror()
-    return path
+def write_float(path, pixels, depth="float", names=""):
+    """Write (H, W, C) samples as OpenEXR or Radiance HDR, by the suffix, and return the path."""
+    return write_image(path, np.asarray(pixels, dtype=np.float32), depth=depth, names=names)

@@ -1,20 +1,16 @@
 import csv
 
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
 
 from crfnet_core.errors import PhotoError
+from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import chart, ramp, write_dng, write_float
 from training.data.import_scenes import COLUMNS, import_scene, main
 from training.data.linear_files import linear_scene
 from training.data.scenes import read_scene, split_scenes
-
-
-def pixels_of(path):
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
 
 
 def manifest(folder):
@@ -47,7 +43,7 @@ def test_a_name_is_only_replaced_when_asked(tmp_path, out, capsys):
     assert manifest(out)[0]["source"] == "brought: same.dng"
     assert main([str(other), "--out", str(out), "--overwrite"]) == 0
     assert [(row["source"], row["width"]) for row in manifest(out)] == [("brought: same.exr", "240")]
-    assert pixels_of(out / "same.exr").shape == (230, 240, 3)
+    assert read_image(out / "same.exr").shape == (230, 240, 3)
 
 
 def test_a_name_of_the_manifest_is_taken_though_its_file_is_away(tmp_path, out):
@@ -100,9 +96,8 @@ def bad_files(folder):
     """Write files that cannot be imported; return name -> what is said of each."""
     whole = write_dng(folder / "whole.dng", chart(ramp(1.0))).read_bytes()
     exr = write_float(folder / "whole.exr", np.full((240, 240, 3), 0.5)).read_bytes()
-    encoded = oiio.ImageBuf(oiio.ImageSpec(240, 240, 3, oiio.UINT8))
     for name in ("jpeg.jpg", "png.png", "tiff.tif"):
-        assert encoded.write(str(folder / name))
+        write_image(folder / name, np.zeros((240, 240, 3), np.uint8))
     contents = {
         "cut.dng": whole[: len(whole) // 2],
         "short.exr": exr[: len(exr) // 2],
@@ -112,7 +107,7 @@ def bad_files(folder):
     contents |= {"renamed.cr2": (folder / "jpeg.jpg").read_bytes()}
     for name, content in contents.items():
         (folder / name).write_bytes(content)
-    write_float(folder / "codes.exr", np.full((240, 240, 3), 7), oiio.UINT32)
+    write_float(folder / "codes.exr", np.full((240, 240, 3), 7), "uint32")
     write_float(folder / "depth.exr", np.full((240, 240, 2), 0.5), names=("X", "Z"))
     write_float(folder / "small.hdr", np.full((226, 400, 3), 0.5))
     write_float(folder / "black.exr", np.zeros((240, 240, 3)))
@@ -156,9 +151,7 @@ def test_a_scale_must_leave_room_for_a_window(tmp_path, scale):
 
 
 def test_an_exr_that_calls_itself_encoded_is_refused(tmp_path):
-    spec = oiio.ImageSpec(240, 240, 3, oiio.HALF)
-    spec.attribute("colorInteropID", "srgb_rec709_scene")
-    image = oiio.ImageBuf(spec)
-    assert image.write(str(tmp_path / "encoded.exr"))
+    path = tmp_path / "encoded.exr"
+    write_image(path, np.zeros((240, 240, 3), np.float16), colorInteropID="srgb_rec709_scene")
     with pytest.raises(PhotoError, match="calls itself srgb_rec709_scene, which is not scene-linear"):
-        linear_scene(tmp_path / "encoded.exr")
+        linear_scene(path)

@@ -7,14 +7,11 @@ import pytest
 pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
 
 from crfnet_core.errors import PhotoError
+from tests.helpers.images import read_image
 from tests.helpers.linear_pictures import SWATCH, chart, ramp, swatch_means, write_dng, write_float
 from training.data.import_scenes import import_scene, main
 from training.data.linear_files import automatic_scale, linear_scene
 from training.data.scenes import area_averaged
-
-
-def pixels_of(path):
-    return oiio.ImageBuf(str(path)).get_pixels(oiio.FLOAT)
 
 
 def manifest(folder):
@@ -31,14 +28,14 @@ def out(tmp_path):
 def test_raw_grays_are_the_scene(tmp_path, out, camera, pattern):
     scene = chart(ramp(1.0))
     import_scene(write_dng(tmp_path / "ramp.dng", scene, camera=camera, pattern=pattern), out)
-    means = swatch_means(pixels_of(out / "ramp.exr"), SWATCH)
+    means = swatch_means(read_image(out / "ramp.exr"), SWATCH)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
 
 
 def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
     scene = chart(ramp(1.0))
     import_scene(write_dng(tmp_path / "warm.dng", scene, light=(1.5, 1.0, 0.4)), out)
-    means = swatch_means(pixels_of(out / "warm.exr"), SWATCH)
+    means = swatch_means(read_image(out / "warm.exr"), SWATCH)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
 
 
@@ -47,7 +44,7 @@ def test_raw_colours_are_the_scene_in_rec709(tmp_path, out, camera):
     colours = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
     scene = chart(colours)
     import_scene(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
-    means = swatch_means(pixels_of(out / "colours.exr"), SWATCH)
+    means = swatch_means(read_image(out / "colours.exr"), SWATCH)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
 
 
@@ -55,7 +52,7 @@ def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out
     values = []
     for top in (0.45, 0.9, 1.8):  # LibRaw would by itself take 0.9 for white
         import_scene(write_dng(tmp_path / f"top{top}.dng", chart(ramp(top))), out)
-        values.append(swatch_means(pixels_of(out / f"top{top}.exr"), SWATCH))
+        values.append(swatch_means(read_image(out / f"top{top}.exr"), SWATCH))
     np.testing.assert_allclose(values[0][0, 0], 0.45, rtol=0.01)
     dark = 5 / 65535  # LibRaw rounds down a few times
     np.testing.assert_allclose(values[1], 2 * values[0], rtol=0.005, atol=dark)
@@ -65,7 +62,7 @@ def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out
 
 def test_a_saturated_colour_clips_channel_by_channel_below_or_at_1(tmp_path, out):
     import_scene(write_dng(tmp_path / "red.dng", chart([[4.0, 0.4, 0.2]])), out)
-    means = swatch_means(pixels_of(out / "red.exr"), SWATCH)[0, 0]
+    means = swatch_means(read_image(out / "red.exr"), SWATCH)[0, 0]
     assert means[0] == 1
     assert (means[1:] < 1).all()
 
@@ -74,7 +71,7 @@ def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out,
     scene = chart(ramp(1.0), rows=30, columns=40)  # 960 x 1280
     path = write_dng(tmp_path / "large.dng", scene)
     assert main([str(path), "--out", str(out), "--licence", "CC0"]) == 0
-    means = swatch_means(pixels_of(out / "large.exr"), SWATCH // 2)
+    means = swatch_means(read_image(out / "large.exr"), SWATCH // 2)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
     assert manifest(out) == [
         {
@@ -142,14 +139,14 @@ def test_hdr_is_averaged_in_linear_light(tmp_path):
 
 def test_gray_exr_has_three_equal_channels(tmp_path, out):
     import_scene(write_float(tmp_path / "gray.exr", np.full((240, 240, 1), 0.18), names="Y"), out)
-    np.testing.assert_array_equal(pixels_of(out / "gray.exr"), np.full((240, 240, 3), np.float16(0.18), np.float32))
+    np.testing.assert_array_equal(read_image(out / "gray.exr"), np.full((240, 240, 3), np.float16(0.18), np.float32))
 
 
 def test_a_panorama_keeps_the_rows_around_its_horizon(tmp_path, out):
     light = np.ones((300, 600, 3)) * np.arange(1, 301)[:, None, None]
     row = import_scene(write_float(tmp_path / "sky.hdr", light), out, kind="panorama")
     assert (row.kind, row.width, row.height) == ("panorama band", 600, 240)
-    assert pixels_of(out / "sky.exr")[0, 0, 0] == pytest.approx(31 / 1024, rel=0.01)
+    assert read_image(out / "sky.exr")[0, 0, 0] == pytest.approx(31 / 1024, rel=0.01)
 
 
 def test_a_photograph_is_no_panorama(tmp_path):

@@ -6,6 +6,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
+from tests.helpers.images import write_image
 from training.data.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
 
 
@@ -59,13 +60,7 @@ def test_a_split_without_scenes_says_so(tmp_path):
 
 
 def test_a_scene_is_scaled_to_a_mean_of_1(tmp_path, scene):
-    import OpenImageIO as oiio
-
-    path = Path(tmp_path) / "made.exr"
-    image = oiio.ImageBuf(oiio.ImageSpec(500, 300, 3, oiio.FLOAT))
-    image.set_pixels(oiio.ROI(), scene.pixels)
-    image.write(str(path))
-    read = read_scene(path, False)
+    read = read_scene(write_image(Path(tmp_path) / "made.exr", scene.pixels), False)
     luminance = read.pixels @ np.array([0.2126, 0.7152, 0.0722])
     assert np.exp(np.log(luminance).mean()) == pytest.approx(1, rel=1e-4)
     assert read.name == "made"
