@@ -24,8 +24,8 @@ from training.evaluation.report.document import read_report
 TEMPLATES = Path(__file__).with_name("model_card_templates")
 
 ALL_CURVES = (
-    "All 201 DoRF curves\nare in training. So P0 below tells the accuracy on new photographs of known responses, and the"
-    " real photographs tell\nthe accuracy on new cameras."
+    "All 201 DoRF curves\nare in training. So P0 below tells the accuracy on new photographs of known responses, and"
+    " the real photographs tell\nthe accuracy on new cameras."
 )
 
 HELD_OUT_CURVES = (

@@ -107,7 +107,7 @@ def bad_files(folder):
     contents |= {"renamed.cr2": (folder / "jpeg.jpg").read_bytes()}
     for name, content in contents.items():
         (folder / name).write_bytes(content)
-    write_float(folder / "codes.exr", np.full((240, 240, 3), 7), "uint32")
+    write_float(folder / "codes.exr", np.full((240, 240, 3), 7), "uint")
     write_float(folder / "depth.exr", np.full((240, 240, 2), 0.5), names=("X", "Z"))
     write_float(folder / "small.hdr", np.full((226, 400, 3), 0.5))
     write_float(folder / "black.exr", np.zeros((240, 240, 3)))
