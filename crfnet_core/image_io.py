@@ -154,7 +154,7 @@ def _checked_bit_depth(path: Path, header: Any) -> int:
     _check_size(path, header.width, header.height)
     if header.depth != 1:
         raise PhotoError(f"{path}: holds a volume; give a flat photograph")
-    _check_colour(path, header)
+    _check_color(path, header)
     sample = str(header.format)
     if sample in ("half", "float", "double"):
         raise PhotoError(f"{path}: {_linear(f'a file of {sample} samples')}")
@@ -173,7 +173,7 @@ def _check_size(path: Path, width: int, height: int) -> None:
         )
 
 
-def _check_colour(path: Path, header: Any) -> None:
+def _check_color(path: Path, header: Any) -> None:
     """Refuse what is neither gray nor RGB once decoded without a colour conversion."""
     photometric = header.get_int_attribute("tiff:PhotometricInterpretation", 2)
     if photometric in RAW_PHOTOMETRIC:
@@ -191,9 +191,9 @@ def _code_values(values: NDArray[Any], bit_depth: int, header: Any) -> CodeValue
     if bit_depth in (10, 12):
         values = values >> (16 - bit_depth)  # OpenImageIO widens the codes to 16 bits and repeats their top bits below
     has_alpha = 0 < header.alpha_channel < values.shape[2]
-    colour = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
+    color = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
     return CodeValues(
-        codes=colour,
+        codes=color,
         alpha=values[..., header.alpha_channel] if has_alpha else None,
         bit_depth=bit_depth,
         is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),

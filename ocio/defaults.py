@@ -10,7 +10,7 @@ LUT_LENGTH = 4081
 WINDOWS = 10
 
 #: Frames of a sequence from which its one response is estimated.
-FRAMES_ANALYSED = 8
+FRAMES_ANALYZED = 8
 
 #: Largest exposure in either direction, in stops: 2 ** 15 times white still fits into a half float.
 MAX_EXPOSURE = 15

@@ -115,7 +115,7 @@ def estimate_frames(
     *,
     progress: Progress | None = None,
 ) -> ResponseEstimate:
-    """Estimate the one response of a sequence from up to `FRAMES_ANALYSED` of its frames, evenly spread.
+    """Estimate the one response of a sequence from up to `FRAMES_ANALYZED` of its frames, evenly spread.
 
     Only one frame is in memory at a time, so these few frames are read again when the sequence is linearised.
 

@@ -9,7 +9,7 @@ from operator import index
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
-from ocio.defaults import FRAMES_ANALYSED
+from ocio.defaults import FRAMES_ANALYZED
 
 #: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
 MAX_FRAMES = 1_000_000
@@ -130,7 +130,7 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
 
 
-def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYSED) -> tuple[Path, ...]:
+def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tuple[Path, ...]:
     """Return up to `count` (1 or more) evenly spread files of a sequence, including the first and the last."""
     last = len(sequence.paths) - 1
     steps = max(1, count - 1)

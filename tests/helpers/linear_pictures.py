@@ -1,5 +1,6 @@
 """Scene-linear pictures for tests: camera raw as a camera would write it, OpenEXR and Radiance HDR."""
 
+import csv
 import struct
 
 import numpy as np
@@ -111,3 +112,9 @@ def packed(kind, numbers):
 def write_float(path, pixels, depth="float", names=""):
     """Write (H, W, C) samples as OpenEXR or Radiance HDR, by the suffix, and return the path."""
     return write_image(path, np.asarray(pixels, dtype=np.float32), depth=depth, names=names)
+
+
+def manifest(folder):
+    """Return the rows of a folder's manifest.csv."""
+    with (folder / "manifest.csv").open(newline="") as file:
+        return list(csv.DictReader(file))

@@ -9,7 +9,7 @@ import pytest
 from crfnet_core.errors import CRFNetError, PhotoError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio import pipeline
-from ocio.defaults import FRAMES_ANALYSED, LUT_LENGTH
+from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.options import EstimateOptions, PlateOptions
@@ -57,9 +57,9 @@ class TestEstimates:
     def test_several_frames_stand_for_a_sequence(self, sequence, network, options):
         calls = []
         estimate = pipeline.estimate_frames(sequence, network, options, progress=lambda *call: calls.append(call))
-        assert len(estimate.photos) == FRAMES_ANALYSED
+        assert len(estimate.photos) == FRAMES_ANALYZED
         assert (estimate.photos[0], estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
-        assert len(estimate.windows) == 2 * FRAMES_ANALYSED
+        assert len(estimate.windows) == 2 * FRAMES_ANALYZED
         assert calls[-1][0] == calls[-1][1]
 
     def test_a_single_file_stands_for_itself(self, plate, network, options):

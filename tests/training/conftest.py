@@ -27,3 +27,18 @@ def pack(work_folder):
     from training.crfnet2017.pack import read_pack
 
     return read_pack(work_folder / "pack", "train")
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(5)
+
+
+@pytest.fixture
+def scene(rng):
+    """Smooth light over many stops, with texture."""
+    from training.data.scenes import Scene
+
+    y, x = np.mgrid[:300, :500] / 100
+    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
+    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)

@@ -71,7 +71,7 @@ def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
     source : Path
         A run folder (its best checkpoint), a checkpoint, or a model folder written by `training.crfnet2017.export`.
     windows : Tensor, shape (N, 3, 227, 227)
-        Training windows, at least a few; needed only for a model folder, whose normalisations are folded into the
+        Training windows, at least a few; needed only for a model folder, whose normalizations are folded into the
         convolutions.
 
     Returns
@@ -93,11 +93,11 @@ def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
     if unexpected or (missing and not exported):
         raise SystemExit(f"{source}: is of another network: lacks {missing}, has {unexpected}")
     if exported:
-        unfold_normalisation(network, windows)
+        unfold_normalization(network, windows)
     return same_head
 
 
-def fold_normalisation(network: CRFNet) -> CRFNet:
+def fold_normalization(network: CRFNet) -> CRFNet:
     """Return the network itself, ready to infer, with each normalisation folded into the convolution before it."""
     network.eval()
     for layers in _sequences(network):
@@ -108,21 +108,21 @@ def fold_normalisation(network: CRFNet) -> CRFNet:
     return network
 
 
-def unfold_normalisation(network: CRFNet, windows: Tensor) -> None:
-    """Give a folded network its normalisations back, in place, without changing its outputs.
+def unfold_normalization(network: CRFNet, windows: Tensor) -> None:
+    """Give a folded network its normalizations back, in place, without changing its outputs.
 
     Folding loses the mean and the variance that a normalisation needs in training; those of `windows` take their place.
 
     Parameters
     ----------
     network : CRFNet
-        The biases of its normalisations are those of the folded convolutions (see `_exported_state`); their other
+        The biases of its normalizations are those of the folded convolutions (see `_exported_state`); their other
         parameters are as they were when the network was made.
     windows : Tensor, shape (N, 3, 227, 227)
         The windows whose mean and variance are taken.
     """
-    normalisations = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
-    hooks = [layer.register_forward_pre_hook(_take_statistics) for layer in normalisations]
+    normalizations = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
+    hooks = [layer.register_forward_pre_hook(_take_statistics) for layer in normalizations]
     network.eval()
     with torch.inference_mode():
         network(windows)
@@ -147,7 +147,7 @@ def _checkpoint_state(source: Path) -> dict[str, Tensor]:
 
 
 def _exported_state(graph: Path) -> dict[str, Tensor]:
-    """Return the parameters in an exported graph; the biases of convolutions become those of the normalisations."""
+    """Return the parameters in an exported graph; the biases of convolutions become those of the normalizations."""
     values = {
         tensor.name.removeprefix(GRAPH_PREFIX).removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
         for tensor in onnx.load(graph).graph.initializer

@@ -13,7 +13,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from training.crfnet2017.checkpoints import fold_normalisation
+from training.crfnet2017.checkpoints import fold_normalization
 from training.crfnet2017.network import CRFNet
 from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
@@ -54,7 +54,7 @@ def load_network(run: Path) -> ShippedCRFNet:
     if state["network"]["head.weight"].shape != network.head.weight.shape:
         raise SystemExit(f"{run}: is a run of the stage classify; export one of the stage regress")
     network.load_state_dict(state["network"])
-    return ShippedCRFNet(fold_normalisation(network), min(row[2] for row in state["rows"])).eval()
+    return ShippedCRFNet(fold_normalization(network), min(row[2] for row in state["rows"])).eval()
 
 
 def cost_of_rounding(network: ShippedCRFNet) -> float:

@@ -13,7 +13,7 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.network import MODELS, ResponseNetwork
-from training.crfnet2017.checkpoints import TrainingState, fold_normalisation, start_from
+from training.crfnet2017.checkpoints import TrainingState, fold_normalization, start_from
 from training.crfnet2017.export import load_network
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
@@ -218,7 +218,7 @@ def test_folding_changes_nothing():
     with torch.inference_mode():
         network(windows)
         expected = network.eval()(windows)
-        assert torch.allclose(fold_normalisation(network)(windows), expected, rtol=1e-3, atol=1e-3)
+        assert torch.allclose(fold_normalization(network)(windows), expected, rtol=1e-3, atol=1e-3)
 
 
 def test_a_run_of_the_first_stage_is_not_exported(tmp_path):

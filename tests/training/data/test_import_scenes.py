@@ -1,5 +1,3 @@
-import csv
-
 import numpy as np
 import pytest
 
@@ -7,20 +5,10 @@ pytest.importorskip("rawpy", reason="importing photographs needs the train extra
 
 from crfnet_core.errors import PhotoError
 from tests.helpers.images import read_image, write_image
-from tests.helpers.linear_pictures import chart, ramp, write_dng, write_float
+from tests.helpers.linear_pictures import chart, manifest, ramp, write_dng, write_float
 from training.data.import_scenes import COLUMNS, import_scene, main
 from training.data.linear_files import linear_scene
 from training.data.scenes import read_scene, split_scenes
-
-
-def manifest(folder):
-    with (folder / "manifest.csv").open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "data" / "linear"
 
 
 def test_training_reads_the_new_folder(tmp_path, out):

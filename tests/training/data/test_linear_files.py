@@ -1,5 +1,3 @@
-import csv
-
 import numpy as np
 import OpenImageIO as oiio
 import pytest
@@ -8,20 +6,10 @@ pytest.importorskip("rawpy", reason="importing photographs needs the train extra
 
 from crfnet_core.errors import PhotoError
 from tests.helpers.images import read_image
-from tests.helpers.linear_pictures import SWATCH, chart, ramp, swatch_means, write_dng, write_float
+from tests.helpers.linear_pictures import SWATCH, chart, manifest, ramp, swatch_means, write_dng, write_float
 from training.data.import_scenes import import_scene, main
 from training.data.linear_files import automatic_scale, linear_scene
 from training.data.scenes import area_averaged
-
-
-def manifest(folder):
-    with (folder / "manifest.csv").open(newline="") as file:
-        return list(csv.DictReader(file))
-
-
-@pytest.fixture
-def out(tmp_path):
-    return tmp_path / "data" / "linear"
 
 
 @pytest.mark.parametrize(("camera", "pattern"), [("one", "RGGB"), ("two", "BGGR"), ("one", "GRBG")])

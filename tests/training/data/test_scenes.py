@@ -7,20 +7,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from tests.helpers.images import write_image
-from training.data.scenes import Scene, dithered, read_scene, read_scenes, split_scenes
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(5)
-
-
-@pytest.fixture
-def scene(rng):
-    """Smooth light over many stops, with texture."""
-    y, x = np.mgrid[:300, :500] / 100
-    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
-    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)
+from training.data.scenes import dithered, read_scene, read_scenes, split_scenes
 
 
 def test_dither_stays_within_half_a_step(rng):

@@ -4,7 +4,6 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from training.data.scenes import Scene
 from training.synthesis.camera import (
     TARGET_BRIGHTNESS,
     Capture,
@@ -18,19 +17,6 @@ from training.synthesis.camera import (
 
 UNIFORM = np.linspace(0, 1, 1024)
 GAMMA = UNIFORM ** (1 / 2.2)
-
-
-@pytest.fixture
-def rng():
-    return np.random.default_rng(5)
-
-
-@pytest.fixture
-def scene(rng):
-    """Smooth light over many stops, with texture."""
-    y, x = np.mgrid[:300, :500] / 100
-    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
-    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)
 
 
 def test_apply_response_is_the_curve_and_clips(rng):
