@@ -173,8 +173,8 @@ def _window_estimates(
 ) -> tuple[WindowEstimate, ...]:
     """Return what the network says of each window, in the order of the photographs."""
     origins = [(number, window) for number, source in enumerate(sources) for window in source.windows]
-    said = zip(predictions.weights, predictions.expected_errors.tolist(), kept.tolist(), strict=True)
-    return tuple(WindowEstimate(*origin, *rest) for origin, rest in zip(origins, said, strict=True))
+    answers = zip(predictions.weights, predictions.expected_errors.tolist(), kept.tolist(), strict=True)
+    return tuple(WindowEstimate(*origin, *answer) for origin, answer in zip(origins, answers, strict=True))
 
 
 def _warnings(sources: Sequence[_Source], samples: Float32Array) -> tuple[str, ...]:

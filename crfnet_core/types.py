@@ -24,5 +24,5 @@ BoolArray = NDArray[np.bool_]
 #: Positions in an array.
 IndexArray = NDArray[np.intp]
 
-#: Called with (done, total) after every step; what it raises ends the work.
+#: Called with (done, total) after every step. If it raises, the work stops.
 Progress = Callable[[int, int], None]

@@ -52,17 +52,17 @@ class Window:
 
 
 def sampling_step(height: int, width: int) -> int:
-    """Return the distance in pixels between the samples of a window.
+    """Return the distance in pixels between the samples of a window: Eq. 7 of docs/METHOD.md.
 
     Large photographs are point-sampled, never averaged: averaging mixes brightness where the camera mixed irradiance,
-    and so bends the curve. Every sample keeps its exact code value, and a window sees as much of the scene as the
+    and so distorts the curve. Every sample keeps its exact code value, and a window sees as much of the scene as the
     windows of training did.
     """
     return max(1, min(height, width) // (WINDOWS_ACROSS * WINDOW_SIZE))
 
 
 def filled_bins(samples: Float32Array) -> int:
-    """Return how many of the 256 bins of one histogram over all channels hold a sample; samples in [0, 1]."""
+    """Return how many bins of one 256-bin histogram hold a sample; `samples` in [0, 1], of any shape."""
     return filled_codes(np.rint(samples * np.float32(255)).astype(np.uint8))
 
 

@@ -45,7 +45,7 @@ class ModelConfig:
     opset : int
         Of the ONNX graph.
     training_commit : str
-        The commit of this project that trained it.
+        The commit of this project that the training run began from; see run.json.
     training : dict
         What it has seen: "scene_kinds", and "held_out_curves", the DoRF curves that it has not.
     uncertainty_model : UncertaintyModel
@@ -115,9 +115,14 @@ def model_folder(wanted: str | Path | None = None) -> Path:
         return DEFAULT_MODEL
     if Path(wanted).is_dir():
         return Path(wanted)
-    packaged = sorted((config.parent for config in MODELS.glob("*/model.json")), reverse=True)
-    named = (folder for folder in packaged if str(wanted) in (folder.name, folder.name.rpartition("-")[0]))
-    return next(named, Path(wanted))
+    packaged = [config.parent for config in MODELS.glob("*/model.json")]
+    named = [folder for folder in packaged if str(wanted) in (folder.name, folder.name.rpartition("-")[0])]
+    return max(named, key=_version, default=Path(wanted))
+
+
+def _version(folder: Path) -> tuple[int, ...]:
+    """Return the version at the end of a packaged model's name, such as (1, 0)."""
+    return tuple(map(int, folder.name.rpartition("-")[2].split(".")))
 
 
 def _read_uncertainty_model(path: Path, entries: object) -> UncertaintyModel:

@@ -1,7 +1,7 @@
 """From the windows' predictions to one answer, as the CRF-net paper makes it: outliers removed, then a mean.
 
-Only a network without learned pooling is pooled so. The outliers are named for every network, because windows that
-agree are what a user can see of the evidence.
+Only a network without learned pooling is pooled this way. `inliers` runs for every network, because the report says
+how many windows agree.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ OUTLIER_FACTOR = 2.0
 
 
 def inliers(weights: Float64Array) -> BoolArray:
-    """Return which windows agree with the others, shape (N,), from weights of shape (N, 11).
+    """Return which windows agree with the others, shape (N,), from weights of shape (N, 11): Eq. 19 of docs/METHOD.md.
 
     The distance of each prediction from the component-wise median is an E_est between two responses, since the basis
     is orthonormal. Those up to `OUTLIER_FACTOR` times the median distance stay: always at least half of them.
@@ -26,7 +26,7 @@ def inliers(weights: Float64Array) -> BoolArray:
 
 
 def robust_mean(predictions: Predictions, kept: BoolArray) -> Answer:
-    """Return the mean of the kept windows' weights and of the errors expected of them."""
+    """Return the mean over the windows kept, shape (N,), of their weights (N, 11) and of the errors expected (N,)."""
     return Answer(predictions.weights[kept].mean(axis=0), float(predictions.expected_errors[kept].mean()))
 
 

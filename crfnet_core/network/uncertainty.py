@@ -49,11 +49,11 @@ class UncertaintyModel:
     band_profile: tuple[float, ...]
 
     def uncertainty(self, expected_error: float, spread: float) -> float:
-        """Return the uncertainty in units of E_est."""
+        """Return the uncertainty in units of E_est: Eq. 22 of docs/METHOD.md."""
         return self.base + self.of_predicted * expected_error + self.of_spread * spread
 
     def band(self, curve: ResponseCurve, uncertainty: float) -> Float64Array:
-        """Return the lower and upper end, shape (2, 1024), of the 90 % band around a response of this uncertainty."""
+        """Return the lower and upper end, shape (2, 1024), of the 90 % band around a response: Eq. 23."""
         profile = np.array(self.band_profile)
         half = uncertainty * np.interp(np.linspace(0, 1, SAMPLES), np.linspace(0, 1, len(profile)), profile)
         band: Float64Array = np.clip(np.stack([curve.brightness - half, curve.brightness + half]), 0, 1)

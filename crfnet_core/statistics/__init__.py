@@ -1,4 +1,4 @@
-"""What is counted in a window: sums that trace the bend of the response, and that add up over windows.
+"""Sums counted in a window: they depend on the slope and the curvature of the response, and add up over windows.
 
 Two kinds of evidence. (i) Relative gradients of irradiance hardly depend on its level, so how the gradients of
 brightness vary with the level shows the slope of f. (ii) At an edge, a sample b mixes the light of its two sides a and

@@ -26,7 +26,7 @@ EQUATION_STRIDES = (1, 2, 4, 8)
 EQUATION_LEVELS = 20
 
 #: Least height in codes of an edge that is compared between channels.
-LEAST_EDGE_HEIGHT = 12
+LEAST_COMPARED_HEIGHT = 12
 
 #: Difference between the encoded ratios of two channels from which on b is no mixture of a and c.
 MOST_RATIO_DIFFERENCE = 0.3
@@ -43,7 +43,7 @@ class _Edges(NamedTuple):
 
 
 def channel_equations(planes: Uint8Array) -> Float32Array:
-    """Return the normal equations at each stride, the rows of A and below them r, shape (4, 21, 20).
+    """Return the normal equations at each stride (Eq. 12), the rows of A and below them r, shape (4, 21, 20).
 
     Parameters
     ----------
@@ -57,7 +57,7 @@ def _normal_equations(planes: Uint8Array, stride: int) -> Float32Array:
     """Return the normal equations of all edges at one stride, shape (21, 20)."""
     equations = np.zeros((EQUATION_LEVELS + 1, EQUATION_LEVELS))
     for row in rows_and_columns(planes, stride, 3):
-        index, is_edge = shared_edges(row, LEAST_EDGE_HEIGHT)
+        index, is_edge = shared_edges(row, LEAST_COMPARED_HEIGHT)
         a, b, c = (side.take(index, axis=1).astype(np.int16) for side in row)  # (3, M)
         of_all = (c - a, b - a, (a + c) * EQUATION_LEVELS // (2 * CODES - 1))
         for pair in CHANNEL_PAIRS:
@@ -70,8 +70,8 @@ def _normal_equations(planes: Uint8Array, stride: int) -> Float32Array:
 def _add_pair(equations: Float64Array, first: _Edges, second: _Edges) -> None:
     """Add the equations between the same edges, seen in two channels.
 
-    An equation reads x (h1 k1 - h2 k2) = d: x = alpha (1 - alpha) / 2, and d is the difference of the encoded ratios.
-    Its weight is the inverse variance of d from rounding, which goes with 1 / h1 ** 2 + 1 / h2 ** 2.
+    An equation (Eq. 11) reads x (h1 k1 - h2 k2) = d: x = alpha (1 - alpha) / 2, and d is the difference of the encoded
+    ratios. Its weight is the inverse variance of d from rounding, which goes with 1 / h1 ** 2 + 1 / h2 ** 2.
     """
     h1, h2 = (side.height / np.float32(CODES - 1) for side in (first, second))
     ratio1, ratio2 = (side.rise / side.height.astype(np.float32) for side in (first, second))

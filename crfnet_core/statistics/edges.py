@@ -7,7 +7,7 @@ from functools import cache
 import numpy as np
 
 from crfnet_core.statistics.gradients import STRIDES
-from crfnet_core.statistics.sampling import Row, interpolation_weights, rows_and_columns
+from crfnet_core.statistics.sampling import CODES, Row, interpolation_weights, rows_and_columns
 from crfnet_core.types import BoolArray, Float64Array, IndexArray, Uint8Array
 
 #: Levels that the two sides of edges are first counted on.
@@ -27,7 +27,7 @@ def edge_sums(planes: Uint8Array) -> Float64Array:
 
     An edge is three samples a, b, c in a row with b between a and c. Its encoded ratio is (b - low) / (high - low), of
     the codes. Over many edges the mixing ratio in light is a half on average, so what is left of the encoded ratio at
-    each cell (level of the lower side, level of the upper side) shows the curvature of the response there.
+    each cell (level of the lower side, level of the upper side) shows the curvature of the response there (Eq. 10).
 
     Parameters
     ----------
@@ -81,6 +81,6 @@ def shared_edges(row: Row, least_height: int) -> tuple[IndexArray, BoolArray]:
 @cache
 def _encoded_ratios() -> Float64Array:
     """Return the encoded ratio, less a half, of a middle i codes above the lower side of an edge j codes high."""
-    code = np.arange(256)
+    code = np.arange(CODES)
     ratios: Float64Array = code[:, None] / np.maximum(code[None, :], 1) - 0.5
     return ratios

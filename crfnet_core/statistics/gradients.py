@@ -22,7 +22,7 @@ SHAPES = {"histogram": (3, LEVELS), "gradients": (len(STRIDES), 3, GRADIENT_SUMS
 
 
 def level_histogram(planes: Uint8Array) -> Float64Array:
-    """Return the number of samples at each level, shape (3, LEVELS), of planes of codes (3, N, N)."""
+    """Return the number of samples at each level, shape (3, LEVELS), of planes of codes (3, N, N): Eq. 8."""
     counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in planes])  # (3, 256)
     histogram: Float64Array = np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64)
     return histogram
@@ -32,7 +32,7 @@ def gradient_sums(planes: Uint8Array) -> Float32Array:
     """Return `GRADIENT_SUMS` over the neighbours of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
 
     Both neighbours count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
-    level, so the mean gradient of brightness, as a function of brightness, follows the slope of f.
+    level, so the mean gradient of brightness, as a function of brightness, follows the slope of f (Eq. 9).
     """
     sums = np.stack([_sums_by_code(planes, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
     by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)

@@ -1,8 +1,8 @@
 """Mixtures: whether the light of b mixes that of its two sides as it should, under each of the candidate responses.
 
 Light adds. Three samples a, b, c in a row with b between a and c obey g(b) = (1 - alpha) g(a) + alpha g(c) (Eq. 2 of
-docs/METHOD.md). Under the true inverse response g the mixing ratio alpha is the same in every channel, and any alpha
-is as likely as any other. Under a wrong one neither holds.
+docs/METHOD.md). Under the true inverse response g the mixing ratio alpha is the same in every channel, and all mixing
+ratios are equally likely. Under a wrong one neither holds.
 
 Source: Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004, look for the response that
 makes light mix linearly; here the network reads how well each candidate does.
@@ -17,7 +17,7 @@ import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
 from crfnet_core.statistics.edges import shared_edges
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, both_directions, evenly_spread, half_resolution
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Row, both_directions, evenly_spread, half_resolution
 from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
 
 #: Distances between the samples of a mixture; and between those of half resolution.
@@ -27,23 +27,23 @@ HALF_RESOLUTION_STRIDES = (1, 2)
 #: Least difference between a and c in codes: below it rounding decides the mixing ratio.
 LEAST_HEIGHT = 12
 
-#: An edge is isolated if the samples before a and behind c differ from these by less than its height divided by this.
-#: There a and c show the two surfaces themselves. Two readings of it, the second stricter.
+#: An edge is isolated if the samples before a and behind c differ from them by at most 1/2 of its height (first class),
+#: or by at most 1/5 (second class): there a and c show the two surfaces themselves.
 ISOLATION = (2, 5)
 
-#: Classes of mixtures that are summed up: all of them, and the isolated ones by each reading.
+#: Classes of mixtures that are summed up: all of them, and the two isolated classes.
 SUMMED_CLASSES = 1 + len(ISOLATION)
 
-#: Classes of mixtures that are compared between channels: all of them, and the isolated ones by the first reading.
+#: Classes of mixtures that are compared between channels: all of them, and the first isolated class.
 COMPARED_CLASSES = 2
 
 #: Sums per class and candidate: see `mixing_sums`.
 MIXING_SUMS = 3
 
-#: Mixtures that are summed up, and that are compared, at most: of one stride and one pair of channels.
+#: The most mixtures of one stride and one pair of channels: in `mixing_sums`, and in `disagreement_sums`.
 MOST_SUMMED, MOST_COMPARED = 350, 500
 
-#: Compare two channels at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above so many codes.
+#: Compare two channels at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above this number of codes.
 LEAST_DIFFERENCE = 60
 
 #: And b must lie at least 1/5 of the edge's height from both a and c.
@@ -101,7 +101,7 @@ class Mixtures:
         return cls(a, b, c, is_mixture, is_isolated)
 
     def of_channel(self, channel: int, index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
-        """Return a, b and c of one channel at some indices."""
+        """Return a, b and c of one channel at some indices, each (len(index),)."""
         return self.a[channel].take(index), self.b[channel].take(index), self.c[channel].take(index)
 
 
@@ -132,9 +132,9 @@ def half_resolution_parts(planes: Uint8Array) -> dict[str, Float32Array]:
 def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
     """Return sums over the mixtures under each candidate, and the number of mixtures in each class.
 
-    The sums are (i) the logarithm of the density of b, log g'(b) - log |g(c) - g(a)|, if every mixing ratio is as
-    likely (Eq. 4), relative to its mean over the candidates; (ii) the mixing ratio of the brighter side, less a half;
-    (iii) its square.
+    The sums (Eq. 13) are (i) the logarithm of the density of b, log g'(b) - log |g(c) - g(a)|, if all mixing ratios are
+    equally likely (Eq. 4), relative to its mean over the candidates; (ii) the mixing ratio of the brighter side, less a
+    half; (iii) its square.
 
     Returns
     -------
@@ -165,7 +165,8 @@ def disagreement_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
 
     Returns
     -------
-    ndarray, float32, shape (COMPARED_CLASSES, LEVEL_BANDS, CANDIDATE_COUNT), and ndarray, shape (..., 1)
+    ndarray, float32, shape (COMPARED_CLASSES, LEVEL_BANDS, CANDIDATE_COUNT), and ndarray, shape (COMPARED_CLASSES,
+    LEVEL_BANDS, 1)
     """
     sums = np.zeros((*_DISAGREEMENT, CANDIDATE_COUNT), np.float32)
     counts = np.zeros(_DISAGREEMENT, np.float32)
@@ -216,5 +217,5 @@ def _stacked(pairs: Iterable[tuple[Float32Array, Float32Array]]) -> tuple[Float3
 
 def _level_bands(level: Int16Array) -> Float32Array:
     """Return whether codes (M,) are in each band of levels, 0 or 1, shape (LEVEL_BANDS, M)."""
-    bands: Float32Array = (level * LEVEL_BANDS // 256 == np.arange(LEVEL_BANDS)[:, None]).astype(np.float32)
+    bands: Float32Array = (level * LEVEL_BANDS // CODES == np.arange(LEVEL_BANDS)[:, None]).astype(np.float32)
     return bands

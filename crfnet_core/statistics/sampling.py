@@ -40,7 +40,7 @@ def rows_and_columns(planes: Uint8Array, stride: int, count: int) -> tuple[Row, 
     Each array has the shape (..., M). Adjacent lines say nearly the same, so at most every second one is looked at.
     """
     size, skip = planes.shape[-1] - (count - 1) * stride, max(2, stride // 4)
-    starts = [place * stride for place in range(count)]
+    starts = [number * stride for number in range(count)]
     rows = tuple(planes[..., ::skip, start : start + size] for start in starts)
     columns = tuple(planes[..., start : start + size, ::skip] for start in starts)
     flat = (*planes.shape[:-2], -1)
@@ -48,7 +48,7 @@ def rows_and_columns(planes: Uint8Array, stride: int, count: int) -> tuple[Row, 
 
 
 def both_directions(planes: Uint8Array, stride: int, count: int) -> Row:
-    """Return `rows_and_columns` one behind the other, each array of shape (3, M)."""
+    """Return `rows_and_columns` of planes (3, N, N) one behind the other, each array of shape (3, M)."""
     rows, columns = rows_and_columns(planes, stride, count)
     return tuple(np.concatenate(sides, axis=1) for sides in zip(rows, columns, strict=True))
 
@@ -61,9 +61,9 @@ def evenly_spread(mask: BoolArray, most: int) -> IndexArray:
 
 @cache
 def interpolation_weights(codes: int, levels: int) -> Float32Array:
-    """Return the weight of each of `codes` values in each of `levels` uniform levels, shape (codes, levels).
+    """Return the weight of each of `codes` values in each of `levels` uniform levels, (codes, levels): q of Eq. 8.
 
-    A value lies between two levels and is shared out to these by linear interpolation.
+    A value lies between two levels and is split between them by linear interpolation.
     """
     position = np.linspace(0, levels - 1, codes)[:, None]
     weights: Float32Array = np.maximum(1 - np.abs(position - np.arange(levels)), 0).astype(np.float32)

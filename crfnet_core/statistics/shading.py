@@ -12,22 +12,23 @@ from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_respons
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, both_directions, evenly_spread
 from crfnet_core.types import BoolArray, Float32Array, IndexArray, Uint8Array
 
-#: Codes between two samples of a shaded surface, least and most: little shading, and much.
+#: Ranges in codes of the difference between two samples: weak shading, and strong.
 LITTLE, MUCH = (4, 24), (24, 80)
 
-#: The strides, and the codes between samples, at which shading is looked for.
+#: The strides, and the ranges of the difference, at which shading is looked for.
 SHADING = ((1, LITTLE), (2, LITTLE), (4, LITTLE), (8, LITTLE), (16, LITTLE), (2, MUCH), (8, MUCH), (16, MUCH))
 
 #: Least difference in codes between the channels of a sample: in gray, shading says nothing.
 LEAST_CHROMA = 24
 
-#: The codes between which the ratio of two codes means anything: above black level and below clipping.
+#: Samples outside these codes are skipped: black level and clipping distort their ratios.
 DARKEST, BRIGHTEST = 8, 247
 
-#: Part of a logarithmic ratio that has other reasons than shading, as a standard deviation.
+#: Standard deviation, as a fraction of the logarithmic ratio, of differences between channels that have other causes
+#: than shading.
 OTHER_CHANGE = 0.4
 
-#: Shaded samples that are compared at each stride, at most.
+#: The most shaded pairs that are compared at each stride.
 MOST_COMPARED = 500
 
 SHAPES = {"shading": (len(SHADING), CANDIDATE_COUNT), "shading_counts": (len(SHADING), 1)}
@@ -44,8 +45,8 @@ def shading_sums(row: Row, change: tuple[int, int]) -> tuple[Float32Array, Float
     """Return how much the channels disagree on shading at each candidate, (CANDIDATE_COUNT,), and of how many pairs.
 
     The disagreement of a pair of channels is the Geman-McClure penalty d^2 / (d^2 + r) of the difference d of their
-    logarithmic ratios, in which r is the variance that rounding and other changes explain. The sums are relative to
-    their mean over the candidates.
+    logarithmic ratios, in which r is the variance that rounding and other causes explain (Eq. 14). The sums are
+    relative to their mean over the candidates.
 
     Parameters
     ----------

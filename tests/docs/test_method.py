@@ -95,7 +95,8 @@ def test_the_equations_are_numbered_without_a_gap(root):
 def test_every_equation_that_is_cited_is_there(root):
     """In the documents, and in the docstrings and comments of the code."""
     last = len(re.findall(r"\\tag\{", (root / "docs" / "METHOD.md").read_text(encoding="utf-8")))
-    sources = [*(root / "crfnet_core").rglob("*.py"), *(root / "training").rglob("*.py"), *documents(root)]
+    code = [path for package in ("crfnet_core", "ocio", "training") for path in (root / package).rglob("*.py")]
+    sources = [*code, *documents(root)]
     cited = {
         int(number)
         for path in sources
@@ -116,7 +117,7 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
 @pytest.mark.parametrize(
     "sentence",
     [
-        f"\\sum_{{k=1}}^{{{emor.COMPONENTS}}}",
+        f"\\sum_{{j=1}}^{{{emor.COMPONENTS}}}",
         f"squares of {windows.WINDOW_SIZE} x {windows.WINDOW_SIZE} samples",
         f"at least {windows.FULL_COVERAGE} of the 256 bins",
         f"After {windows.POSITIONS_TRIED} draws",
@@ -126,7 +127,12 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"{edges.GRID} x {edges.GRID} cells",
         f"at two of {channel_equations.EQUATION_LEVELS} levels",
         f"asked of {candidates.CANDIDATE_COUNT} candidates, {len(candidates.FIRST_WEIGHTS)} values",
-        f"times {len(candidates.SECOND_WEIGHTS)} of $c_2$",
+        f"edges of more than {edges.LEAST_EDGE_HEIGHT} codes",
+        f"higher than {channel_equations.LEAST_COMPARED_HEIGHT} codes",
+        f"differ by {channel_equations.MOST_RATIO_DIFFERENCE} or more",
+        f"mixtures of more than {mixing.LEAST_HEIGHT} codes",
+        "by at most 1/{}, or by at most 1/{}".format(*mixing.ISOLATION),
+        f"times {len(candidates.SECOND_WEIGHTS)} of $w_2$",
         f"{candidates.IDENTITY_FRACTION:.0%}".replace("%", " % of the identity"),
         f"$s = {mixing.RATIO_NOISE}$",
         f"by more than {mixing.LEAST_DIFFERENCE} codes",
@@ -144,6 +150,26 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
 def test_the_numbers_of_the_method_are_those_of_the_code(root, sentence):
     text = " ".join((root / "docs" / "METHOD.md").read_text(encoding="utf-8").split())
     assert sentence in text
+
+
+@pytest.mark.parametrize(
+    ("module", "constant", "sentence"),
+    [
+        ("features", "SAMPLE_PSEUDO_COUNT", "a pseudo-count $n_0$ of {0:g} (levels and edges) or {1:g} (candidates)"),
+        ("features", "SMOOTHNESS", "\\lambda \\in \\{{ {0:g}, {1:g} \\}}"),
+        ("features", "CURVATURE_PSEUDO_EVIDENCE", "$\\mu = {0:g}$ squared codes"),
+        ("features", "CURVATURE_UNIT", "divided by {0:g} and limited to -{1:g} to {1:g}"),
+        ("model", "LARGEST_FEATURE", "limited to {0:g} standard deviations"),
+    ],
+)
+def test_the_numbers_of_the_network_are_those_of_the_code(root, module, constant, sentence):
+    """Read from the syntax tree, so that torch need not be there."""
+    tree = ast.parse((root / "training" / "network" / f"{module}.py").read_text(encoding="utf-8"))
+    assigned = (node for node in tree.body if isinstance(node, ast.Assign))
+    values = next(node.value for node in assigned if constant in ast.unparse(node.targets[0]))
+    numbers = ast.literal_eval(values)
+    text = " ".join((root / "docs" / "METHOD.md").read_text(encoding="utf-8").split())
+    assert sentence.format(*(numbers if isinstance(numbers, tuple) else (numbers,))) in text
 
 
 def test_no_module_of_the_method_is_left_out(root):
