@@ -177,7 +177,7 @@ def test_the_worst_photographs_come_first(model, tmp_path, data):
     assert shapes == sorted((row.estimators["fixed_model"].errors.shape for row in rows), reverse=True)
     text = (tmp_path / "out/report.md").read_text()
     first = worst(rows, "fixed_model")[0]
-    assert text.index("largest shape error of fixed_model") < text.index(f"| {first.name} | {first.body} |")
+    assert text.index("largest shape errors of fixed_model") < text.index(f"| {first.name} | {first.body} |")
 
 
 def test_without_the_folder_of_more_bodies_its_tables_are_left_out(model, tmp_path, data):

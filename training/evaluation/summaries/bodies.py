@@ -11,7 +11,7 @@ from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import PhotographFigures
 from training.evaluation.measure.real_photographs import RealPhotograph
-from training.evaluation.report.errors import PerError
+from training.evaluation.report.errors import Interval, PerError
 from training.evaluation.report.real.content import BodySummary, RealFigures, RealReport, RealRow
 from training.evaluation.summaries.bootstrap import Resampling
 from training.evaluation.summaries.emor_weights import weight_correlations
@@ -95,12 +95,18 @@ def real_report(table: RealTable, models: Sequence[str], *, seed: int) -> RealRe
         kinds=summaries(trusted.groups(lambda photograph: photograph.kind)),
         origins=summaries(_origins(trusted)),
         origins_of_everything=summaries(_origins(table)),
-        weights={name: weight_correlations(trusted.photographs, trusted.figures[name], seed=seed) for name in models},
+        weights=_weights(trusted, models, seed),
+        weights_of_everything=_weights(table, models, seed),
         trusted_wrongly={name: trusted_wrongly(trusted.figures[name]) for name in models},
         trusted_wrongly_of_everything={name: trusted_wrongly(table.figures[name]) for name in models},
         bodies=tuple(_row(part.photographs[0].body, part, models) for part in trusted.bodies),
         photographs=tuple(_row(part.photographs[0].name, part, models) for part in singles),
     )
+
+
+def _weights(table: RealTable, models: Sequence[str], seed: int) -> dict[str, tuple[Interval, ...]]:
+    """Return, for each model, how its EMoR weights follow the true ones."""
+    return {name: weight_correlations(table.photographs, table.figures[name], seed=seed) for name in models}
 
 
 def _origins(table: RealTable) -> dict[str, RealTable]:

@@ -111,8 +111,9 @@ class RealReport:
         Kind of body ("phone", "compact", "camera", "unknown") -> the trusted photographs of this kind.
     origins, origins_of_everything : dict
         What happened to the file after the camera -> the photographs of this origin: of the trusted ones, and of all.
-    weights : dict
-        Name of a model -> correlation over the trusted bodies of the first EMoR weights, true against estimated.
+    weights, weights_of_everything : dict
+        Name of a model -> correlation over bodies of the first EMoR weights, true against estimated: of the trusted
+        photographs, and of all.
     trusted_wrongly, trusted_wrongly_of_everything : dict
         Name of a model -> how often it says "good" or "usable" and is far off: of the trusted photographs, and of all.
     bodies : tuple of RealRow
@@ -127,6 +128,7 @@ class RealReport:
     origins: dict[str, BodySummary]
     origins_of_everything: dict[str, BodySummary]
     weights: dict[str, tuple[Interval, ...]]
+    weights_of_everything: dict[str, tuple[Interval, ...]]
     trusted_wrongly: dict[str, TrustedWrongly]
     trusted_wrongly_of_everything: dict[str, TrustedWrongly]
     bodies: tuple[RealRow, ...]

@@ -8,7 +8,7 @@ from training.evaluation.baselines import GAMMA, MEAN_CURVE, ORACLE_DORF, ORACLE
 from training.evaluation.measure.file_origin import SCALED_BELOW, Editing
 from training.evaluation.measure.real_photographs import REAL, REAL_BODIES
 from training.evaluation.report import paper
-from training.evaluation.report.errors import ERROR_NAMES, Interval
+from training.evaluation.report.errors import ERROR_NAMES
 from training.evaluation.report.markdown_tables import (
     bold,
     differences_table,
@@ -19,7 +19,7 @@ from training.evaluation.report.markdown_tables import (
     with_interval,
 )
 from training.evaluation.report.real.content import BOTH, BodySummary, RealReport, RealRow
-from training.evaluation.report.real.photographs import single_photographs
+from training.evaluation.report.real.photographs import COUNTED, single_photographs
 
 INTRODUCTION = """\
 Photographs of cameras whose response was measured from exposure stacks. All figures are means over bodies, each counted
@@ -27,11 +27,12 @@ once; bodies are resampled. Photographs that need caution are shown apart and le
 table says that it counts them. A measured response knows its shape well and its scale, where white is reached, much
 worse: so the shape error says more than E_est. The paper's Fig. 6 has 8 real photographs, E_est {low} to {high}.
 
-- "{others}" is what someone estimates who knows cameras and does not look at the photograph: the mean response, in log
-  irradiance, of the bodies of the same folder that are not in the same fold (in data/real each body is a fold of its
-  own).
-- "{headroom}" is how far one gets by knowing that this is a camera's own rendering and where it is cut: the same mean
-  response with the factor on irradiance, below the shoulder, of least E_est.
+- "{others}" is what someone estimates who knows cameras and does not look at the photograph: the
+  mean response, in log irradiance, of the bodies of the same folder that are not in the same fold (in data/real each
+  body is a fold of its own).
+- "{headroom}" is how far one gets by knowing that this is a camera's own
+  rendering and where it is cut: the same mean response with the factor on irradiance, below the shoulder, of least
+  E_est.
 - "{dorf}" is the one of DoRF's 201 responses of least E_est, picked in hindsight.
 """
 
@@ -53,7 +54,8 @@ def real_section(sets: dict[str, RealReport], models: Sequence[str]) -> list[str
     for name, report in sets.items():
         if name != BOTH:
             parts += [f"### By body, data/{name}\n", _by_body(report.bodies, models)]
-    return [*parts, *single_photographs(list(sets.values())[-1], models)]
+    last = list(sets.values())[-1]
+    return [*parts, *_origins(last, models), *single_photographs(last, models)]
 
 
 def _introduction() -> str:
@@ -68,19 +70,28 @@ def _set(title: str, report: RealReport, models: Sequence[str]) -> list[str]:
     if report.everything:
         parts += [f"With those that need caution: {_counts(report.everything)}.\n", *_means(report.everything, models)]
     parts += ["By kind of body:\n", _by_group("kind", report.kinds, models)]
-    parts += [ORIGIN_TEXT, _by_group("file", report.origins, models)]
+    return [*parts, *_weights(report)]
+
+
+def _origins(report: RealReport, models: Sequence[str]) -> list[str]:
+    """Return the tables by what happened to the file, of the photographs that count and of all."""
+    parts = ["### Edited or not, scaled or not\n", ORIGIN_TEXT, _by_group("file", report.origins, models)]
     if report.everything:
         groups = _by_group("file", report.origins_of_everything, models)
         parts += ["The same with those that need caution:\n", groups]
-    return [*parts, *_weights(report.weights)]
+    return parts
 
 
-def _weights(weights: dict[str, tuple[Interval, ...]]) -> list[str]:
-    """Return the correlations of the first EMoR weights."""
-    rows = [[name, *map(with_interval, figures)] for name, figures in weights.items() if figures]
+def _weights(report: RealReport) -> list[str]:
+    """Return the correlations of the first EMoR weights; none where there are too few bodies."""
+    rows = []
+    for name, counted in report.weights.items():
+        for group, figures in ((COUNTED, counted), ("all", report.weights_of_everything[name])):
+            if figures:
+                rows.append([name, group, *map(with_interval, figures)])
     if not rows:
         return []
-    header = ["", *(f"EMoR weight {k + 1}" for k in range(len(rows[0]) - 1))]
+    header = ["", "photographs", *(f"EMoR weight {k + 1}" for k in range(len(rows[0]) - 2))]
     return ["Correlation over bodies of the true and the estimated weight:\n", rows_of(header, rows)]
 
 

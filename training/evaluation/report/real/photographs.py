@@ -12,12 +12,15 @@ from training.evaluation.report.real.content import FAR_OFF, FAR_OFF_STOPS, Real
 #: Photographs in the table of the worst.
 WORST = 10
 
+#: What tables call the photographs that count in the means.
+COUNTED = "those that count"
+
 
 def single_photographs(report: RealReport, models: Sequence[str]) -> list[str]:
     """Return the tables of single photographs, of all that were measured."""
     first, *_ = models
     parts = [
-        f"### The {WORST} photographs of the largest shape error of {first}\n",
+        f"### The worst {WORST}: the largest shape errors of {first}\n",
         "Those that need caution are among them.\n",
         _photographs(worst(report.photographs, first), first),
         "### Verdicts that are too good\n",
@@ -57,7 +60,7 @@ def _trusted_wrongly(report: RealReport) -> str:
     """Return how often each model trusts an answer that is far off."""
     rows = []
     for name, counts in report.trusted_wrongly.items():
-        rows.append([name, "those that count", *_counts(counts)])
+        rows.append([name, COUNTED, *_counts(counts)])
         rows.append([name, "all", *_counts(report.trusted_wrongly_of_everything[name])])
     return rows_of(["", "photographs", "good or usable", "E_est", "shape", "either"], rows)
 
