@@ -8,6 +8,7 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from crfnet_core.emor import EmorBasis
+from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
@@ -24,6 +25,14 @@ GAMMA = "gamma 2.2"
 MEAN_CURVE = "mean curve"
 OTHER_BODIES = "mean of the other bodies"
 ORACLE_GAMMA = "oracle: best gamma"
+ORACLE_HEADROOM = "oracle: mean of the other bodies, best headroom"
+ORACLE_DORF = "oracle: nearest curve of DoRF"
+
+#: Brightness above which a response bends into white; how much lies above is the headroom that the oracle chooses.
+SHOULDER = LAST_SHAPE_CODE / 255
+
+#: Stops by which the oracle lowers a response at most, and the fraction of the shoulder that it uses up at most.
+MOST_LOWERED, MOST_RAISED = 3.0, 0.95
 
 
 def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
@@ -62,6 +71,36 @@ def nearest_power(true: ResponseCurve) -> ResponseCurve:
 
     found = minimize_scalar(distance, bounds=(np.log(0.02), np.log(5)), method="bounded")
     return ResponseCurve.from_samples(IRRADIANCE ** np.exp(found.x))
+
+
+def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
+    """Return the response of least E_est among `curves`, shape (N, 1024)."""
+    distances = np.linalg.norm(curves - true.brightness, axis=1)
+    return ResponseCurve.from_samples(curves[np.argmin(distances)])
+
+
+def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCurve:
+    """Return `curve` with the headroom of least E_est against a true response; its shape stays.
+
+    Headroom is where white is reached. Up to brightness `SHOULDER` the irradiance is multiplied by one factor, which
+    is an exposure and leaves the shape error as it is; above, its logarithm is stretched so that it still ends at 1.
+    """
+    brightness = np.linspace(0, 1, SAMPLES)
+    logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)
+    at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
+
+    def scaled(stops: float) -> ResponseCurve:
+        top = logarithm * (at_shoulder + stops) / at_shoulder
+        moved = np.where(brightness[1:] <= SHOULDER, logarithm + stops, top)
+        irradiance = np.concatenate([[0.0], np.exp2(moved)])
+        return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))
+
+    def distance(stops: float) -> float:
+        return float(np.linalg.norm(true.brightness - scaled(stops).brightness))
+
+    bounds = (-MOST_LOWERED, -MOST_RAISED * at_shoulder)
+    found = minimize_scalar(distance, bounds=bounds, method="bounded")
+    return scaled(float(found.x))
 
 
 def geometric_median(curves: Float64Array, *, steps: int = 500) -> Float64Array:

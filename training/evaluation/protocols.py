@@ -18,10 +18,8 @@ from training.evaluation.measure.real_photographs import RealPhotograph, real_ph
 from training.evaluation.measure.simulated import measure_simulated
 from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
 from training.evaluation.report.content import (
-    BOTH,
     CleanReport,
     OtherKindReport,
-    RealReport,
     Reliability,
     Report,
     ReportSettings,
@@ -30,7 +28,8 @@ from training.evaluation.report.content import (
 from training.evaluation.report.document import read_report, write_report
 from training.evaluation.report.markdown import report_text
 from training.evaluation.report.plots import draw_distributions, draw_reliability, draw_stress
-from training.evaluation.report.real_plots import draw_real
+from training.evaluation.report.real.content import BOTH, RealReport
+from training.evaluation.report.real.plots import draw_real
 from training.evaluation.settings import Settings
 from training.evaluation.summaries.bodies import RealTable, real_report
 from training.evaluation.summaries.clean import clean_report, other_kind_report
@@ -202,7 +201,7 @@ class Evaluation:
         names, sets = self.settings.names, real_photographs(self.test_set.data)
         tables = {name: self._real_table(name, photographs) for name, photographs in sets.items()}
         if len(tables) > 1:
-            tables[BOTH] = RealTable.joined([table.trusted for table in tables.values()])
+            tables[BOTH] = RealTable.joined(list(tables.values()))
         for name, table in tables.items():
             self._with_uncertainty[f"P4 {name}"] = {model: table.trusted.columns(model) for model in names}
         return {name: real_report(table, names, seed=self.settings.seed) for name, table in tables.items()}

@@ -18,6 +18,7 @@ from training.evaluation.measure.real import measure_real
 from training.evaluation.measure.real_photographs import mean_of_other_bodies, real_photographs
 from training.evaluation.protocols import Evaluation
 from training.evaluation.report.accuracy import accuracy, bodies_table
+from training.evaluation.report.real.photographs import worst
 from training.evaluation.settings import Model, Settings
 from training.evaluation.test_sets import bundled_test_set
 
@@ -25,6 +26,9 @@ UNIFORM = np.linspace(0, 1, 1024)
 
 #: Exponents of the measured responses.
 POWERS = {"two": 1.8, "three": 1.4, "four": 2.6}
+
+#: Columns of the list of data/real_bodies that say where a file comes from, and the name of an editor.
+EXIF, EDITOR = ("exif_make", "exif_model", "exif_software", "original_size"), "Adobe Photoshop 23.1 (Macintosh)"
 
 
 @pytest.fixture
@@ -43,26 +47,26 @@ def data(tmp_path, root):
     shutil.copy(root / "tests/data/plate_response.csv", folder / "real/gt/one.csv")
     for name in ("two", "three"):
         write_response(folder / f"real/gt/{name}.csv", POWERS[name])
-    for name in ("three", "four"):
+    for name in POWERS:
         write_response(folder / f"real_bodies/gt/{name}.csv", POWERS[name])
     write_rows(
         folder / "real/cases.csv",
-        ["id", "camera", "grade", "input_file"],
+        ["id", "camera", "grade", "input_file", "input_size"],
         [
-            ["one", "Nikon D90", "A", "input/plate.jpg"],
-            ["two", "X2", "B", "input/plate.jpg"],
-            ["three", "X3", "C", "input/plate.jpg"],
+            ["one", "Nikon D90", "A", "input/plate.jpg", "4288x2848"],
+            ["two", "X2 (resized via Photoshop)", "B", "input/plate.jpg", "1000x750"],
+            ["three", "X3", "C", "input/plate.jpg", "1024x768"],
         ],
     )
     photo = "photos/plate.jpg"
     write_rows(
         folder / "real_bodies/cases.csv",
-        ["id", "body", "kind", "use", "grade", "file", "gt", "fold"],
+        ["id", "body", "kind", "use", "grade", "file", "gt", "fold", *EXIF],
         [
-            ["b1", "NIKON D90", "camera", "yes", "B", photo, "gt/three.csv", "0"],
-            ["b2", "NIKON D90", "camera", "yes", "B", photo, "gt/four.csv", "0"],
-            ["b3", "P1", "phone", "yes", "B", photo, "gt/four.csv", "1"],
-            ["b4", "P2", "phone", "caution: few frames", "C", photo, "gt/four.csv", "2"],
+            ["b1", "NIKON D90", "camera", "yes", "B", photo, "gt/three.csv", "0", "Nikon", "D90", "Ver.1", "2144x1424"],
+            ["b2", "NIKON D90", "camera", "yes", "B", photo, "gt/four.csv", "0", "Nikon", "D90", "Ver.1", "640x480"],
+            ["b3", "P1", "phone", "yes", "B", photo, "gt/four.csv", "1", "", "", "", "4032x3024"],
+            ["b4", "P2", "phone", "caution: few frames", "C", photo, "gt/two.csv", "2", "P", "2", EDITOR, "4032x3024"],
         ],
     )
     return folder
@@ -96,9 +100,13 @@ def test_p4_means_are_over_bodies(model, tmp_path, data):
         (2, 3),
         (3, 5),
     ]
-    assert (real.all_grades.bodies, bodies.all_grades) == (3, None)
+    assert (real.everything.bodies, bodies.everything.bodies) == (3, 3)
     assert list(bodies.kinds) == ["camera", "phone"]
-    assert [row.name for row in both.bodies] == ["Nikon D90", "X2", "P1"]  # one of them from two folders
+    assert [row.name for row in both.bodies] == [
+        "Nikon D90",
+        "X2 (resized via Photoshop)",
+        "P1",
+    ]  # one of them from two folders
     (difference,) = both.trusted.differences
     assert (difference.first, difference.second) == ("fixed_model", "mean of the other bodies")
     three, four = (
@@ -133,10 +141,43 @@ def plate_response(data):
 def test_the_mean_leaves_out_the_fold_and_counts_a_body_once(data):
     photographs = real_photographs(data)["real_bodies"]
     truths = {photograph.measured: photograph.truth() for photograph in photographs}
-    of_first, _, of_phone = (mean_of_other_bodies(photograph, photographs, truths) for photograph in photographs)
+    of_first, _, of_phone, of_careful = (
+        mean_of_other_bodies(photograph, photographs, truths) for photograph in photographs
+    )
     assert estimation_error(of_first, ResponseCurve.gamma(POWERS["four"])) < 0.02  # the phone alone
     between = ResponseCurve.gamma((POWERS["three"] + POWERS["four"]) / 2)
     assert estimation_error(of_phone, between) < 0.02  # the mean of the two stacks of the camera
+    powers = [np.mean([POWERS["three"], POWERS["four"]]), POWERS["four"]]
+    assert estimation_error(of_careful, ResponseCurve.gamma(np.mean(powers))) < 0.02  # camera and phone
+
+
+def test_photographs_that_need_caution_are_shown_apart(model, tmp_path, data):
+    report = measured(model, tmp_path / "out", data).p4
+    assert [row.name for row in report["both"].photographs if row.caution] == ["three", "b4"]
+    assert {row.caution for row in report["real_bodies"].photographs} == {"", "few frames"}
+    text = (tmp_path / "out/report.md").read_text()
+    careful = text.split("### Photographs that need caution")[1]
+    assert "| b4 | P2 | phone |" in careful
+    assert "| edited | no | few frames |" in careful
+    assert "| b3 |" not in careful
+    assert [row.name for row in report["real_bodies"].bodies] == ["NIKON D90", "P1"]
+
+
+def test_p4_tells_where_the_files_come_from(model, tmp_path, data):
+    report = measured(model, tmp_path / "out", data).p4
+    counts = {name: group.photographs for name, group in report["both"].origins.items()}
+    assert counts == {"edited": 1, "no editor named": 2, "not known": 2, "not scaled": 3, "scaled": 2}
+    counts = {name: group.photographs for name, group in report["both"].origins_of_everything.items()}
+    assert counts == {"edited": 2, "no editor named": 2, "not known": 3, "not scaled": 4, "scaled": 3}
+
+
+def test_the_worst_photographs_come_first(model, tmp_path, data):
+    rows = measured(model, tmp_path / "out", data).p4["both"].photographs
+    shapes = [row.estimators["fixed_model"].errors.shape for row in worst(rows, "fixed_model")]
+    assert shapes == sorted((row.estimators["fixed_model"].errors.shape for row in rows), reverse=True)
+    text = (tmp_path / "out/report.md").read_text()
+    first = worst(rows, "fixed_model")[0]
+    assert text.index("largest shape errors of fixed_model") < text.index(f"| {first.name} | {first.body} |")
 
 
 def test_without_the_folder_of_more_bodies_its_tables_are_left_out(model, tmp_path, data):

@@ -10,8 +10,17 @@ from tqdm import tqdm
 from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
-from training.evaluation.baselines import BASELINES, OTHER_BODIES, constant_curves
+from training.evaluation.baselines import (
+    BASELINES,
+    ORACLE_DORF,
+    ORACLE_HEADROOM,
+    OTHER_BODIES,
+    constant_curves,
+    nearest_of,
+    with_best_headroom,
+)
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import all_baselines, model_figures
 from training.evaluation.measure.real_photographs import RealPhotograph, mean_of_other_bodies
@@ -37,7 +46,7 @@ def measure_real(
     files : dict
         Name of a model, or `BASELINES` -> its figures.
     known : ndarray, shape (N, 1024)
-        Responses for the constant baselines.
+        Responses for the constant baselines, and for the oracle that picks the nearest; those of DoRF.
     title : str
         Of the progress bar.
     """
@@ -56,9 +65,19 @@ def measure_real(
             if photograph.name in file.rows:
                 continue
             if name == BASELINES:
-                others = {OTHER_BODIES: mean_of_other_bodies(photograph, photographs, truths)}
-                file.rows[photograph.name] = all_baselines(true, counts, constants | others)
+                others = mean_of_other_bodies(photograph, photographs, truths)
+                curves = constants | _of_real_cameras(others, true, known)
+                file.rows[photograph.name] = all_baselines(true, counts, curves)
             else:
                 estimate = estimate_response(photo, network=networks[name])
                 file.rows[photograph.name] = {name: model_figures(true, estimate, counts, is_drawn=True)}
             file.save()
+
+
+def _of_real_cameras(others: ResponseCurve, true: ResponseCurve, known: Float64Array) -> dict[str, ResponseCurve]:
+    """Return the mean of the other bodies, and what an oracle makes of it and of the known responses, by name."""
+    return {
+        OTHER_BODIES: others,
+        ORACLE_HEADROOM: with_best_headroom(others, true),
+        ORACLE_DORF: nearest_of(known, true),
+    }

@@ -11,15 +11,16 @@ import numpy as np
 
 from crfnet_core.response import ResponseCurve
 from training.evaluation.baselines import mean_in_log_irradiance
+from training.evaluation.measure.file_origin import Editing, editing, is_scaled
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
 
-#: Grades of the measured responses of DATA/real that count; the others are shown.
+#: Grades of the measured responses of DATA/real that count; the others are shown apart.
 TRUSTED_GRADES = ("A", "B")
 
-#: What `use` says in DATA/real_bodies of a photograph that counts; the others are not measured.
-USED = "yes"
+#: What `use` says in DATA/real_bodies of a photograph that counts; the others are shown apart, with their reason.
+USED, CAUTION = "yes", "caution: "
 
 #: The kinds of the bodies of DATA/real, whose list has no such column.
 KINDS = {
@@ -50,8 +51,14 @@ class RealPhotograph:
         "phone", "compact", "camera" (with interchangeable lenses) or "unknown".
     grade : str
         How well the response was measured: A, B or C.
-    is_trusted : bool
-        Whether the measured response is good enough to count.
+    caution : str
+        Why the photograph does not count in the means; empty where it counts.
+    is_in_mean : bool
+        Whether its response is part of the mean of the other bodies.
+    editing : Editing
+        Whether an editor saved the file.
+    is_scaled : bool
+        Whether it was made smaller after the camera.
     fold : str
         Bodies of one fold are left out of a mean together.
     photograph, measured : Path
@@ -62,10 +69,18 @@ class RealPhotograph:
     body: str
     kind: str
     grade: str
-    is_trusted: bool
+    caution: str
+    is_in_mean: bool
+    editing: Editing
+    is_scaled: bool
     fold: str
     photograph: Path
     measured: Path
+
+    @property
+    def is_trusted(self) -> bool:
+        """Whether the photograph counts in the means."""
+        return not self.caution
 
     @property
     def body_key(self) -> str:
@@ -85,7 +100,7 @@ def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
     sets = {REAL: [_of_real(data / REAL, row) for row in _rows(data / REAL)]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in _rows(folder) if row["use"] == USED]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in _rows(folder)]
     return sets
 
 
@@ -96,13 +111,16 @@ def _rows(folder: Path) -> list[dict[str, str]]:
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
-    """Return the photograph of a row of DATA/real/cases.csv."""
+    """Return the photograph of a row of DATA/real/cases.csv; only the camera's name tells of an editor."""
     return RealPhotograph(
         name=row["id"],
         body=row["camera"],
         kind=KINDS.get(row["camera"], "unknown"),
         grade=row["grade"],
-        is_trusted=row["grade"] in TRUSTED_GRADES,
+        caution="" if row["grade"] in TRUSTED_GRADES else f"grade {row['grade']}",
+        is_in_mean=True,
+        editing=editing(row["camera"]),
+        is_scaled=is_scaled(row["input_size"]),
         fold=row["camera"],
         photograph=folder / row["input_file"],
         measured=folder / "gt" / f"{row['id']}.csv",
@@ -116,7 +134,10 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         body=row["body"],
         kind=row["kind"],
         grade=row["grade"],
-        is_trusted=True,
+        caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
+        is_in_mean=row["use"] == USED,
+        editing=editing(row["exif_software"], make=row["exif_make"], model=row["exif_model"], use=row["use"]),
+        is_scaled=is_scaled(row["original_size"]),
         fold=row["fold"],
         photograph=folder / row["file"],
         measured=folder / row["gt"],
@@ -128,8 +149,8 @@ def mean_of_other_bodies(
 ) -> ResponseCurve:
     """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
 
-    This is the estimate of someone who knows cameras and does not look at the photograph. Where there is no other
-    body it is gamma 2.2.
+    This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
+    that need caution are no part of it. Where there is no other body it is gamma 2.2.
 
     Parameters
     ----------
@@ -142,7 +163,7 @@ def mean_of_other_bodies(
     """
     bodies: dict[str, dict[Path, ResponseCurve]] = {}
     for other in photographs:
-        if other.fold != photograph.fold:
+        if other.is_in_mean and other.fold != photograph.fold:
             bodies.setdefault(other.body_key, {})[other.measured] = truths[other.measured]
     if not bodies:
         return ResponseCurve.gamma(2.2)

@@ -3,8 +3,9 @@
 - `errors`: the three errors, their intervals, summaries and differences.
 - `content`: the whole report, protocol by protocol.
 - `document`: report.json, written and read back.
-- `markdown`: report.md; `markdown_stress`, `markdown_real` and `markdown_tables` are parts of it.
-- `plots`, `real_plots`: the PNGs.
+- `markdown`: report.md; `markdown_stress` and `markdown_tables` are parts of it.
+- `plots`: the PNGs.
+- `real`: what the report holds of real photographs, its section of report.md and its PNGs.
 - `accuracy`: what model.json and the model card say of a report.
 - `paper`: the figures of the CRF-net paper, which stand beside ours.
 """

@@ -5,9 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from training.evaluation.report.errors import Comparison, EstimatorDifference, EstimatorSummary, Interval, PerError
-
-#: The name in the report of the trusted real photographs of both folders together.
-BOTH = "both"
+from training.evaluation.report.real.content import RealReport
 
 
 @dataclass(frozen=True)
@@ -113,73 +111,6 @@ class StressReport:
     conditions: dict[str, StressRow]
     queries: dict[str, StressRow]
     partial: dict[str, PartialSummary]
-
-
-@dataclass(frozen=True)
-class BodySummary:
-    """Means over bodies, each counted once, of every model and baseline.
-
-    `differences` are those between every two of the models and the mean of the other bodies.
-    """
-
-    bodies: int
-    photographs: int
-    estimators: dict[str, EstimatorSummary]
-    differences: tuple[EstimatorDifference, ...]
-
-
-@dataclass(frozen=True)
-class RealFigures:
-    """The errors of one estimator on one photograph, or their means over those of one body.
-
-    Parameters
-    ----------
-    errors : PerError of float
-        E_est, E_lin x 1e-2 and the shape error in stops.
-    uncertainty : float, optional
-        The E_est that a model expected; None for a baseline.
-    coverage : float, optional
-        Fraction, 0 to 1, of the true response inside the model's 90 % band.
-    """
-
-    errors: PerError[float]
-    uncertainty: float | None = None
-    coverage: float | None = None
-
-
-@dataclass(frozen=True)
-class RealRow:
-    """One real photograph, or all of one body: `name` is the photograph's, `grade` how well the response is known."""
-
-    name: str
-    body: str
-    kind: str
-    grade: str
-    photographs: int
-    estimators: dict[str, RealFigures]
-
-
-@dataclass(frozen=True)
-class RealReport:
-    """P4 on one folder of real photographs, or on two together.
-
-    Parameters
-    ----------
-    trusted : BodySummary
-        The photographs whose response was measured well enough to count.
-    all_grades : BodySummary, optional
-        All photographs, where others were measured too.
-    kinds : dict
-        Kind of body ("phone", "compact", "camera", "unknown") -> the trusted photographs of this kind.
-    bodies, photographs : tuple of RealRow
-        A row for each body and for each photograph.
-    """
-
-    trusted: BodySummary
-    all_grades: BodySummary | None
-    kinds: dict[str, BodySummary]
-    bodies: tuple[RealRow, ...]
-    photographs: tuple[RealRow, ...]
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,6 @@ from training.evaluation.report.content import (
     Reliability,
     Report,
 )
-from training.evaluation.report.markdown_real import real_section
 from training.evaluation.report.markdown_stress import stress_section
 from training.evaluation.report.markdown_tables import (
     COLUMNS,
@@ -28,6 +27,7 @@ from training.evaluation.report.markdown_tables import (
     rows_of,
     summary_cells,
 )
+from training.evaluation.report.real.markdown import real_section
 
 INTRODUCTION = """# How accurate the models are
 

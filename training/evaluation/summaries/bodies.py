@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -11,10 +11,15 @@ from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import PhotographFigures
 from training.evaluation.measure.real_photographs import RealPhotograph
-from training.evaluation.report.content import BodySummary, RealFigures, RealReport, RealRow
-from training.evaluation.report.errors import PerError
+from training.evaluation.report.errors import Interval, PerError
+from training.evaluation.report.real.content import BodySummary, RealFigures, RealReport, RealRow
 from training.evaluation.summaries.bootstrap import Resampling
+from training.evaluation.summaries.emor_weights import weight_correlations
 from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
+from training.evaluation.summaries.trust import trusted_wrongly
+
+#: Whether a photograph was made smaller after the camera -> the name of this origin.
+SCALING = {True: "scaled", False: "not scaled"}
 
 #: The baselines that stand beside the models in the rows of bodies and of photographs.
 SHOWN_BASELINES = (GAMMA, OTHER_BODIES)
@@ -59,9 +64,10 @@ class RealTable:
         """The photographs whose response was measured well enough to count."""
         return self.subset(k for k, photograph in enumerate(self.photographs) if photograph.is_trusted)
 
-    def of_kind(self, kind: str) -> RealTable:
-        """Return the photographs of bodies of one kind."""
-        return self.subset(k for k, photograph in enumerate(self.photographs) if photograph.kind == kind)
+    def groups(self, name_of: Callable[[RealPhotograph], str]) -> dict[str, RealTable]:
+        """Return name -> the photographs to which `name_of` gives this name, sorted by name."""
+        names = [name_of(photograph) for photograph in self.photographs]
+        return {name: self.subset(k for k, own in enumerate(names) if own == name) for name in sorted(set(names))}
 
     @property
     def bodies(self) -> list[RealTable]:
@@ -77,16 +83,36 @@ class RealTable:
 def real_report(table: RealTable, models: Sequence[str], *, seed: int) -> RealReport:
     """Return the report of P4 on a set of real photographs; `seed` is that of the bootstrap."""
     trusted = table.trusted
-    kinds = sorted({photograph.kind for photograph in trusted.photographs})
     has_others = len(trusted.photographs) < len(table.photographs)
     singles = [table.subset([k]) for k in range(len(table.photographs))]
+
+    def summaries(groups: dict[str, RealTable]) -> dict[str, BodySummary]:
+        return {name: _summary(group, models, seed) for name, group in groups.items()}
+
     return RealReport(
         trusted=_summary(trusted, models, seed),
-        all_grades=_summary(table, models, seed) if has_others else None,
-        kinds={kind: _summary(trusted.of_kind(kind), models, seed) for kind in kinds},
-        bodies=tuple(_row(part.photographs[0].body, part, models) for part in table.bodies),
+        everything=_summary(table, models, seed) if has_others else None,
+        kinds=summaries(trusted.groups(lambda photograph: photograph.kind)),
+        origins=summaries(_origins(trusted)),
+        origins_of_everything=summaries(_origins(table)),
+        weights=_weights(trusted, models, seed),
+        weights_of_everything=_weights(table, models, seed),
+        trusted_wrongly={name: trusted_wrongly(trusted.figures[name]) for name in models},
+        trusted_wrongly_of_everything={name: trusted_wrongly(table.figures[name]) for name in models},
+        bodies=tuple(_row(part.photographs[0].body, part, models) for part in trusted.bodies),
         photographs=tuple(_row(part.photographs[0].name, part, models) for part in singles),
     )
+
+
+def _weights(table: RealTable, models: Sequence[str], seed: int) -> dict[str, tuple[Interval, ...]]:
+    """Return, for each model, how its EMoR weights follow the true ones."""
+    return {name: weight_correlations(table.photographs, table.figures[name], seed=seed) for name in models}
+
+
+def _origins(table: RealTable) -> dict[str, RealTable]:
+    """Return the photographs by whether an editor saved them, and by whether they were scaled."""
+    edited = table.groups(lambda photograph: photograph.editing.value)
+    return edited | table.groups(lambda photograph: SCALING[photograph.is_scaled])
 
 
 def _summary(table: RealTable, models: Sequence[str], seed: int) -> BodySummary:
@@ -112,6 +138,9 @@ def _row(name: str, table: RealTable, models: Sequence[str]) -> RealRow:
         grade="".join(sorted({photograph.grade for photograph in table.photographs})),
         photographs=len(table.photographs),
         estimators={estimator: _means(table.figures[estimator]) for estimator in [*models, *SHOWN_BASELINES]},
+        editing=", ".join(sorted({photograph.editing.value for photograph in table.photographs})),
+        is_scaled=any(photograph.is_scaled for photograph in table.photographs),
+        caution="; ".join(dict.fromkeys(photograph.caution for photograph in table.photographs)),
     )
 
 

@@ -32,7 +32,8 @@ def draw_real(path: Path, table: RealTable, model: str, title: str) -> None:
     for number, photograph in enumerate(table.photographs):
         left, right = grid[number // columns, 2 * (number % columns) :][:2]
         left.imshow(thumbnail(photograph.photograph))
-        left.set_title(f"{photograph.body}\n{photograph.name}, grade {photograph.grade}", fontsize=9)
+        note = f"; caution: {photograph.caution}" if photograph.caution else ""
+        left.set_title(f"{photograph.body}\n{photograph.name}, grade {photograph.grade}{note}", fontsize=9)
         _draw_responses(right, photograph, table.figures[model][number], table.figures[GAMMA][number])
     grid[0, 1].legend(fontsize=7, loc="lower right")
     figure.suptitle(title, fontsize=14)

@@ -1,0 +1,52 @@
+"""What happened to the file of a real photograph after the camera wrote it: edited or not, scaled or not."""
+
+from __future__ import annotations
+
+from enum import StrEnum
+
+
+class Editing(StrEnum):
+    """Whether a program that changes tones saved the file."""
+
+    EDITED = "edited"
+    NOT_NAMED = "no editor named"
+    UNKNOWN = "not known"
+
+
+#: Parts of the names, in lower case, of programs that can change tones. Others are firmware ("Ver.1.00"), or programs
+#: that only turn a photograph (Windows Photo Viewer).
+EDITORS = ("adobe", "photoshop", "lightroom", "gimp", "capture one", "darktable", "affinity", "snapseed", "easyhdr")
+
+#: What `use` of DATA/real_bodies says of a file that its publisher developed or edited.
+DEVELOPED = "edited/developed by software"
+
+#: Longest side in pixels below which a photograph is taken to have been scaled after the camera. The lists do not hold
+#: the native size of a sensor. The smallest file that is surely a camera's own has 1600 pixels, the sizes of web
+#: pages end at 1280, and the rows of DATA/real_bodies without a crop are just those below. A camera's own smaller
+#: sizes (M, S) stay on the unscaled side, and a compact of 2002 that records 1024 x 768 falls on the other.
+SCALED_BELOW = 1600
+
+
+def editing(software: str, *, make: str = "", model: str = "", use: str = "") -> Editing:
+    """Return whether a file was edited, from its EXIF and from what the list says of it.
+
+    A name in the list decides. Without one the file was not edited as far as anyone knows, if it still has the make or
+    the model of the camera. A file without them has lost its EXIF to some program, so nothing is known.
+
+    Parameters
+    ----------
+    software : str
+        Name of the program that saved the file, or another text that holds it.
+    make, model : str
+        Of the camera, from EXIF.
+    use : str
+        What DATA/real_bodies says of the use of a photograph.
+    """
+    if DEVELOPED in use or any(name in software.lower() for name in EDITORS):
+        return Editing.EDITED
+    return Editing.NOT_NAMED if make or model else Editing.UNKNOWN
+
+
+def is_scaled(size: str) -> bool:
+    """Return whether a photograph of "WIDTHxHEIGHT" pixels was made smaller after the camera; see `SCALED_BELOW`."""
+    return max(int(side) for side in size.split("x")) < SCALED_BELOW
