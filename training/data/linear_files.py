@@ -132,7 +132,9 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
     """Return the middle `BAND` of the rows of an equirectangular panorama; a PhotoError if it is not 2:1."""
     height, width, _ = samples.shape
     if width != 2 * height:
-        raise PhotoError(f"{path}: {width} x {height} is no whole panorama, twice as wide as high; bring a photograph")
+        raise PhotoError(
+            f"{path}: {width} x {height} is no whole panorama, twice as wide as high; import it as a photograph"
+        )
     rows = height * BAND[0] // BAND[1]
     top = (height - rows) // 2
     return samples[top : top + rows]

@@ -67,7 +67,7 @@ def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out,
             "kind": "photograph",
             "width": "640",
             "height": "480",
-            "source": "brought: large.dng",
+            "source": "imported: large.dng",
             "licence": "CC0",
             "notes": "sensor white = 1; area-averaged 2x2 from 1280x960",
         }
