@@ -18,14 +18,12 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.scenes import split_scenes
 from training.provenance import file_sha256
 
 #: The manifest of the data that the packaged models were trained and measured with.
 MANIFEST_FILE = Path(__file__).with_name("manifest.csv")
-
-#: The files of responses that training reads: DoRF, and the in-camera curves.
-CURVE_FILES = ("dorf/201_CRF_data.mat", "camera_curves/base_curves.csv")
 
 #: How files are used that belong to no split of the scenes.
 MEASURED_ONLY, SPLIT_BY_GROUP, TRAINED_ON, COMPARED_ONLY = (
@@ -88,7 +86,7 @@ def manifest_rows(data: Path) -> list[ManifestRow]:
 def training_digest(data: Path) -> str:
     """Return the SHA-256 over the manifest rows of the scenes and curves in the folder `data`."""
     unhashed = [*_curves(), *_scenes(data / "linear")]
-    chosen = [row for row in unhashed if row.kind == "scene" or row.file in CURVE_FILES]
+    chosen = [row for row in unhashed if row.kind == "scene" or row.file in (DORF_FILE, BASE_CURVES_FILE)]
     return hashlib.sha256(manifest_text(sorted(_hashed(data, row) for row in chosen)).encode()).hexdigest()
 
 
@@ -137,12 +135,11 @@ def _hashed(data: Path, row: ManifestRow) -> ManifestRow:
 
 def _curves() -> list[ManifestRow]:
     """Return the rows, not hashed, of the files of responses."""
-    dorf, base_curves = CURVE_FILES
     licence = "GPL-3.0-or-later (darktable)"
     return [
-        ManifestRow(dorf, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
-        ManifestRow("dorf/emor.txt", "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
-        ManifestRow(base_curves, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
+        ManifestRow(DORF_FILE, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
+        ManifestRow(EMOR_FILE, "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
+        ManifestRow(BASE_CURVES_FILE, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
     ]
 
 
