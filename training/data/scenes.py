@@ -24,6 +24,9 @@ TEST_SCENES, VALIDATION_SCENES = 20, 12
 #: the second word where an earlier version added it.
 IMPORTED, IMPORTED_EARLIER = "imported:", "brought:"
 
+#: The first and the last row of a panorama that are used, as fractions of its height: near its poles it is stretched.
+BAND = (0.1, 0.9)
+
 #: Weights of R, G and B in the luminance of linear Rec.709.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 
