@@ -61,7 +61,7 @@ def written(data, tmp_path):
 
 def test_every_file_has_a_row_and_rows_are_sorted(data, written):
     rows = read_manifest(written)
-    assert len(rows) == 3 + 40 + 2 + 2
+    assert len(rows) == 3 + 3 + 40 + 2 + 2
     assert rows == sorted(rows) == manifest_rows(data)
     assert str(data) not in written.read_text()
     by_file = {row.file: row for row in rows}
@@ -74,6 +74,7 @@ def test_every_file_has_a_row_and_rows_are_sorted(data, written):
         "60a5827806738f73207efeb1f332e69846ed6dd9455546dc23c9f0b8a7777778",
     )
     assert by_file["real_bodies/photos/two.webp"].split == "measured only, fold 3"
+    assert by_file["real_bodies/cases.csv"].split == "decides grade, fold and use"
     assert by_file["real_bodies/photos/two.webp"].licence == "MIT (LICENSE)"
 
 
