@@ -26,7 +26,7 @@ class PlateChoices:
 
     anchor: bpy.props.EnumProperty(
         name="Exposure Anchor",
-        description="Which brightness keeps its place; a response alone leaves the exposure open",
+        description="Which brightness gets a fixed linear value. A response does not tell the exposure",
         items=ANCHORS,
     )
     gray: bpy.props.FloatProperty(
@@ -42,14 +42,14 @@ class PlateChoices:
     )
     folder: bpy.props.StringProperty(
         name="Folder",
-        description="Where files go; empty for the preferences' folder or the plate's own, and for Blender's own"
-        " colour management folder",
+        description="Folder for files. Empty: the folder from the preferences, else the plate's own; for Color Space,"
+        " Blender's",
         subtype="DIR_PATH",
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Of the baked files", items=DEPTHS)
     overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files of an earlier run")
     force: bpy.props.BoolProperty(
-        name="Estimate Anyway", description="Although the colour space or the metadata says log or linear"
+        name="Estimate Anyway", description="Estimate even if the color space or the metadata says log or linear"
     )
 
 

@@ -27,7 +27,7 @@ from training.synthesis.photographs import PhotographSource
 #: Photographs in a shard file.
 SHARD = 500
 
-#: Every so many-th sample of a response is kept as the target: 128 of 1024.
+#: Step between the samples of a response that are kept as the target: 128 of 1024.
 TARGET_STRIDE = 8
 
 #: Statistics are kept as float16, in units of this many samples.
