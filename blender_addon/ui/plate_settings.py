@@ -17,6 +17,10 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
+#: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a
+#: wheel, and the add-on has to start without it.
+MAX_EXPOSURE = 15
+
 #: The number of each way to apply a response, as its enumeration property stores it.
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 
@@ -38,7 +42,12 @@ class PlateChoices:
         precision=3,
     )
     exposure: bpy.props.FloatProperty(
-        name="Exposure", description="Stops added on top of the anchor", soft_min=-6, soft_max=6, min=-15, max=15
+        name="Exposure",
+        description="Stops added on top of the anchor",
+        soft_min=-6,
+        soft_max=6,
+        min=-MAX_EXPOSURE,
+        max=MAX_EXPOSURE,
     )
     folder: bpy.props.StringProperty(
         name="Folder",
