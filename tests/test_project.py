@@ -47,7 +47,7 @@ def test_the_installed_version_is_this_one(project):
     assert version("crfnet") == project["version"]
 
 
-def test_licences(root, project):
+def test_licenses(root, project):
     assert project["license"] == "BSD-3-Clause"
     assert (root / "LICENSE").read_text().startswith("BSD 3-Clause License")
     assert "GNU GENERAL PUBLIC LICENSE" in (root / "blender_addon" / "LICENSE").read_text()[:200]

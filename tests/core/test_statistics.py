@@ -56,7 +56,7 @@ def test_every_sample_is_in_the_histogram(smooth):
     np.testing.assert_allclose(parts(smooth)["histogram"].sum(axis=1), 227 * 227, rtol=1e-5)
 
 
-def test_a_flat_window_has_flat_neighbours_of_one_level_and_no_edge():
+def test_a_flat_window_has_flat_neighbors_of_one_level_and_no_edge():
     found = parts(np.ones((227, 227, 3), np.float32))
     histogram, gradients = found.pop("histogram"), found.pop("gradients")
     np.testing.assert_allclose(histogram[:, -1], 227 * 227)
@@ -138,7 +138,7 @@ def test_gray_says_nothing_between_channels():
     np.testing.assert_allclose(right, 0, atol=0.01)
 
 
-def test_half_resolution_is_compared_whatever_colour_the_samples_have_around_their_means():
+def test_half_resolution_is_compared_whatever_color_the_samples_have_around_their_means():
     """As in a JPEG, of which a block of 2 x 2 samples has one colour but for the rounding of its samples."""
     rng = np.random.default_rng(0)
     blocks = rng.integers(20, 230, (114, 114, 3))
