@@ -16,7 +16,7 @@ PHOTO := tests/data/plate.jpg
 DEMO := demo_out
 DATA ?=
 RUN ?= runs/model
-MODEL := crfnet_core/models/photograph-statistics-1.0
+MODEL ?=
 
 comma := ,
 
@@ -53,14 +53,15 @@ format: $(DEV)/ready  ## let ruff format and mend what it can
 	$(DEV)/bin/ruff format .
 	$(DEV)/bin/ruff check --fix .
 
-model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER
+model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER MODEL=FOLDER
 	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
+	@test -n "$(MODEL)" -a ! -e "$(MODEL)" || { echo "make model DATA=FOLDER MODEL=crfnet_core/models/photograph-statistics-1.1: a folder that does not exist yet"; exit 2; }
 	$(TRAIN)/bin/python -m training.data.emor_basis --data $(DATA)
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
 	$(TRAIN)/bin/python -m training.network.train --shards $(RUN)/photos --run $(RUN)
-	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden tests/data/golden_predictions.npz
-	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --out $(RUN)/evaluation
+	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden $(RUN)/golden_predictions.npz
+	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --model $(MODEL) --out $(RUN)/evaluation
 	$(TRAIN)/bin/python -m training.export.model_card --model $(MODEL) --report $(RUN)/evaluation/report.json
 
 docs: $(PLOT)/ready  ## the sample and the picture in docs/ anew

@@ -65,8 +65,8 @@ def run_linearize(arguments: argparse.Namespace) -> None:
     if arguments.json:
         _print_json(report.plate_document(done, estimate))
     else:
-        found = [report.source_line(estimate), *report.verdict_lines(estimate)] if estimate else []
-        _print_lines([*found, *report.plate_lines(done)])
+        lines = [report.source_line(estimate), *report.verdict_lines(estimate)] if estimate else []
+        _print_lines([*lines, *report.plate_lines(done)])
 
 
 def run_info(arguments: argparse.Namespace) -> None:
@@ -111,7 +111,7 @@ def _print_estimates(estimates: Sequence[PhotographEstimate], outputs: Sequence[
     """Print what was read, found and written, and how to use it; one line each if there are several estimates."""
     first, *others = estimates
     if others:
-        _print_lines([*(report.result_line(found.estimate) for found in estimates), ""])
+        _print_lines([*(report.result_line(estimated.estimate) for estimated in estimates), ""])
         _print_lines([f"Written to {folder}, for each photograph as for the first:"])
     else:
         _print_lines([*map(str, first.facts), *report.verdict_lines(first.estimate), "", f"Written to {folder}:"])

@@ -151,7 +151,7 @@ def check_folder(folder: Path) -> None:
     PlateError
         Otherwise.
     """
-    existing = next(place for place in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(place))
+    existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     if not existing.is_dir():
         raise PlateError(f"{existing}: is not a folder; choose another for the output")
     if not os.access(existing, os.W_OK | os.X_OK):
@@ -161,14 +161,14 @@ def check_folder(folder: Path) -> None:
 @contextmanager
 def output_folder(folder: Path) -> Iterator[None]:
     """Make `folder` for a block; if the block fails, remove again those folders that were made and are empty."""
-    made = [place for place in (folder, *folder.parents) if not place.exists()]
+    made = [path for path in (folder, *folder.parents) if not path.exists()]
     folder.mkdir(parents=True, exist_ok=True)
     try:
         yield
     except BaseException:
-        for place in made:
+        for path in made:
             with suppress(OSError):
-                place.rmdir()
+                path.rmdir()
         raise
 
 

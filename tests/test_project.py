@@ -25,8 +25,8 @@ def broken_links(path):
     """The links of a document to files that are not there, and to headings that its target has not."""
     for target in re.findall(r"\]\(([^)]+)\)", path.read_text(encoding="utf-8")):
         file, _, heading = target.partition("#")
-        place = path.parent / file if file else path
-        if "://" not in target and not (place.exists() and (not heading or heading in anchors(place))):
+        linked = path.parent / file if file else path
+        if "://" not in target and not (linked.exists() and (not heading or heading in anchors(linked))):
             yield target
 
 
@@ -47,7 +47,7 @@ def test_the_installed_version_is_this_one(project):
     assert version("crfnet") == project["version"]
 
 
-def test_licences(root, project):
+def test_licenses(root, project):
     assert project["license"] == "BSD-3-Clause"
     assert (root / "LICENSE").read_text().startswith("BSD 3-Clause License")
     assert "GNU GENERAL PUBLIC LICENSE" in (root / "blender_addon" / "LICENSE").read_text()[:200]

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import bpy
 
-#: The name under which Blender looks for a config.
+#: The name under which Blender looks for a config. It is `ocio.defaults.CONFIG_NAME` again, because `ocio` comes as a
+#: wheel, and the add-on has to start without it.
 CONFIG_NAME = "config.ocio"
 
 

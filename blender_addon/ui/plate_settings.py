@@ -17,6 +17,10 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
+#: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a
+#: wheel, and the add-on has to start without it.
+MAX_EXPOSURE = 15
+
 #: The number of each way to apply a response, as its enumeration property stores it.
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 
@@ -26,7 +30,7 @@ class PlateChoices:
 
     anchor: bpy.props.EnumProperty(
         name="Exposure Anchor",
-        description="Which brightness keeps its place; a response alone leaves the exposure open",
+        description="Which brightness gets a fixed linear value. A response does not tell the exposure",
         items=ANCHORS,
     )
     gray: bpy.props.FloatProperty(
@@ -38,18 +42,23 @@ class PlateChoices:
         precision=3,
     )
     exposure: bpy.props.FloatProperty(
-        name="Exposure", description="Stops added on top of the anchor", soft_min=-6, soft_max=6, min=-15, max=15
+        name="Exposure",
+        description="Stops added on top of the anchor",
+        soft_min=-6,
+        soft_max=6,
+        min=-MAX_EXPOSURE,
+        max=MAX_EXPOSURE,
     )
     folder: bpy.props.StringProperty(
         name="Folder",
-        description="Where files go; empty for the preferences' folder or the plate's own, and for Blender's own"
-        " colour management folder",
+        description="Folder for files. Empty: the folder from the preferences, else the plate's own; for Color Space,"
+        " Blender's",
         subtype="DIR_PATH",
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Of the baked files", items=DEPTHS)
     overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files of an earlier run")
     force: bpy.props.BoolProperty(
-        name="Estimate Anyway", description="Although the colour space or the metadata says log or linear"
+        name="Estimate Anyway", description="Estimate even if the color space or the metadata says log or linear"
     )
 
 

@@ -8,6 +8,10 @@ import bpy
 #: The name by which Blender knows the add-on: that of its root package.
 ADDON = __package__.rpartition(".")[0]
 
+#: Entries of LUT files by default. It is `ocio.defaults.LUT_LENGTH` again, because `ocio` comes as a wheel, and the
+#: add-on has to start without it.
+LUT_LENGTH = 4081
+
 #: The ways to apply a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files.
 APPLY_MODES = (
     ("NODES", "Compositor Nodes", "A node group that linearises the plate in the compositor, at once", "NODETREE", 0),
@@ -32,8 +36,8 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     )
     lut_length: bpy.props.IntProperty(
         name="LUT Length",
-        description="Entries of LUT files: 4081 is exact on all 8-bit codes, 65536 on all 16-bit codes",
-        default=4081,
+        description=f"Entries of LUT files: {LUT_LENGTH} is exact on all 8-bit codes, 65536 on all 16-bit codes",
+        default=LUT_LENGTH,
         min=256,
         max=65536,
     )

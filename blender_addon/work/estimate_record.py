@@ -62,12 +62,12 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
 def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
     """Yield the estimate of each window."""
     count = len(entries["window_photos"])
-    places = np.reshape(entries["window_places"], (count, -1)).tolist()
+    positions = np.reshape(entries["window_places"], (count, -1)).tolist()
     weights = np.reshape(np.array(entries["window_weights"]), (count, -1))
     for n in range(count):
         yield WindowEstimate(
             photo=entries["window_photos"][n],
-            window=Window(*places[n]),
+            window=Window(*positions[n]),
             weights=weights[n],
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),

@@ -91,7 +91,9 @@ def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
         raise ConfigError(f"{name}: the config has no such colour space; add it before writing")
     worst = _conversion_error(config, space, lut)
     if not worst <= TOLERANCE:
-        raise ConfigError(f"{name}: converts other than its LUT by {worst:.2g}; write the LUT and the config again")
+        raise ConfigError(
+            f"{name}: its conversion differs from its LUT by {worst:.2g}; write the LUT and the config again"
+        )
 
 
 def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -> float:

@@ -31,7 +31,7 @@ FOLDER, RECORD_NAME = "camera_response", "installed.json"
 #: Name of the copy of an earlier config, and of further copies.
 BACKUP_NAME, NUMBERED_BACKUP = "config.before-camera-response.ocio", "config.before-camera-response-{}.ocio"
 
-#: Backups of one config; nobody needs as many.
+#: Most backups of one config.
 MAX_BACKUPS = 999
 
 

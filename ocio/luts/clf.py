@@ -1,6 +1,6 @@
 """The Common LUT Format: one LUT1D, after a Range if its domain is not [0, 1].
 
-OpenColorIO's own `GroupTransform.write` is not used: it keeps eight digits, by which neighbouring float32 values may
+OpenColorIO's own `GroupTransform.write` is not used. It keeps only eight digits, so neighbouring float32 values may
 become equal, and its output depends on the version of OpenColorIO.
 
 Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 2136-1.

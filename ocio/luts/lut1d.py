@@ -146,8 +146,8 @@ def inverse_response_lut(
 
     Beyond [0, 1], for super-whites and for noise below black, g continues as a line with its slope over the outermost
     8-bit code. Where a response is flat near an end, its inverse is almost vertical there; that only means that the
-    camera clipped. The slope is therefore limited to `MAX_END_SLOPE`, by which a brightness of 1.125 is an irradiance
-    of 2 at most, one stop above white.
+    camera clipped. The slope is therefore at most `MAX_END_SLOPE`: brightness 1.125 becomes at most irradiance 2, one
+    stop above white.
 
     Parameters
     ----------

@@ -108,29 +108,32 @@ def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -
     luts: dict[str, Lut1D] = {}
     documents = []
     with output_folder(plan.folder):
-        for files, found in zip(plan.outputs, estimates, strict=True):
-            lut = response_lut(found.estimate, length=plan.lut_length)
+        for files, estimated in zip(plan.outputs, estimates, strict=True):
+            lut = response_lut(estimated.estimate, length=plan.lut_length)
             luts[files.color_space] = lut
-            documents.append(_write_estimate(files, found, lut, plan.plates))
+            documents.append(_write_estimate(files, estimated, lut, plan.plates))
         write_config(plan.outputs[0].config, plan.config, check=luts, overwrite=plan.plates.overwrite)
     return documents
 
 
-def _write_estimate(files: OutputFiles, found: PhotographEstimate, lut: Lut1D, plates: PlateOptions) -> dict[str, Any]:
+def _write_estimate(
+    files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions
+) -> dict[str, Any]:
     """Write the files of one estimate, except the config, and return its document."""
     for path in files.luts:
         write_lut(path, lut, overwrite=plates.overwrite)
-    for photo, linear in zip(found.paths, files.linear, strict=True):  # reads each again: see `estimate_photographs`
+    # Each photograph is read again: see `estimate_photographs`.
+    for photo, linear in zip(estimated.paths, files.linear, strict=True):
         linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
     if files.sheet:
-        _write_sheet(files.sheet, found, overwrite=plates.overwrite)
-    document = estimate_document(found.estimate, found.facts, files)
+        _write_sheet(files.sheet, estimated, overwrite=plates.overwrite)
+    document = estimate_document(estimated.estimate, estimated.facts, files)
     atomic_write_text(files.report, json_text(document), overwrite=plates.overwrite, error=PlateError)
     return document
 
 
-def _write_sheet(path: Path, found: PhotographEstimate, *, overwrite: bool) -> None:
+def _write_sheet(path: Path, estimated: PhotographEstimate, *, overwrite: bool) -> None:
     """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
     from ocio.sheet import draw_sheet
 
-    draw_sheet(path, found.preview, found.estimate, stride=found.stride, overwrite=overwrite)
+    draw_sheet(path, estimated.preview, estimated.estimate, stride=estimated.stride, overwrite=overwrite)

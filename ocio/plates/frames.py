@@ -72,12 +72,12 @@ class FramePattern:
         """
         path = Path(pattern)
         for placeholder in _PLACEHOLDERS:
-            found = list(placeholder.finditer(path.name))
-            if len(found) > 1:
-                raise PlateError(f"{path}: holds {len(found)} frame placeholders; leave one of them")
-            if found:
-                start, end = found[0].span()
-                return cls(path.parent, path.name[:start], _width(found[0]), path.name[end:])
+            matches = list(placeholder.finditer(path.name))
+            if len(matches) > 1:
+                raise PlateError(f"{path}: holds {len(matches)} frame placeholders; leave one of them")
+            if matches:
+                start, end = matches[0].span()
+                return cls(path.parent, path.name[:start], _width(matches[0]), path.name[end:])
         return None
 
     def path(self, number: int) -> Path:
@@ -179,11 +179,11 @@ def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
     return ", ".join(texts[:limit]) + (", …" if len(texts) > limit else "")
 
 
-def _width(found: re.Match[str]) -> int:
+def _width(match: re.Match[str]) -> int:
     """Return the number of digits to which a placeholder pads."""
-    text = found[0]
+    text = match[0]
     if text.startswith("%"):
-        return int(found[1] or 1)
+        return int(match[1] or 1)
     return 4 if text == "#" else len(text)
 
 

@@ -93,8 +93,8 @@ def _trust(estimate: ResponseEstimate) -> dict[str, Any]:
 def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
     """Return where a window lies and what the network said of it."""
     window = estimate.window
-    place = {"photo": estimate.photo, "x": window.x, "y": window.y, "extent": window.extent, "filled": window.filled}
-    return {**place, "expected_error": _rounded(estimate.expected_error), "kept": estimate.kept}
+    position = {"photo": estimate.photo, "x": window.x, "y": window.y, "extent": window.extent, "filled": window.filled}
+    return {**position, "expected_error": _rounded(estimate.expected_error), "kept": estimate.kept}
 
 
 def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:

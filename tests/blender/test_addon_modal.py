@@ -40,8 +40,8 @@ class Interface:
     def progress_begin(self, first, last):
         self.progress.append(first)
 
-    def progress_update(self, share):
-        self.progress.append(share)
+    def progress_update(self, percent):
+        self.progress.append(percent)
 
     def progress_end(self):
         self.progress.append(None)

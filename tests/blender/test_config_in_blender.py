@@ -109,12 +109,12 @@ def test_blender_did_not_fall_back_to_its_own_config(blender):
     assert "fallback" not in blender["log"].lower()
 
 
-def test_blender_linearises_all_codes_of_an_8_bit_plate(blender, tolerance):
+def test_blender_linearizes_all_codes_of_an_8_bit_plate(blender, tolerance):
     expected = blender["lut"].apply(blender["codes"])
     assert np.abs(blender["linear"]["codes"] - expected).max() < tolerance.plate
 
 
-def test_blender_linearises_a_float_plate_with_super_whites(blender, tolerance):
+def test_blender_linearizes_a_float_plate_with_super_whites(blender, tolerance):
     expected = blender["lut"].apply(blender["floats"])
     assert expected.max() > 1.1
     assert np.abs(blender["linear"]["floats"] - expected).max() < tolerance.plate

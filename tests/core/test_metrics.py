@@ -20,12 +20,12 @@ def test_estimation_error_of_two_known_curves():
     assert estimation_error(STRAIGHT, SQUARE) == estimation_error(SQUARE, STRAIGHT)
 
 
-def test_linearisation_error_of_known_pixels():
+def test_linearization_error_of_known_pixels():
     """By hand: B = 0.25 is E = 0.25 on the straight line, and 0.5 on the square."""
     assert linearization_error([0.25, 1.0], STRAIGHT, SQUARE) == pytest.approx(0.25 / np.sqrt(2), abs=1e-3)
 
 
-def test_linearisation_error_is_relative_to_the_peak():
+def test_linearization_error_is_relative_to_the_peak():
     assert linearization_error([0.25], STRAIGHT, SQUARE) == pytest.approx(1.0, abs=5e-3)
 
 

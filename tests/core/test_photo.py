@@ -136,14 +136,8 @@ def test_gray_with_alpha(tmp_path):
 
 
 def test_first_of_several_frames(tmp_path):
-    path = str(tmp_path / "a.tif")
-    spec = oiio.ImageSpec(2, 2, 3, "uint8")
-    output = oiio.ImageOutput.create(path)
-    assert output.open(path, (spec, spec))
-    assert output.write_image(CODES8)
-    assert output.open(path, spec, "AppendSubimage")
-    assert output.write_image(np.zeros_like(CODES8))
-    output.close()
+    path = write_image(tmp_path / "a.tif", CODES8, np.zeros_like(CODES8))
+    assert oiio.ImageInput.open(str(path)).seek_subimage(1, 0)
     np.testing.assert_array_equal(read_codes(path).codes, CODES8)
 
 

@@ -185,12 +185,12 @@ def test_a_pipe_does_not_block(tmp_path):
 
 
 @pytest.mark.parametrize("progressive", [0, 1])
-@pytest.mark.parametrize("share", [0.0005, 0.05, 0.3, 0.6, 0.99, 1.0])
-def test_cut_jpeg_is_refused_wherever_it_is_cut(tmp_path, progressive, share):
+@pytest.mark.parametrize("fraction", [0.0005, 0.05, 0.3, 0.6, 0.99, 1.0])
+def test_cut_jpeg_is_refused_wherever_it_is_cut(tmp_path, progressive, fraction):
     path = tmp_path / "a.jpg"
     whole = jpeg(path, jpeg__progressive=progressive)
     assert read_photo(path).pixels.shape == (120, 160, 3)
-    path.write_bytes(whole[: max(4, int(len(whole) * share) - 2)])
+    path.write_bytes(whole[: max(4, int(len(whole) * fraction) - 2)])
     assert "damaged or cut short" in refusal(path)
 
 
@@ -208,12 +208,12 @@ def test_what_follows_a_jpeg_is_ignored(tmp_path):
     np.testing.assert_array_equal(read_photo(path).pixels, expected)
 
 
-@pytest.mark.parametrize("share", [0.3, 0.8, 0.95])
+@pytest.mark.parametrize("fraction", [0.3, 0.8, 0.95])
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx"])
-def test_other_cut_files_are_refused(tmp_path, name, share):
+def test_other_cut_files_are_refused(tmp_path, name, fraction):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
     whole = write_image(tmp_path / name, noise, Compression="lossless" if name == "a.webp" else "none").read_bytes()
-    (tmp_path / name).write_bytes(whole[: int(len(whole) * share)])
+    (tmp_path / name).write_bytes(whole[: int(len(whole) * fraction)])
     assert "damaged or cut short" in refusal(tmp_path / name)
 
 

@@ -18,8 +18,8 @@ def parts(window):
 @pytest.fixture
 def smooth():
     """Smooth light with texture, in [0, 1]."""
-    rng, place = np.random.default_rng(0), np.linspace(0, 9, 227)
-    light = np.sin(place)[:, None] + np.cos(2 * place)[None, :] + 0.1 * rng.standard_normal((227, 227))
+    rng, position = np.random.default_rng(0), np.linspace(0, 9, 227)
+    light = np.sin(position)[:, None] + np.cos(2 * position)[None, :] + 0.1 * rng.standard_normal((227, 227))
     light = (light - light.min()) / np.ptp(light)
     return np.repeat(light[:, :, None], 3, axis=2).astype(np.float32)
 
@@ -56,7 +56,7 @@ def test_every_sample_is_in_the_histogram(smooth):
     np.testing.assert_allclose(parts(smooth)["histogram"].sum(axis=1), 227 * 227, rtol=1e-5)
 
 
-def test_a_flat_window_has_flat_neighbours_of_one_level_and_no_edge():
+def test_a_flat_window_has_flat_neighbors_of_one_level_and_no_edge():
     found = parts(np.ones((227, 227, 3), np.float32))
     histogram, gradients = found.pop("histogram"), found.pop("gradients")
     np.testing.assert_allclose(histogram[:, -1], 227 * 227)
@@ -138,7 +138,7 @@ def test_gray_says_nothing_between_channels():
     np.testing.assert_allclose(right, 0, atol=0.01)
 
 
-def test_half_resolution_is_compared_whatever_colour_the_samples_have_around_their_means():
+def test_half_resolution_is_compared_whatever_color_the_samples_have_around_their_means():
     """As in a JPEG, of which a block of 2 x 2 samples has one colour but for the rounding of its samples."""
     rng = np.random.default_rng(0)
     blocks = rng.integers(20, 230, (114, 114, 3))

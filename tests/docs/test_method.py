@@ -32,8 +32,8 @@ def exists(root, name):
     """
     parts = name.split(".")
     for size in range(len(parts), 0, -1):
-        place = root.joinpath(*parts[:size])
-        source = next((file for file in (place / "__init__.py", place.with_suffix(".py")) if file.is_file()), None)
+        path = root.joinpath(*parts[:size])
+        source = next((file for file in (path / "__init__.py", path.with_suffix(".py")) if file.is_file()), None)
         if source:
             return is_defined(ast.parse(source.read_text(encoding="utf-8")).body, parts[size:])
     return False

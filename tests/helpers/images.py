@@ -13,7 +13,14 @@ SAMPLE_TYPES = {"float16": "half", "float32": "float", "float64": "double"}
 
 
 def write_image(
-    path: Path, samples: NDArray[Any], *, names: tuple[str, ...] | str = (), depth: str = "", **attributes: Any
+    path: Path,
+    samples: NDArray[Any],
+    *more: NDArray[Any],
+    names: tuple[str, ...] | str = (),
+    depth: str = "",
+    origin: tuple[int, int] = (0, 0),
+    display: tuple[int, int, int, int] | None = None,
+    **attributes: Any,
 ) -> Path:
     """Write `samples` as they are, in the format that the suffix names, and return the path.
 
@@ -23,10 +30,16 @@ def write_image(
         The file; an existing one is replaced.
     samples : ndarray, shape (H, W, C)
         Code values or floats.
+    *more : ndarray, shape (H, W, C)
+        Further images for the same file, where its format can hold several.
     names : tuple of str or str, optional
         Names of the channels, such as "RGB" or ("X", "Z"); by default R, G, B and A, or Y.
     depth : str, optional
         OpenImageIO's name of the type in the file, such as "half"; by default that of the samples.
+    origin : tuple of int
+        Column and row at which the data window begins.
+    display : tuple of int, optional
+        The display window: its first column and row, its width and its height; by default the data window.
     **attributes
         What stands in the header. Two underscores in a name mean a colon, as in ``oiio__BitsPerSample=10``; a tuple is
         OpenImageIO's type and the value.
@@ -35,6 +48,8 @@ def write_image(
 
     height, width, channels = samples.shape
     spec = oiio.ImageSpec(width, height, channels, depth or SAMPLE_TYPES.get(samples.dtype.name, samples.dtype.name))
+    spec.x, spec.y = origin
+    spec.full_x, spec.full_y, spec.full_width, spec.full_height = display or (*origin, width, height)
     if names:
         spec.channelnames = tuple(names)
     for name, value in attributes.items():
@@ -42,8 +57,11 @@ def write_image(
         spec.attribute(name.replace("__", ":"), *words)
     output = oiio.ImageOutput.create(str(path))
     assert output is not None, oiio.geterror()
-    assert output.open(str(path), spec), output.geterror()
+    assert output.open(str(path), (spec,) * (1 + len(more))), output.geterror()
     assert output.write_image(np.ascontiguousarray(samples)), output.geterror()
+    for image in more:
+        assert output.open(str(path), spec, "AppendSubimage"), output.geterror()
+        assert output.write_image(np.ascontiguousarray(image)), output.geterror()
     output.close()
     return path
 

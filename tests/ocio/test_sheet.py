@@ -44,7 +44,7 @@ def test_the_same_estimate_gives_the_same_bytes(photo, estimate, tmp_path):
     assert b"tIME" not in content
 
 
-def test_shows_the_curve_in_its_colour(photo, estimate, tmp_path):
+def test_shows_the_curve_in_its_color(photo, estimate, tmp_path):
     sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
     left = read_codes(tmp_path / "a.png")[:, :900, :3]
     curve = np.array([0x0B, 0x66, 0xC3])

@@ -35,7 +35,8 @@ def exported(tmp_path_factory):
     return folder
 
 
-def test_onnxruntime_agrees_with_torch(exported):
+def test_onnxruntime_agrees_with_torch(exported, tolerance):
+    assert tolerance.parity == PARITY
     assert assert_parity(exported / "model", exported / "golden.npz") < PARITY
 
 

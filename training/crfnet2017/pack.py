@@ -16,7 +16,7 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.files import atomic_write, atomic_write_text
-from training.data.curves import read_dorf
+from training.data.curves import DORF_FILE, read_dorf
 from training.data.scenes import Scene, area_averaged, dithered, read_scenes
 from training.synthesis.camera import automatic_exposure, reference_luminance
 
@@ -66,7 +66,7 @@ def write_pack(data: Path, out: Path, split: str) -> Path:
     scenes = read_scenes(data / "linear", split)
     training = scenes if split == "train" else read_scenes(data / "linear", "train")
     luminance = reference_luminance(training)
-    curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    curves = read_dorf(data / DORF_FILE)
     exposures = [automatic_exposure(curve, luminance) for curve in tqdm(curves, desc="s_crf", disable=None)]
     out.mkdir(parents=True, exist_ok=True)
     with atomic_write(out / "curves.npz", overwrite=True) as temporary:

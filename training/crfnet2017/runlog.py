@@ -16,7 +16,7 @@ from torch import Tensor
 from crfnet_core.files import atomic_write, atomic_write_text
 
 #: Columns of log.csv.
-LOG_COLUMNS = ("step", "train_loss", "validation", "windows_per_s", "share_waiting")
+LOG_COLUMNS = ("step", "train_loss", "validation", "windows_per_s", "fraction_waiting")
 
 #: Resolution of curves.png.
 DOTS_PER_INCH = 110

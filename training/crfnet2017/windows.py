@@ -30,7 +30,7 @@ FLOAT16_CODES = 31744
 #: Photographs tried for one response, and positions tried in one photograph, before the next is tried.
 PHOTOGRAPHS_TRIED, POSITIONS_TRIED = 20, 12
 
-#: Every so many-th sample of a window is looked at first: where these fill enough bins, the window does.
+#: Step between the samples of a window that are looked at first: where these fill enough bins, the window does.
 SPARSE_STEP = 3
 
 

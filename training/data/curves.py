@@ -14,6 +14,9 @@ from crfnet_core.response import SAMPLES
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array
 
+#: The files of responses in a data folder: DoRF, the published EMoR basis, and in-camera tone curves.
+DORF_FILE, EMOR_FILE, BASE_CURVES_FILE = "dorf/201_CRF_data.mat", "dorf/emor.txt", "camera_curves/base_curves.csv"
+
 IRRADIANCE = np.linspace(0, 1, SAMPLES)
 
 #: Range of the headroom s that a camera leaves between its brightest JPEG value and the clipping of its sensor.

@@ -11,7 +11,7 @@ from crfnet_core.emor import BASIS_FILE, EmorBasis
 from crfnet_core.files import atomic_write
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array
-from training.data.curves import read_dorf
+from training.data.curves import DORF_FILE, EMOR_FILE, read_dorf
 
 #: Least |cosine| between each of the first five components and the published one.
 LEAST_COSINE = 0.999
@@ -20,10 +20,10 @@ LEAST_COSINE = 0.999
 def main() -> None:
     """Compute the basis, compare it with the published one, and write it."""
     parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--data", type=Path, required=True, help="folder with dorf/201_CRF_data.mat and dorf/emor.txt")
-    folder = parser.parse_args().data / "dorf"
-    basis = EmorBasis.from_curves(read_dorf(folder / "201_CRF_data.mat"))
-    published = read_published(folder / "emor.txt")
+    parser.add_argument("--data", type=Path, required=True, help=f"folder with {DORF_FILE} and {EMOR_FILE}")
+    data = parser.parse_args().data
+    basis = EmorBasis.from_curves(read_dorf(data / DORF_FILE))
+    published = read_published(data / EMOR_FILE)
     cosines = np.abs(np.sum(basis.components * published[1 : 1 + len(basis.components)], axis=1))
     print("|cosine| with the published components:", np.round(cosines, 5))
     print(f"mean differs by at most {np.abs(basis.mean - published[0]).max():.4f}")

@@ -14,13 +14,10 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import LINEAR_SIGNATURES, MAX_PIXELS, RAW_SUFFIXES, first_line
 from crfnet_core.windows import WINDOW_SIZE
-from training.data.scenes import LUMINANCE, area_averaged
+from training.data.scenes import BAND, LUMINANCE, area_averaged
 
 #: The automatic scale leaves the shorter side at least this many samples, room for windows of step 1 and 2.
 LEAST_SIDE = 2 * WINDOW_SIZE
-
-#: Fraction (numerator, denominator) of the rows of a panorama that is kept, around the horizon: poles are stretched.
-BAND = (4, 5)
 
 #: An HDR file, whose unit is arbitrary, is multiplied by the power of two that brings its median luminance nearest to
 #: this; larger values than half floats hold are clipped.
@@ -132,8 +129,10 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
     """Return the middle `BAND` of the rows of an equirectangular panorama; a PhotoError if it is not 2:1."""
     height, width, _ = samples.shape
     if width != 2 * height:
-        raise PhotoError(f"{path}: {width} x {height} is no whole panorama, twice as wide as high; bring a photograph")
-    rows = height * BAND[0] // BAND[1]
+        raise PhotoError(
+            f"{path}: {width} x {height} is no whole panorama, twice as wide as high; import it as a photograph"
+        )
+    rows = int(height * (BAND[1] - BAND[0]))
     top = (height - rows) // 2
     return samples[top : top + rows]
 

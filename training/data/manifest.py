@@ -18,14 +18,15 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.scenes import split_scenes
 from training.provenance import file_sha256
 
 #: The manifest of the data that the packaged models were trained and measured with.
 MANIFEST_FILE = Path(__file__).with_name("manifest.csv")
 
-#: The files of responses that training reads: DoRF, and the in-camera curves.
-CURVE_FILES = ("dorf/201_CRF_data.mat", "camera_curves/base_curves.csv")
+#: Comes with DoRF; nothing reads it.
+UNUSED = "dorf/invemor.txt"
 
 #: How files are used that belong to no split of the scenes.
 MEASURED_ONLY, SPLIT_BY_GROUP, TRAINED_ON, COMPARED_ONLY = (
@@ -34,6 +35,13 @@ MEASURED_ONLY, SPLIT_BY_GROUP, TRAINED_ON, COMPARED_ONLY = (
     "train",
     "compared only",
 )
+
+#: The tables that come with the data, and what each decides of the files that it names.
+TABLES = {
+    "linear/manifest.csv": "decides the split",
+    "real/cases.csv": "decides the grade",
+    "real_bodies/cases.csv": "decides grade, fold and use",
+}
 
 #: What is written for a file whose source states no licence.
 NO_LICENCE = "no licence stated"
@@ -51,13 +59,13 @@ class ManifestRow:
     file : str
         Path in the data folder, with slashes.
     kind : str
-        "scene", "real photograph", "measured response" (of a real photograph) or "responses".
+        "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table".
     source : str
         Repository and path, package, or owner.
     licence : str
         As the source states it.
     split : str
-        "train", "validation" or "test" of a scene; otherwise how the file is used.
+        "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used.
     sha256 : str
         Of the file.
     """
@@ -81,14 +89,15 @@ def manifest_rows(data: Path) -> list[ManifestRow]:
     CRFNetError
         If a file that the folder's own tables name is absent.
     """
-    unhashed = [*_curves(), *_scenes(data / "linear"), *_real(data / "real"), *_real_bodies(data / "real_bodies")]
+    listed = [*_scenes(data / "linear"), *_real(data / "real"), *_real_bodies(data / "real_bodies")]
+    unhashed = [*_curves(), *_tables(data), *listed]
     return sorted(_hashed(data, row) for row in set(unhashed))
 
 
 def training_digest(data: Path) -> str:
     """Return the SHA-256 over the manifest rows of the scenes and curves in the folder `data`."""
     unhashed = [*_curves(), *_scenes(data / "linear")]
-    chosen = [row for row in unhashed if row.kind == "scene" or row.file in CURVE_FILES]
+    chosen = [row for row in unhashed if row.kind == "scene" or row.file in (DORF_FILE, BASE_CURVES_FILE)]
     return hashlib.sha256(manifest_text(sorted(_hashed(data, row) for row in chosen)).encode()).hexdigest()
 
 
@@ -110,7 +119,7 @@ def read_manifest(path: Path = MANIFEST_FILE) -> list[ManifestRow]:
 def differences(data: Path, listed: Sequence[ManifestRow]) -> list[str]:
     """Return a line for every listed file that is absent or altered, and for every file beside them that is unlisted.
 
-    Scenes of one's own, which `training.data.import_scenes` adds, are unlisted.
+    Scenes of one's own, which `training.data.import_scenes` adds, are unlisted, and linear/manifest.csv is altered.
     """
     lines = []
     for row in listed:
@@ -120,10 +129,9 @@ def differences(data: Path, listed: Sequence[ManifestRow]) -> list[str]:
         elif file_sha256(path) != row.sha256:
             lines.append(f"altered: {row.file}")
     folders = {(data / row.file).parent for row in listed}
-    tables = {"manifest.csv", "cases.csv", "invemor.txt"}
-    known = {row.file for row in listed}
+    known = {row.file for row in listed} | {UNUSED}
     present = (path for folder in folders if folder.is_dir() for path in folder.iterdir() if path.is_file())
-    unlisted = {path.relative_to(data).as_posix() for path in present if path.name not in tables} - known
+    unlisted = {path.relative_to(data).as_posix() for path in present} - known
     return lines + [f"unlisted: {name}" for name in sorted(unlisted)]
 
 
@@ -137,13 +145,19 @@ def _hashed(data: Path, row: ManifestRow) -> ManifestRow:
 
 def _curves() -> list[ManifestRow]:
     """Return the rows, not hashed, of the files of responses."""
-    dorf, base_curves = CURVE_FILES
     licence = "GPL-3.0-or-later (darktable)"
     return [
-        ManifestRow(dorf, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
-        ManifestRow("dorf/emor.txt", "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
-        ManifestRow(base_curves, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
+        ManifestRow(DORF_FILE, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
+        ManifestRow(EMOR_FILE, "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
+        ManifestRow(BASE_CURVES_FILE, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
     ]
+
+
+def _tables(data: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the tables that the data folder holds."""
+    source = "written for this data: it names the files, their sources and their licences"
+    present = [(file, use) for file, use in TABLES.items() if (data / file).is_file()]
+    return [ManifestRow(file, "table", source, "facts", use, "") for file, use in present]
 
 
 def _scenes(folder: Path) -> list[ManifestRow]:

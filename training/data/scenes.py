@@ -20,8 +20,12 @@ SPLIT_SEED = 2017
 #: Number of scenes that are only measured on, and of those that recipes are chosen and uncertainties fitted on.
 TEST_SCENES, VALIDATION_SCENES = 20, 12
 
-#: The source of a scene that `training.data.import_scenes` added begins so in the manifest.csv of its folder.
-IMPORTED = "brought:"
+#: The source of a scene that `training.data.import_scenes` added begins so in the manifest.csv of its folder, and with
+#: the second word where an earlier version added it.
+IMPORTED, IMPORTED_EARLIER = "imported:", "brought:"
+
+#: The first and the last row of a panorama that are used, as fractions of its height: near its poles it is stretched.
+BAND = (0.1, 0.9)
 
 #: Weights of R, G and B in the luminance of linear Rec.709.
 LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
@@ -67,7 +71,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     """
     with (folder / "manifest.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    is_imported = [row.get("source", "").startswith(IMPORTED) for row in rows]
+    is_imported = [row.get("source", "").startswith((IMPORTED, IMPORTED_EARLIER)) for row in rows]
     listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
     scenes = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if not imported)
     more = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if imported and with_imported)

@@ -17,7 +17,7 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.types import Float64Array, IndexArray
-from training.data.curves import read_dorf
+from training.data.curves import DORF_FILE, read_dorf
 from training.data.scenes import SPLIT_SEED, split_scenes
 
 #: The splits that the packaged models were trained and measured with.
@@ -70,7 +70,7 @@ def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray
 
 def compute_splits(data: Path) -> dict[str, Any]:
     """Return the entries of splits.json for the scenes and curves in the folder `data`."""
-    dorf = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    dorf = read_dorf(data / DORF_FILE)
     scenes = split_scenes(data / "linear", with_imported=False)
     return {
         "seed": SPLIT_SEED,

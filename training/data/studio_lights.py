@@ -14,13 +14,10 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, atomic_write_text
-from training.data.scenes import Scene, read_scene
+from training.data.scenes import BAND, Scene, read_scene
 
 #: Where the repository keeps them.
 LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
-
-#: The first and the last row that are used, as fractions of the height: nearer to its poles a panorama is stretched.
-BAND = (0.1, 0.9)
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.response import ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
-from training.data.curves import IRRADIANCE, read_dorf
+from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
 from training.data.scenes import Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
 from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, read_light
@@ -85,7 +85,7 @@ def dorf_test_set(data: Path) -> TestSet:
         If the data is split otherwise than training/data/splits.json says.
     """
     held_out = checked_splits(data)["held_out_curves"]
-    curves = read_dorf(data / "dorf" / "201_CRF_data.mat")
+    curves = read_dorf(data / DORF_FILE)
     files = split_scenes(data / "linear", with_imported=False)["test"]
     scenes = tuple(
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)

@@ -18,7 +18,7 @@ from training.export.onnx_graph import POOLING, Signature
 GOLDEN_STATISTICS = Path(__file__).parents[2] / "tests" / "data" / "golden_statistics.npz"
 
 #: Largest difference allowed between PyTorch and onnxruntime, in weights (units of E_est) and log errors.
-PARITY = 2e-4
+PARITY = 1e-4
 
 
 def golden_windows() -> Float32Array:

@@ -32,6 +32,9 @@ HELD_OUT_CURVES = (
     "{count} of the 201 DoRF curves, and all mixtures with them, are left out: P2 below is measured on these."
 )
 
+#: What the card says of P2 if the report holds it.
+P2 = " P2: the same of responses held out of training."
+
 
 def introduction(folder: Path, config: ModelConfig) -> str:
     """Return what the card says before its figures."""
@@ -55,10 +58,10 @@ def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
     parts = [
         introduction(folder, config),
         "## Accuracy\n",
-        "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits. P2: the"
-        " same of responses held out of training. P4: real photographs with measured responses, means over bodies;"
-        " nothing was chosen on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's"
-        f" network has an E_est of {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
+        "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
+        f"{P2 if report.p2 else ''} P4: real photographs with measured responses, means over bodies; nothing was chosen"
+        " on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an E_est of"
+        f" {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
         accuracy_table(config.accuracy),
         bodies_table(report, config.name),
         "How it is made and measured: `training/README.md`.",

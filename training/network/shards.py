@@ -16,8 +16,8 @@ from tqdm import tqdm
 
 from crfnet_core.files import atomic_write
 from crfnet_core.statistics import window_statistics
-from training.data.curves import CurveSource, read_base_curves, read_dorf
-from training.data.manifest import CURVE_FILES, training_digest
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, read_base_curves, read_dorf
+from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
 from training.provenance import record_making
@@ -27,7 +27,7 @@ from training.synthesis.photographs import PhotographSource
 #: Photographs in a shard file.
 SHARD = 500
 
-#: Every so many-th sample of a response is kept as the target: 128 of 1024.
+#: Step between the samples of a response that are kept as the target: 128 of 1024.
 TARGET_STRIDE = 8
 
 #: Statistics are kept as float16, in units of this many samples.
@@ -76,10 +76,9 @@ class Shards:
 @cache
 def photograph_source(data: Path, split: str) -> PhotographSource:
     """Return the source of a split's photographs; the exposure always comes from the training scenes."""
-    dorf_file, base_curves_file = (data / name for name in CURVE_FILES)
-    dorf = read_dorf(dorf_file)
+    dorf = read_dorf(data / DORF_FILE)
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
-    bases = tuple(read_base_curves(base_curves_file).values())
+    bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
     sets = {
         CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
         CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),

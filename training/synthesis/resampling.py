@@ -22,7 +22,7 @@ STRETCH = 0.12
 #: light, as a sensor does.
 PREFILTER = 0.45
 
-#: A thumbnail keeps every so many-th sample along both sides.
+#: Step between the samples that a thumbnail keeps along both sides.
 THUMBNAIL_STEP = 4
 
 

@@ -90,8 +90,8 @@ def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, 
     make_bad_inputs(tmp_path / "in")
     (tmp_path / "in" / "truncated.jpg").write_bytes(plate.read_bytes()[:30000])
     before = tree(tmp_path)
-    places = {"in": tmp_path / "in", "out": tmp_path / "out", "plate": plate}
-    given = [argument.format(**places) for argument in arguments]
+    paths = {"in": tmp_path / "in", "out": tmp_path / "out", "plate": plate}
+    given = [argument.format(**paths) for argument in arguments]
     if command != "info" and "--out" not in given:
         given += ["--out", str(tmp_path / "out" / ("a.exr" if command == "linearize" else ""))]
     if command != "info" and "--model" not in given:

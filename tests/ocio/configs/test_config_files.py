@@ -72,8 +72,11 @@ class TestWriting:
     @pytest.mark.parametrize(
         ("check", "message"),
         [
-            ({"CRF plate01": inverse_response_lut(ResponseCurve.gamma(2.0))}, "converts other than its LUT by 0.27;"),
-            ({"CRF plate01": Lut1D(LUT.values[:-1], LUT.domain)}, "converts other than its LUT"),
+            (
+                {"CRF plate01": inverse_response_lut(ResponseCurve.gamma(2.0))},
+                "its conversion differs from its LUT by 0.27;",
+            ),
+            ({"CRF plate01": Lut1D(LUT.values[:-1], LUT.domain)}, "its conversion differs from its LUT"),
             ({"CRF plate02": LUT}, "CRF plate02: the config has no such colour space"),
         ],
     )

@@ -104,7 +104,7 @@ def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, v
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_neighbours_one_unit_apart_stay_apart(tmp_path, suffix):
+def test_neighbors_one_unit_apart_stay_apart(tmp_path, suffix):
     lut = Lut1D(strictly_increasing(np.full(200, 0.7)))
     write_lut(tmp_path / f"a{suffix}", lut)
     assert read_lut(tmp_path / f"a{suffix}") == lut

@@ -178,7 +178,7 @@ def test_what_cannot_be_found_is_named_with_a_remedy(tmp_path, name, frames, mes
 
 
 @pytest.mark.parametrize(
-    ("total", "count", "places"),
+    ("total", "count", "positions"),
     [
         (100, 8, [0, 14, 28, 42, 57, 71, 85, 99]),
         (8, 8, [0, 1, 2, 3, 4, 5, 6, 7]),
@@ -188,9 +188,9 @@ def test_what_cannot_be_found_is_named_with_a_remedy(tmp_path, name, frames, mes
         (1, 8, [0]),
     ],
 )
-def test_samples_are_evenly_spread(tmp_path, total, count, places):
+def test_samples_are_evenly_spread(tmp_path, total, count, positions):
     paths = tuple(tmp_path / f"{number}.png" for number in range(total))
-    assert sample_frames(FrameSequence(paths), count) == tuple(paths[place] for place in places)
+    assert sample_frames(FrameSequence(paths), count) == tuple(paths[position] for position in positions)
 
 
 @pytest.mark.parametrize(

@@ -120,13 +120,9 @@ def test_encoded_exr_uses_the_domain_of_the_lut(tmp_path, out):
 
 
 def test_encoded_exr_keeps_its_windows(tmp_path, out):
-    spec = oiio.ImageSpec(4, 3, 3, "half")
-    spec.x, spec.y, spec.full_x, spec.full_y, spec.full_width, spec.full_height = 5, -2, 0, 0, 20, 10
-    output = oiio.ImageOutput.create(str(tmp_path / "a.exr"))
-    assert output.open(str(tmp_path / "a.exr"), spec)
-    assert output.write_image(np.full((3, 4, 3), 0.5, np.float16))
-    output.close()
-    linearize(tmp_path / "a.exr", out / "a.exr", LUT)
+    gray = np.full((3, 4, 3), 0.5, np.float16)
+    plate = write_image(tmp_path / "a.exr", gray, origin=(5, -2), display=(0, 0, 20, 10))
+    linearize(plate, out / "a.exr", LUT)
     found = read_exr(out / "a.exr")[1]
     assert (found.x, found.y, found.width, found.height) == (5, -2, 4, 3)
     assert (found.full_x, found.full_y, found.full_width, found.full_height) == (0, 0, 20, 10)

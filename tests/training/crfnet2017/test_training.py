@@ -132,7 +132,7 @@ def test_the_first_stage_learns(pack):
 
 def test_a_run_logs_and_draws(run):
     header, row = (run / "log.csv").read_text().splitlines()
-    assert header == "step,train_loss,validation,windows_per_s,share_waiting"
+    assert header == "step,train_loss,validation,windows_per_s,fraction_waiting"
     assert row.startswith("2,")
     assert (run / "curves.png").read_bytes().startswith(b"\x89PNG")
     assert read_run(run)["recipe"]["recipe"]["batch"] == 2

@@ -28,9 +28,9 @@ def test_a_name_is_only_replaced_when_asked(tmp_path, out, capsys):
     other = write_float(tmp_path / "same.exr", np.full((230, 240, 3), 0.5))
     assert main([str(other), "--out", str(out)]) == 2
     assert "same.exr is there already; rename the file or ask to overwrite it" in capsys.readouterr().err
-    assert manifest(out)[0]["source"] == "brought: same.dng"
+    assert manifest(out)[0]["source"] == "imported: same.dng"
     assert main([str(other), "--out", str(out), "--overwrite"]) == 0
-    assert [(row["source"], row["width"]) for row in manifest(out)] == [("brought: same.exr", "240")]
+    assert [(row["source"], row["width"]) for row in manifest(out)] == [("imported: same.exr", "240")]
     assert read_image(out / "same.exr").shape == (230, 240, 3)
 
 
@@ -53,7 +53,7 @@ def test_the_manifest_keeps_what_it_holds(tmp_path, out):
     text = ",".join(COLUMNS) + '\nold.exr,photograph,600,400,elsewhere,CC0,"one, two"\n'
     (out / "manifest.csv").write_text(text)
     import_scene(write_dng(tmp_path / "new.dng", chart(ramp(1.0))), out)
-    expected = text + "new.exr,photograph,320,256,brought: new.dng,not stated,sensor white = 1\n"
+    expected = text + "new.exr,photograph,320,256,imported: new.dng,not stated,sensor white = 1\n"
     assert (out / "manifest.csv").read_text() == expected
 
 

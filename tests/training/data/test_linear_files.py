@@ -28,7 +28,7 @@ def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
 
 
 @pytest.mark.parametrize("camera", ["one", "two"])
-def test_raw_colours_are_the_scene_in_rec709(tmp_path, out, camera):
+def test_raw_colors_are_the_scene_in_rec709(tmp_path, out, camera):
     colours = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
     scene = chart(colours)
     import_scene(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
@@ -48,7 +48,7 @@ def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out
     np.testing.assert_allclose(values[2], np.minimum(1, 4 * values[0]), rtol=0.005, atol=2 * dark)
 
 
-def test_a_saturated_colour_clips_channel_by_channel_below_or_at_1(tmp_path, out):
+def test_a_saturated_color_clips_channel_by_channel_below_or_at_1(tmp_path, out):
     import_scene(write_dng(tmp_path / "red.dng", chart([[4.0, 0.4, 0.2]])), out)
     means = swatch_means(read_image(out / "red.exr"), SWATCH)[0, 0]
     assert means[0] == 1
@@ -67,7 +67,7 @@ def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out,
             "kind": "photograph",
             "width": "640",
             "height": "480",
-            "source": "brought: large.dng",
+            "source": "imported: large.dng",
             "licence": "CC0",
             "notes": "sensor white = 1; area-averaged 2x2 from 1280x960",
         }

@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.manifest import (
-    CURVE_FILES,
     MANIFEST_FILE,
     NO_LICENCE,
     ManifestRow,
@@ -43,7 +43,7 @@ def data(tmp_path):
     body = {"id": "two", "licence": "MIT (LICENSE)", "source_repo": "a/d", "source_dir": "e", "fold": "3"}
     body |= {"file": "photos/two.webp", "crop": "", "gt": "gt/two.csv"}
     write_table(folder / "real_bodies" / "cases.csv", [body])
-    names = [*CURVE_FILES, "dorf/emor.txt", *(f"linear/{scene['file']}" for scene in scenes)]
+    names = [DORF_FILE, BASE_CURVES_FILE, EMOR_FILE, *(f"linear/{scene['file']}" for scene in scenes)]
     names += ["real/input/one.jpg", "real/gt/one.csv", "real_bodies/photos/two.webp", "real_bodies/gt/two.csv"]
     for name in names:
         (folder / name).parent.mkdir(parents=True, exist_ok=True)
@@ -61,7 +61,7 @@ def written(data, tmp_path):
 
 def test_every_file_has_a_row_and_rows_are_sorted(data, written):
     rows = read_manifest(written)
-    assert len(rows) == 3 + 40 + 2 + 2
+    assert len(rows) == 3 + 3 + 40 + 2 + 2
     assert rows == sorted(rows) == manifest_rows(data)
     assert str(data) not in written.read_text()
     by_file = {row.file: row for row in rows}
@@ -74,6 +74,7 @@ def test_every_file_has_a_row_and_rows_are_sorted(data, written):
         "60a5827806738f73207efeb1f332e69846ed6dd9455546dc23c9f0b8a7777778",
     )
     assert by_file["real_bodies/photos/two.webp"].split == "measured only, fold 3"
+    assert by_file["real_bodies/cases.csv"].split == "decides grade, fold and use"
     assert by_file["real_bodies/photos/two.webp"].licence == "MIT (LICENSE)"
 
 
@@ -118,7 +119,7 @@ def test_the_committed_manifest_splits_the_scenes_as_splits_json():
 def test_the_committed_manifest_is_whole_and_as_the_command_writes_it():
     rows = read_manifest()
     assert manifest_text(sorted(rows)) == MANIFEST_FILE.read_text()
-    assert {row.file for row in rows} >= set(CURVE_FILES)
+    assert {row.file for row in rows} >= {DORF_FILE, EMOR_FILE, BASE_CURVES_FILE}
     assert all(row.source and row.licence and len(row.sha256) == 64 for row in rows)
     kinds, counts = np.unique([row.kind for row in rows], return_counts=True)
     assert dict(zip(kinds, counts, strict=True))["scene"] == 126

@@ -7,8 +7,8 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from training.data.scenes import LUMINANCE
-from training.data.studio_lights import BAND, LIGHTS, LIGHTS_FOLDER, copy_lights, read_light
+from training.data.scenes import BAND, LUMINANCE
+from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, copy_lights, read_light
 
 
 def test_the_lights_are_those_of_blender():

@@ -22,14 +22,14 @@ RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3)
 
 @pytest.fixture(scope="module")
 def shards(tmp_path_factory):
-    """Photographs whose histograms lean as much as the first EMoR weight says."""
+    """Photographs whose histograms shift in proportion to the first EMoR weight."""
     folder = tmp_path_factory.mktemp("shards")
     rng, basis = np.random.default_rng(0), EmorBasis.load()
     for split, number in (("train", 0), ("train", 1), ("validation", 0)):
         weights = np.zeros((256, 11))
         weights[:, 0] = rng.normal(0, 2, 256)
         statistics = rng.uniform(0, 1, (256, 2, LENGTH)).astype(np.float16)
-        parts = unpack(statistics)  # views
+        parts = unpack(statistics)
         parts["channel_equations"][:] = 0  # gray: random numbers would be no normal equations
         parts["histogram"][:] = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
         assert (statistics[0, 0, : 3 * LEVELS] == parts["histogram"][0, 0].ravel()).all()

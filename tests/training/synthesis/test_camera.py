@@ -24,7 +24,7 @@ def test_apply_response_is_the_curve_and_clips(rng):
     np.testing.assert_allclose(apply_response(irradiance, GAMMA), np.interp(irradiance, UNIFORM, GAMMA), atol=2e-5)
 
 
-def test_a_clean_photograph_is_the_quantised_response(scene, rng):
+def test_a_clean_photograph_is_the_quantized_response(scene, rng):
     irradiance = scene.pixels / scene.pixels.max()
     codes = simulate_capture(irradiance, GAMMA, Capture(), rng)
     assert codes.dtype == np.uint8

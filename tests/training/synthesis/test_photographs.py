@@ -38,7 +38,7 @@ def test_photographs_cover_the_range_and_repeat_with_the_seed(source):
         np.testing.assert_array_equal(one.curve, other.curve)
 
 
-def test_curves_come_from_the_sets_in_their_shares(source):
+def test_curves_come_from_the_sets_in_the_given_fractions(source):
     rng = np.random.default_rng(0)
     drawn = [source.draw_curve(rng) for _ in range(400)]
     for curve, chosen in drawn:

@@ -60,7 +60,7 @@ def test_rows_captured_one_after_the_other_equal_the_whole(rng, capture):
     np.testing.assert_array_equal(np.rint(255 * photo.pixels), whole)
 
 
-def test_what_looks_at_neighbours_is_captured_as_a_whole():
+def test_what_looks_at_neighbors_is_captured_as_a_whole():
     for capture in (Capture(blur=1), Capture(sharpening=0.1), Capture(jpeg_quality=90), Capture(0.1, 0.1, grain=0.1)):
         assert not capture.splits_into_rows
 
