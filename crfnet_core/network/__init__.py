@@ -8,7 +8,7 @@ uncertainty  from the error that the network expects to the uncertainty, the ban
 """
 
 from crfnet_core.network.inference import Answer, Predictions, ResponseNetwork
-from crfnet_core.network.model import DEFAULT_MODEL, MODELS, ModelConfig, model_folder
+from crfnet_core.network.model import DEFAULT_MODEL, MODELS, ModelConfig, model_folder, packaged_models
 from crfnet_core.network.uncertainty import UncertaintyModel, Verdict
 
 __all__ = [
@@ -21,4 +21,5 @@ __all__ = [
     "UncertaintyModel",
     "Verdict",
     "model_folder",
+    "packaged_models",
 ]

@@ -106,6 +106,11 @@ class ModelConfig:
         return f"{self.name} {self.sha256[:12]}"
 
 
+def packaged_models() -> list[Path]:
+    """Return the folders of the packaged models, sorted by name."""
+    return sorted(config.parent for config in MODELS.glob("*/model.json"))
+
+
 def model_folder(wanted: str | Path | None = None) -> Path:
     """Return the folder of a model: a path, or the name of a packaged model, of which the version may be left out.
 
@@ -115,8 +120,7 @@ def model_folder(wanted: str | Path | None = None) -> Path:
         return DEFAULT_MODEL
     if Path(wanted).is_dir():
         return Path(wanted)
-    packaged = [config.parent for config in MODELS.glob("*/model.json")]
-    named = [folder for folder in packaged if str(wanted) in (folder.name, folder.name.rpartition("-")[0])]
+    named = [folder for folder in packaged_models() if str(wanted) in (folder.name, folder.name.rpartition("-")[0])]
     return max(named, key=_version, default=Path(wanted))
 
 

@@ -46,7 +46,9 @@ def parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--protocol", nargs="+", choices=PROTOCOLS, help="all that the models allow by default")
     command.add_argument(
-        "--photographs", type=int, help="at most so many in P0 and P2: an even, seeded part (all, or 40 with --quick)"
+        "--photographs",
+        type=int,
+        help="the most photographs in P0 and P2: an even, seeded part (all, or 40 with --quick)",
     )
     command.add_argument("--stressed", type=int, help="photographs of P3 (200, or 5 with --quick)")
     command.add_argument("--workers", type=int, default=2, help="processes")

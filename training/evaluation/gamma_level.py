@@ -1,6 +1,6 @@
 """How the E_lin of gamma 2.2 depends on the exposure: ``python -m training.evaluation.gamma_level --data DATA``.
 
-Gamma 2.2 has the same E_est on our curves as in the paper, but an E_lin that is half as large again on our photographs.
+Gamma 2.2 has the same E_est on our curves as in the paper, but an E_lin that is 1.5 times as large on our photographs.
 E_lin weighs the error of the inverse response by how often a brightness occurs, so it grows with the exposure. This
 command prints by how much, and at which exposure gamma 2.2 has the paper's E_lin.
 """
@@ -24,7 +24,7 @@ from training.synthesis.camera import apply_response
 #: Factors on s_crf.
 FACTORS = (0.1, 0.15, 0.2, 0.25, 0.3, 0.4, 0.6, 0.8, 1.0, 1.2, 1.4)
 
-#: One in so many rows and columns of a scene is measured.
+#: Step between the rows and columns of a scene that are measured.
 STRIDE = 8
 
 GAMMA = ResponseCurve.gamma(2.2)

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.network import MODELS, ModelConfig, model_folder
+from crfnet_core.network import ModelConfig, model_folder, packaged_models
 from training.evaluation.plan import CONDITIONS, QUERIES, STRESS_PHOTOGRAPHS, Condition, Query
 from training.evaluation.report.content import MeasuredModel
 
@@ -51,7 +51,7 @@ class Model:
         """
         folder = model_folder(wanted)
         if not (folder / "model.json").is_file():
-            names = ", ".join(sorted(entry.parent.name for entry in MODELS.glob("*/model.json")))
+            names = ", ".join(folder.name for folder in packaged_models())
             raise CRFNetError(f"{wanted}: is no model folder; give its path, or one of {names}")
         config = ModelConfig.read(folder / "model.json")
         digest = hashlib.sha256(repr(config.uncertainty_model).encode()).hexdigest()[:16]
@@ -77,13 +77,13 @@ class Settings:
     protocols : tuple of str
         Some of `PROTOCOLS`.
     photographs : int
-        At most so many photographs in P0 and P2.
+        The most photographs in P0 and P2.
     workers : int
         Processes; 1 measures in this one.
     seed : int
         Of the choice of photographs, of dither, noise and bootstrap.
     stress_photographs : int
-        At most so many photographs in P3 under each condition, and no more than `photographs`.
+        The most photographs in P3 under each condition; also limited by `photographs`.
     conditions, queries : tuple
         Those of P3.
     """

@@ -16,7 +16,7 @@ from training.network.features import (
     Features,
 )
 
-#: Normalised features are clipped to so many standard deviations: a photograph may be unlike all training photographs.
+#: Standard deviations to which normalised features are clipped: a photograph may be unlike all training photographs.
 LARGEST_FEATURE = 6
 
 
