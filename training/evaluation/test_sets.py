@@ -48,8 +48,6 @@ class TestSet:
         The test scenes.
     curves : ndarray, float64, shape (N, 1024)
         True responses at 1024 uniform irradiances.
-    curve_names : tuple of str
-        Their N names.
     held_out : tuple of int
         Numbers of the responses that P2 holds out; empty where there is no such split.
     data : Path, optional
@@ -60,7 +58,6 @@ class TestSet:
 
     scenes: tuple[SceneFile, ...]
     curves: Float64Array
-    curve_names: tuple[str, ...]
     held_out: tuple[int, ...] = ()
     data: Path | None = None
 
@@ -91,14 +88,13 @@ def dorf_test_set(data: Path) -> TestSet:
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
     )
-    return TestSet(scenes, curves, tuple(f"DoRF {k}" for k in range(len(curves))), tuple(held_out), data)
+    return TestSet(scenes, curves, tuple(held_out), data)
 
 
 def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:
     """Return studio lights of Blender and responses made from formulas: what the repository itself holds."""
     scenes = tuple(SceneFile(Path(light.file).stem, "panorama", lights / light.file, True) for light in LIGHTS)
-    named = formula_curves()
-    return TestSet(scenes, np.stack(list(named.values())), tuple(named))
+    return TestSet(scenes, np.stack(list(formula_curves().values())))
 
 
 def formula_curves() -> dict[str, Float64Array]:
