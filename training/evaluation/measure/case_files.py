@@ -20,6 +20,7 @@ MEASURING_CODE = (
     "training/data/studio_lights.py",
     "training/synthesis/camera.py",
     "training/evaluation/baselines.py",
+    "training/evaluation/plan.py",
     "training/evaluation/measure/*.py",
 )
 
