@@ -92,8 +92,7 @@ def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCur
     def scaled(stops: float) -> ResponseCurve:
         top = logarithm * (at_shoulder + stops) / at_shoulder
         moved = np.where(brightness[1:] <= SHOULDER, logarithm + stops, top)
-        irradiance = np.concatenate([[0.0], np.exp2(moved)])
-        return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))
+        return _of_inverse(np.exp2(moved))
 
     def distance(stops: float) -> float:
         return float(np.linalg.norm(true.brightness - scaled(stops).brightness))
@@ -122,5 +121,10 @@ def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:
     """
     brightness = np.linspace(0, 1, SAMPLES)
     logarithms = [np.log(curve.inverse(brightness[1:])) for curve in curves]
-    irradiance = np.concatenate([[0.0], np.exp(np.mean(logarithms, axis=0))])
-    return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))
+    return _of_inverse(np.exp(np.mean(logarithms, axis=0)))
+
+
+def _of_inverse(irradiance: Float64Array) -> ResponseCurve:
+    """Return the response whose inverse has these irradiances, shape (1023,), at the uniform brightnesses above 0."""
+    brightness = np.linspace(0, 1, SAMPLES)
+    return ResponseCurve.from_samples(np.interp(IRRADIANCE, np.concatenate([[0.0], irradiance]), brightness))

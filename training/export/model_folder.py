@@ -7,7 +7,6 @@ uncertainty (`uncertainty`), model.json, and the record of the run beside it.
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 from pathlib import Path
 
@@ -22,7 +21,7 @@ from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded
 from training.export.uncertainty import NOT_FITTED, fit_uncertainty_model
 from training.network.model import NetworkConfig, PhotographNet, ShippedNetwork
-from training.provenance import RUN_FILE, Record, read_run, training_commit, write_json
+from training.provenance import RUN_FILE, Record, file_sha256, read_run, training_commit, write_json
 
 
 def load_network(run: Path) -> ShippedNetwork:
@@ -51,7 +50,7 @@ def write_config(folder: Path, signature: Signature, uncertainty_model: Uncertai
     is_without_held_out = record["recipe"].get("training", {}).get("without_held_out", False)
     config = ModelConfig(
         name=folder.name,
-        sha256=hashlib.sha256((folder / "model.onnx").read_bytes()).hexdigest(),
+        sha256=file_sha256(folder / "model.onnx"),
         basis="emor",
         components=COMPONENTS,
         window_size=WINDOW_SIZE,
