@@ -29,8 +29,8 @@ EQUATION_FEATURES = len(EQUATION_STRIDES) * (len(SMOOTHNESS) + 1) * EQUATION_LEV
 CANDIDATE_FEATURES = sum(math.prod(SHAPES[name]) for pair in COUNTS_OF.items() for name in pair)
 
 #: Pseudo-counts (docs/METHOD.md, Eq. 15): a mean is taken as if this number of samples of value 0 had been seen too,
-#: so that few samples say little. The first is for samples at a level and edges in a cell, the second for mixtures and shaded
-#: pairs under a candidate response.
+#: so that few samples say little. The first is for samples at a level and edges in a cell, the second for mixtures and
+#: shaded pairs under a candidate response.
 SAMPLE_PSEUDO_COUNT, CANDIDATE_PSEUDO_COUNT = 4.0, 50.0
 
 #: The same for the curvature: evidence, in squared codes, that it is 0 at a level.
