@@ -13,6 +13,10 @@ class ModelError(CRFNetError):
     """A model folder that is incomplete, altered or of another kind than expected."""
 
 
+class PriorError(CRFNetError):
+    """A prior that is absent or describes no shares of families."""
+
+
 class CurveError(CRFNetError):
     """Samples that describe no camera response."""
 

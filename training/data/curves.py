@@ -5,6 +5,7 @@ from __future__ import annotations
 import csv
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import scipy.io
@@ -41,6 +42,13 @@ def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
     """Return f(E) = sRGB(base(min(1, s E))), divided by f(1), shape (1024,), for the headroom s."""
     encoded = srgb_encode(np.clip(base(np.minimum(1, headroom * IRRADIANCE)), 0, 1))
     return encoded / encoded[-1]
+
+
+class DrawsResponses(Protocol):
+    """What draws responses."""
+
+    def draw(self, rng: np.random.Generator) -> Float64Array:
+        """Return one response, shape (1024,), from 0 to 1."""
 
 
 @dataclass(frozen=True)

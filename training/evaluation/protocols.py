@@ -14,7 +14,7 @@ from crfnet_core.types import Float64Array
 from training.evaluation.baselines import BASELINES
 from training.evaluation.measure.case_files import CaseFile, code_digest
 from training.evaluation.measure.real import measure_real
-from training.evaluation.measure.real_photographs import RealPhotograph, real_photographs
+from training.data.real.photographs import RealPhotograph, real_photographs
 from training.evaluation.measure.simulated import measure_simulated
 from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
 from training.evaluation.report.content import (

@@ -1,48 +1,104 @@
-"""The loss (docs/METHOD.md, Eq. 18): E_est of the responses, and the likelihood of the errors that are expected."""
+"""The loss (docs/METHOD.md, Eq. 19): the posterior of the truth among other responses, and the error of its mean."""
 
 from __future__ import annotations
 
 import torch
 from torch import Tensor
 
-from crfnet_core.emor import EmorBasis
-from training.network.shards import TARGET_STRIDE
+from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM, EVIDENCE_WEIGHTS
+from training.network.model import EvidenceTensors
 
-#: Weights of the loss of single windows, and of the likelihood of the errors, relative to the photographs' E_est.
-WINDOW_WEIGHT, EXPECTED_ERROR_WEIGHT = 0.3, 0.1
+#: Weight of the loss of single windows relative to that of photographs, and of the error of the posterior's mean
+#: relative to the negative logarithm of its density.
+WINDOW_WEIGHT, ERROR_WEIGHT = 0.3, 0.5
 
 
-class CurveLoss:
-    """E_est of photographs and windows, and the negative log likelihood of it under the expected error."""
+class EvidenceLoss:
+    """How probable evidence makes the truth among responses that the training photographs have.
 
-    def __init__(self) -> None:
-        basis = EmorBasis.load()
-        self.mean = torch.from_numpy(basis.mean[::TARGET_STRIDE]).float()
-        self.components = torch.from_numpy(basis.components[:, ::TARGET_STRIDE]).float()
+    The responses of all training photographs are the prior of training: the evidence is the factor between this prior
+    and the posterior, so the prior can be replaced afterwards.
 
-    def errors(self, weights: Tensor, curves: Tensor) -> Tensor:
-        """Return E_est, shape (...), of weights (..., 11) against responses (..., 128), which keep every 8th sample."""
-        squares = (self.mean + weights.float() @ self.components - curves) ** 2
-        return (squares.sum(dim=-1) * TARGET_STRIDE + 1e-6).sqrt()
+    Parameters
+    ----------
+    weights : Tensor, shape (M, 11)
+        EMoR weights of the responses that the truth competes with.
+    families : Tensor, int, shape (M,)
+        0 of an ordinary response, else 1 + its position in `STATED_ODDS`.
+    """
 
-    def __call__(self, predictions: tuple[Tensor, Tensor, Tensor, Tensor], present: Tensor, curves: Tensor) -> Tensor:
+    def __init__(self, weights: Tensor, families: Tensor) -> None:
+        self.weights, self.families = weights, families
+        self.is_explained = families < UNEXPLAINED
+
+    def __call__(
+        self, evidence: tuple[EvidenceTensors, EvidenceTensors], present: Tensor, weights: Tensor, families: Tensor
+    ) -> Tensor:
         """Return the loss of the outputs of `training.network.model.PhotographNet`.
 
         Parameters
         ----------
-        predictions : tuple of Tensor
-            Window weights (B, K, 11), window log errors (B, K), weights (B, 11) and log errors (B,).
+        evidence : tuple
+            Of the windows, (B, K, ...), and of the photographs, (B, ...).
         present : Tensor, bool, shape (B, K)
             Which windows count.
-        curves : Tensor, shape (B, 128)
-            The true responses.
+        weights, families : Tensor, shape (B, 11) and (B,)
+            The truth.
         """
-        window_weights, window_log_errors, weights, log_errors = predictions
-        windows = self._with_likelihood(window_weights, window_log_errors.float(), curves[:, None])
-        photographs = self._with_likelihood(weights, log_errors.float(), curves)
-        return photographs.mean() + WINDOW_WEIGHT * windows[present].mean()
+        windows, photographs = evidence
+        repeated = torch.arange(len(weights)).repeat_interleave(present.sum(1))
+        of_windows = self.of(
+            (windows[0][present], windows[1][present], windows[2][present]), weights[repeated], families[repeated]
+        )
+        return self.of(photographs, weights, families).mean() + WINDOW_WEIGHT * of_windows.mean()
 
-    def _with_likelihood(self, weights: Tensor, log_errors: Tensor, curves: Tensor) -> Tensor:
-        """Return the errors plus their negative log likelihood under exponentials of mean exp(log_errors)."""
-        errors = self.errors(weights, curves)
-        return errors + EXPECTED_ERROR_WEIGHT * (errors.detach() * (-log_errors).exp() + log_errors)
+    def of(self, evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
+        """Return the loss of evidence of N windows or photographs, shape (N,)."""
+        scores = self.scores(evidence)  # (N, M)
+        own = log_likelihoods(evidence, weights[:, None], families[:, None]).squeeze(1)
+        normalization = torch.logsumexp(torch.cat([scores, own[:, None]], dim=1), dim=1)
+        negative_log = normalization - own - torch.log(torch.tensor(float(scores.shape[1])))
+        return negative_log + ERROR_WEIGHT * self._errors(scores, weights) * (families < UNEXPLAINED)
+
+    def errors(self, evidence: EvidenceTensors, weights: Tensor) -> Tensor:
+        """Return the distance between the posterior's mean and the truth, shape (N,), in units of E_est."""
+        return self._errors(self.scores(evidence), weights)
+
+    def scores(self, evidence: EvidenceTensors) -> Tensor:
+        """Return the log likelihood of every response that the truth competes with, shape (N, M)."""
+        return log_likelihoods(evidence, self.weights[None], self.families[None])
+
+    def _errors(self, scores: Tensor, weights: Tensor) -> Tensor:
+        """Return the distance between the mean over the explained responses and the truth, shape (N,)."""
+        posterior = scores.masked_fill(~self.is_explained, -torch.inf).softmax(1)
+        return ((posterior @ self.weights - weights) ** 2).sum(1).add(1e-6).sqrt()
+
+
+#: The number of the family of pictures that no response explains.
+UNEXPLAINED = 3
+
+
+def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
+    """Return log likelihoods (N, M) of responses under evidence of N: what `Evidence.log_likelihoods` computes.
+
+    Parameters
+    ----------
+    evidence : tuple of Tensor
+        Of N windows or photographs.
+    weights : Tensor, shape (1 or N, M, 11)
+        EMoR weights.
+    families : Tensor, shape (1 or N, M)
+        Their families: see `EvidenceLoss`.
+    """
+    location, factor, log_odds = evidence
+    squares = _squares(weights[..., :EVIDENCE_WEIGHTS], location, factor)
+    exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
+    likelihoods = -exponent * torch.log1p(squares / DEGREES_OF_FREEDOM) * (families < UNEXPLAINED)
+    odds = torch.cat([torch.zeros_like(log_odds[:, :1]), log_odds], dim=1)  # (N, 4)
+    return likelihoods + torch.gather(odds, 1, families.expand(len(odds), -1))
+
+
+def _squares(weights: Tensor, location: Tensor, factor: Tensor) -> Tensor:
+    """Return the squared distances (N, M) of weights (1 or N, M, 5) from locations (N, 5), measured by the factors."""
+    turned = weights @ factor  # (N, M, 5)
+    return ((turned - (location[:, None] @ factor)) ** 2).sum(-1)

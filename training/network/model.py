@@ -1,4 +1,4 @@
-"""The photograph network: statistics of windows in, one response for all of them out."""
+"""The photograph network: statistics of windows in, evidence about the response out."""
 
 from __future__ import annotations
 
@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.emor import COMPONENTS
+from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from training.network.features import (
     CANDIDATE_FEATURES,
     EDGE_FEATURES,
@@ -18,6 +19,15 @@ from training.network.features import (
 
 #: Standard deviations to which normalised features are clipped: a photograph may be unlike all training photographs.
 LARGEST_FEATURE = 6
+
+#: Units of the first EMoR weights, about their standard deviations over the training responses.
+WEIGHT_UNITS = (3.0, 1.2, 0.7, 0.4, 0.25)
+
+#: Bound of the factor of a precision before its diagonal is made positive, which bounds it to 55 per unit.
+LARGEST_RAW = 4.0
+
+#: Evidence of N windows or photographs: locations (N, 5), factors of the precision (N, 5, 5), log-odds (N, 3).
+EvidenceTensors = tuple[Tensor, Tensor, Tensor]
 
 
 @dataclass(frozen=True)
@@ -86,22 +96,31 @@ class Embedding(nn.Module):
 
 
 class Head(nn.Module):
-    """A vector to EMoR weights and the logarithm of the expected estimation error."""
+    """A vector to evidence: a Student's t in the first EMoR weights, and log-odds of families (docs/METHOD.md, Eq. 18).
+
+    The location is stated in `WEIGHT_UNITS`; the factor of the precision is lower triangular with a positive diagonal.
+    """
 
     def __init__(self, inputs: int, config: NetworkConfig) -> None:
         super().__init__()
         self.trunk = _dense(inputs, config)
-        self.weights = nn.Linear(config.width, COMPONENTS)
-        self.log_error = nn.Linear(config.width, 1)
+        self.location = nn.Linear(config.width, EVIDENCE_WEIGHTS)
+        self.factor = nn.Linear(config.width, EVIDENCE_WEIGHTS**2)
+        self.log_odds = nn.Linear(config.width, len(STATED_ODDS))
+        self.register_buffer("units", torch.tensor(WEIGHT_UNITS))
+        self.register_buffer("below", torch.tril(torch.ones(EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), -1))
+        self.register_buffer("diagonal", torch.eye(EVIDENCE_WEIGHTS))
 
-    def forward(self, vectors: Tensor) -> tuple[Tensor, Tensor]:
-        """Return weights (N, 11) and log errors (N,)."""
+    def forward(self, vectors: Tensor) -> EvidenceTensors:
+        """Return locations (N, 5), factors (N, 5, 5) and log-odds (N, 3) of vectors (N, inputs)."""
         hidden = self.trunk(vectors)
-        return self.weights(hidden), self.log_error(hidden).squeeze(1)
+        raw = self.factor(hidden).unflatten(1, (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS)).clamp(-LARGEST_RAW, LARGEST_RAW)
+        factors = raw * self.below + raw.exp() * self.diagonal
+        return self.location(hidden) * self.units, factors / self.units[:, None], self.log_odds(hidden)
 
 
 class PhotographNet(nn.Module):
-    """Windows of photographs to EMoR weights and log expected errors, of each window and of each photograph.
+    """Windows of photographs to evidence: of each window and of each photograph.
 
     The pooling is learned (docs/METHOD.md, Eq. 17). The vector of a photograph has two parts: the mean of its windows'
     vectors, weighted by a score that each window earns, and the vector of the sum of its windows' statistics.
@@ -114,8 +133,8 @@ class PhotographNet(nn.Module):
         self.window = Head(config.width, config)
         self.photograph = Head(2 * config.width, config)
 
-    def forward(self, statistics: Tensor, present: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return window weights (B, K, 11), window log errors (B, K), weights (B, 11) and log errors (B,).
+    def forward(self, statistics: Tensor, present: Tensor) -> tuple[EvidenceTensors, EvidenceTensors]:
+        """Return the evidence of windows, (B, K, ...), and of photographs, (B, ...).
 
         Parameters
         ----------
@@ -130,23 +149,22 @@ class PhotographNet(nn.Module):
         windows, whole = vectors[:, :-1], vectors[:, -1]
         scores = self.score(windows).squeeze(-1).masked_fill(~present, -torch.inf)
         pooled = (scores.softmax(1)[..., None] * windows).sum(1)
-        weights, log_errors = self.window(windows.flatten(0, 1))
-        weights, log_errors = weights.unflatten(0, present.shape), log_errors.unflatten(0, present.shape)
-        return weights, log_errors, *self.photograph(torch.cat([pooled, whole], dim=1))
+        location, factor, log_odds = (part.unflatten(0, present.shape) for part in self.window(windows.flatten(0, 1)))
+        return (location, factor, log_odds), self.photograph(torch.cat([pooled, whole], dim=1))
 
 
 class ShippedNetwork(nn.Module):
-    """The network as it ships: the windows of one photograph, or of several photographs of one camera, as one set."""
+    """The network as it ships: the windows of one photograph, as one set."""
 
     def __init__(self, net: PhotographNet) -> None:
         super().__init__()
         self.net = net
 
-    def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
-        """Return weights (N, 11), log errors (N,), pooled ones (1, 11) and (1,), of statistics (N, LENGTH)."""
+    def forward(self, statistics: Tensor) -> tuple[Tensor, ...]:
+        """Return the evidence of each window, (N, ...), and of all of them, (1, ...), of statistics (N, LENGTH)."""
         present = torch.ones(1, statistics.shape[0], dtype=torch.bool)
-        weights, log_errors, pooled, pooled_log_error = self.net(statistics[None], present)
-        return weights[0], log_errors[0], pooled, pooled_log_error
+        windows, photograph = self.net(statistics[None], present)
+        return (*(part[0] for part in windows), *photograph)
 
 
 def _dense(inputs: int, config: NetworkConfig) -> nn.Sequential:

@@ -14,9 +14,12 @@ import torch
 from torch import Tensor
 from tqdm import tqdm
 
+from crfnet_core.emor import EmorBasis
 from crfnet_core.files import atomic_write
+from crfnet_core.posterior import STATED_ODDS, Family
 from crfnet_core.statistics import window_statistics
-from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, read_base_curves, read_dorf
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
+from training.data.families import EditedResponses, OneAtATime, log_like, nearly_linear
 from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
@@ -27,22 +30,38 @@ from training.synthesis.photographs import PhotographSource
 #: Photographs in a shard file.
 SHARD = 500
 
-#: Step between the samples of a response that are kept as the target: 128 of 1024.
-TARGET_STRIDE = 8
-
 #: Statistics are kept as float16, in units of this many samples.
 UNIT = 256
 
-#: Fraction of the photographs whose response is of the in-camera family; the others' are of DoRF.
-CAMERA_FRACTION = 0.45
-
 
 class CurveSet(IntEnum):
-    """The sets of responses: DoRF without the curves that P2 holds out, these curves, and in-camera curves."""
+    """The sets of responses: DoRF without the curves that P2 holds out, these curves, in-camera curves, and others."""
 
     DORF = 0
     HELD_OUT = 1
     IN_CAMERA = 2
+    EDITED = 3
+    LINEAR = 4
+    LOG = 5
+    UNEXPLAINED = 6
+
+
+#: Fractions of the photographs whose response is of DoRF (both sets together), and of each other set. All families are
+#: common enough to be learned; what they are worth in use is the prior's affair.
+OF_DORF = 0.5
+FRACTIONS = {
+    CurveSet.IN_CAMERA: 0.3,
+    CurveSet.EDITED: 0.1,
+    CurveSet.LINEAR: 0.04,
+    CurveSet.LOG: 0.06,
+    CurveSet.UNEXPLAINED: 0.0,
+}
+
+#: The family of a set as the network states it: 0 of an ordinary response, else 1 + its position in `STATED_ODDS`.
+STATED_FAMILIES = {
+    curve_set: STATED_ODDS.index(Family(curve_set.name.lower())) + 1
+    for curve_set in (CurveSet.LINEAR, CurveSet.LOG, CurveSet.UNEXPLAINED)
+}
 
 
 @dataclass(frozen=True)
@@ -53,24 +72,32 @@ class Shards:
     ----------
     statistics : Tensor, float16, shape (P, 4, LENGTH)
         Of the windows, in `UNIT`s.
-    curves : Tensor, float32, shape (P, 128)
-        Responses, every `TARGET_STRIDE`-th sample.
+    weights : Tensor, float32, shape (P, 11)
+        EMoR weights of the responses.
     curve_sets, folds : Tensor, int8, shape (P,)
         `CurveSet` of the response, and fold of the scenes.
     """
 
     statistics: Tensor
-    curves: Tensor
+    weights: Tensor
     curve_sets: Tensor
     folds: Tensor
+
+    @property
+    def families(self) -> Tensor:
+        """The families as the network states them, int64 (P,): see `STATED_FAMILIES`."""
+        families = torch.zeros(len(self.curve_sets), dtype=torch.int64)
+        for curve_set, family in STATED_FAMILIES.items():
+            families[self.curve_sets == curve_set] = family
+        return families
 
     def only(self, chosen: Tensor) -> Shards:
         """Return the photographs where `chosen`, bool (P,), is true."""
         return Shards(*(getattr(self, field.name)[chosen] for field in fields(self)))
 
     def batch(self, rows: Tensor) -> tuple[Tensor, Tensor]:
-        """Return statistics, float32 (B, 4, LENGTH), and responses (B, 128) of photographs."""
-        return self.statistics[rows].float() * UNIT, self.curves[rows]
+        """Return statistics, float32 (B, 4, LENGTH), and EMoR weights (B, 11) of photographs."""
+        return self.statistics[rows].float() * UNIT, self.weights[rows]
 
 
 @cache
@@ -79,17 +106,18 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
     dorf = read_dorf(data / DORF_FILE)
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
     bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
-    sets = {
+    in_camera = CurveSource(dorf, bases, camera_fraction=1)
+    sets: dict[CurveSet, DrawsResponses] = {
         CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
         CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
-        CurveSet.IN_CAMERA: CurveSource(dorf, bases, camera_fraction=1),
+        CurveSet.IN_CAMERA: in_camera,
+        CurveSet.EDITED: EditedResponses(in_camera),
+        CurveSet.LINEAR: OneAtATime(nearly_linear),
+        CurveSet.LOG: OneAtATime(log_like),
+        CurveSet.UNEXPLAINED: OneAtATime(nearly_linear),
     }
-    of_dorf, held_out = 1 - CAMERA_FRACTION, float(is_held_out.mean())
-    fractions = {
-        CurveSet.DORF: of_dorf * float((~is_held_out).mean()),
-        CurveSet.HELD_OUT: of_dorf * held_out,
-        CurveSet.IN_CAMERA: CAMERA_FRACTION,
-    }
+    held_out = float(is_held_out.mean())
+    fractions = {CurveSet.DORF: OF_DORF * (1 - held_out), CurveSet.HELD_OUT: OF_DORF * held_out, **FRACTIONS}
     luminance = reference_luminance(read_scenes(data / "linear", "train"))
     scenes = read_scenes(data / "linear", split)
     return PhotographSource(scenes, tuple(sets.values()), tuple(fractions.values()), luminance)
@@ -105,17 +133,17 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
         return path
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
-    curves: list[np.ndarray] = []
+    weights: list[np.ndarray] = []
     sets: list[tuple[int, int]] = []
     while len(rows) < SHARD:
         for photo in source.draw(rng)[: SHARD - len(rows)]:
             windows = photo.windows / np.float32(255)
             rows.append((np.stack([window_statistics(w) for w in windows]) / UNIT).astype(np.float16))
-            curves.append(photo.curve[::TARGET_STRIDE].astype(np.float32))
+            weights.append(EmorBasis.load().project(photo.curve).astype(np.float32))
             sets.append((photo.curve_set, photo.fold))
     with atomic_write(path) as temporary:
         curve_sets, folds = np.array(sets, np.int8).T
-        np.savez(temporary, statistics=np.stack(rows), curves=np.stack(curves), curve_sets=curve_sets, folds=folds)
+        np.savez(temporary, statistics=np.stack(rows), weights=np.stack(weights), curve_sets=curve_sets, folds=folds)
     return path
 
 

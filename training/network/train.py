@@ -12,14 +12,17 @@ from torch import Tensor
 from tqdm import tqdm
 
 from crfnet_core.files import atomic_write
-from training.network.loss import CurveLoss
+from training.network.loss import EvidenceLoss
 from training.network.model import NetworkConfig, PhotographNet
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
-from training.provenance import data_record, record_run
+from training.provenance import data_record, file_sha256, record_run
 from training.synthesis.photographs import FOLDS
 
 #: Largest norm of the gradient of a step.
 CLIP = 1.0
+
+#: Responses of training photographs that the truth competes with in the loss.
+COMPETITORS = 2048
 
 
 @dataclass(frozen=True)
@@ -38,6 +41,8 @@ class TrainingConfig:
         Whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds out.
     without_fold : int, optional
         The fold of the training scenes to leave out and to validate on, in place of the validation scenes.
+    mixed : bool
+        Whether to compute in bfloat16 where that is safe; slow on processors that emulate it.
     seed : int
         Of the initial weights and of the order of the photographs.
     """
@@ -49,6 +54,7 @@ class TrainingConfig:
     all_windows: float = 0.6
     without_held_out: bool = False
     without_fold: int | None = None
+    mixed: bool = True
     seed: int = 1
 
 
@@ -77,7 +83,7 @@ class TrainingState:
         self.epoch = entries["epoch"]
 
 
-def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig) -> Path:
+def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
     Parameters
@@ -85,9 +91,12 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     shards : Path
         Folder written by `training.network.shards`.
     run : Path
-        Folder of run.json, log.csv (epoch, training loss, E_est of validation windows and photographs) and last.pt.
+        Folder of run.json, log.csv and last.pt. The log has the epoch, the training loss, and of the validation
+        photographs the loss and the distance between the posterior's mean and the truth, in units of E_est.
     config, network
         The recipe and the sizes of the network.
+    init : Path, optional
+        A checkpoint whose weights the run starts from, as far as it has them.
 
     Raises
     ------
@@ -96,12 +105,14 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     """
     photographs, held_out = _split(shards, config)
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
-    recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.curves)}
-    record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start="random weights")
-    state = _start(network, config, len(photographs.curves))
+    recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.weights)}
+    record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start=_start_record(init))
+    state = _start(network, config, len(photographs.weights))
     if (run / "last.pt").exists():
         state.resume(run / "last.pt")
-    loss = CurveLoss()
+    elif init is not None:
+        state.net.load_state_dict(torch.load(init, weights_only=True)["net"], strict=False)
+    loss = _loss(photographs, config)
     while state.epoch < config.epochs:
         train_loss = _train_epoch(state, loss, photographs, config)
         window_error, error = validation_errors(state.net, loss, held_out)
@@ -111,17 +122,29 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     return run / "last.pt"
 
 
-def validation_errors(net: PhotographNet, loss: CurveLoss, shards: Shards) -> tuple[float, float]:
-    """Return the mean E_est of single windows and of whole photographs."""
+def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) -> tuple[float, float]:
+    """Return the mean loss of photographs, and the mean distance of the posterior's mean from explained responses."""
     net.eval()
-    windows, photographs = [], []
+    losses, errors = [], []
     with torch.inference_mode():
-        for rows in torch.arange(len(shards.curves)).split(250):
-            statistics, curves = shards.batch(rows)
-            window_weights, _, weights, _ = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
-            windows.append(loss.errors(window_weights, curves[:, None]).flatten())
-            photographs.append(loss.errors(weights, curves))
-    return float(torch.cat(windows).mean()), float(torch.cat(photographs).mean())
+        for rows in torch.arange(len(shards.weights)).split(250):
+            statistics, weights = shards.batch(rows)
+            families = shards.families[rows]
+            _, evidence = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
+            losses.append(loss.of(evidence, weights, families))
+            errors.append(loss.errors(evidence, weights)[families == 0])
+    return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
+
+
+def _loss(shards: Shards, config: TrainingConfig) -> EvidenceLoss:
+    """Return the loss in which the truth competes with responses of training photographs, drawn by the seed."""
+    chosen = torch.randperm(len(shards.weights), generator=torch.Generator().manual_seed(config.seed))[:COMPETITORS]
+    return EvidenceLoss(shards.weights[chosen], shards.families[chosen])
+
+
+def _start_record(init: Path | None) -> str:
+    """Return in words what a run starts from."""
+    return "random weights" if init is None else f"{init.name}, SHA-256 {file_sha256(init)}"
 
 
 def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
@@ -145,19 +168,20 @@ def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> 
     return TrainingState(net, optimizer, schedule)
 
 
-def _train_epoch(state: TrainingState, loss: CurveLoss, shards: Shards, config: TrainingConfig) -> float:
+def _train_epoch(state: TrainingState, loss: EvidenceLoss, shards: Shards, config: TrainingConfig) -> float:
     """Run one epoch, in an order that depends on the seed and the epoch only, and return the mean loss."""
     torch.manual_seed(config.seed * 1000 + state.epoch)
-    order = torch.randperm(len(shards.curves))
+    order = torch.randperm(len(shards.weights))
     batches = order[: len(order) // config.batch * config.batch].split(config.batch)
-    total = 0.0
+    total, families = 0.0, shards.families
     state.net.train()
     for rows in tqdm(batches, desc=f"epoch {state.epoch + 1}/{config.epochs}", leave=False, disable=None):
-        statistics, curves = shards.batch(rows)
+        statistics, weights = shards.batch(rows)
         present = _random_windows(statistics.shape[:2], config.all_windows)
-        with torch.autocast("cpu", torch.bfloat16):
-            predictions = state.net(statistics, present)
-        value = loss(predictions, present, curves)
+        with torch.autocast("cpu", torch.bfloat16, enabled=config.mixed):
+            windows, photographs = state.net(statistics, present)
+        evidence = tuple(part.float() for part in windows), tuple(part.float() for part in photographs)
+        value = loss(evidence, present, weights, families[rows])
         state.optimizer.zero_grad()
         value.backward()
         torch.nn.utils.clip_grad_norm_(state.net.parameters(), CLIP)
@@ -187,10 +211,15 @@ def main() -> None:
     parser.add_argument("--without-fold", type=int, choices=range(FOLDS), help="leave out and validate on these scenes")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
     parser.add_argument("--width", type=int, default=sizes.width)
+    parser.add_argument(
+        "--float32", dest="mixed", action="store_false", help="no bfloat16: faster on processors without AVX-512"
+    )
+    parser.add_argument("--init", type=Path, help="a checkpoint to start from, as far as it has the same layers")
     parser.add_argument("--seed", type=int, default=defaults.seed)
     options = vars(parser.parse_args())
     network = NetworkConfig(dropout=options.pop("dropout"), width=options.pop("width"))
-    last = train(options.pop("shards"), options.pop("run"), TrainingConfig(**options), network)
+    shards, run, init = (options.pop(name) for name in ("shards", "run", "init"))
+    last = train(shards, run, TrainingConfig(**options), network, init=init)
     print((last.parent / "log.csv").read_text(), end="")
 
 

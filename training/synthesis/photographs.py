@@ -8,7 +8,7 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
-from training.data.curves import CurveSource
+from training.data.curves import DrawsResponses
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, recolor, relight
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
@@ -63,7 +63,7 @@ class PhotographSource:
     ----------
     scenes : list of Scene
         The scenes of one split.
-    curve_sets : tuple of CurveSource
+    curve_sets : tuple of DrawsResponses
         Responses, in sets of which a training run may leave some out.
     fractions : tuple of float
         Fraction of the photographs with each set; their sum is 1.
@@ -74,7 +74,7 @@ class PhotographSource:
     """
 
     scenes: list[Scene]
-    curve_sets: tuple[CurveSource, ...]
+    curve_sets: tuple[DrawsResponses, ...]
     fractions: tuple[float, ...]
     luminance: Float32Array
     cameras: int = 3

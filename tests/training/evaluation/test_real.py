@@ -15,7 +15,8 @@ from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.response import ResponseCurve
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.real import measure_real
-from training.evaluation.measure.real_photographs import mean_of_other_bodies, real_photographs
+from training.data.real.photographs import real_photographs
+from training.evaluation.measure.real import mean_of_other_bodies
 from training.evaluation.protocols import Evaluation
 from training.evaluation.report.accuracy import accuracy, bodies_table
 from training.evaluation.report.real.photographs import worst

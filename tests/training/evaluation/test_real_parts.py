@@ -12,8 +12,8 @@ from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.response import ResponseCurve
 from training.evaluation.baselines import nearest_of, with_best_headroom
 from training.evaluation.measure.figures import PhotographFigures
-from training.evaluation.measure.file_origin import Editing, editing, is_scaled
-from training.evaluation.measure.real_photographs import RealPhotograph
+from training.data.real.file_origin import Editing, editing, is_scaled
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.real.content import TrustedWrongly
 from training.evaluation.summaries.emor_weights import fitted_weights, weight_correlations
 from training.evaluation.summaries.trust import trusted_wrongly

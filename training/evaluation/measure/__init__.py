@@ -4,7 +4,5 @@
 - `case_files`: these figures on disk, so that an interrupted evaluation goes on.
 - `jobs`: a part of the simulated photographs, taken and measured by one process.
 - `simulated`: all simulated photographs, on several processes.
-- `file_origin`: whether the file of a real photograph was edited or scaled.
-- `real_photographs`: the folders of real photographs with measured responses, and the mean of other bodies.
 - `real`: all real photographs.
 """

@@ -18,12 +18,13 @@ from training.evaluation.baselines import (
     ORACLE_HEADROOM,
     OTHER_BODIES,
     constant_curves,
+    mean_in_log_irradiance,
     nearest_of,
     with_best_headroom,
 )
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import all_baselines, model_figures
-from training.evaluation.measure.real_photographs import RealPhotograph, mean_of_other_bodies
+from training.data.real.photographs import RealPhotograph
 from training.synthesis.camera import code_counts
 
 
@@ -81,3 +82,29 @@ def _of_real_cameras(others: ResponseCurve, true: ResponseCurve, known: Float64A
         ORACLE_HEADROOM: with_best_headroom(others, true),
         ORACLE_DORF: nearest_of(known, true),
     }
+
+
+def mean_of_other_bodies(
+    photograph: RealPhotograph, photographs: Sequence[RealPhotograph], truths: dict[Path, ResponseCurve]
+) -> ResponseCurve:
+    """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
+
+    This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
+    that need caution are no part of it. Where there is no other body it is gamma 2.2.
+
+    Parameters
+    ----------
+    photograph : RealPhotograph
+        Whose fold is left out.
+    photographs : sequence of RealPhotograph
+        All of the folder.
+    truths : dict
+        File of a measured response -> response.
+    """
+    bodies: dict[str, dict[Path, ResponseCurve]] = {}
+    for other in photographs:
+        if other.is_in_mean and other.fold != photograph.fold:
+            bodies.setdefault(other.body_key, {})[other.measured] = truths[other.measured]
+    if not bodies:
+        return ResponseCurve.gamma(2.2)
+    return mean_in_log_irradiance([mean_in_log_irradiance(list(curves.values())) for curves in bodies.values()])

@@ -10,7 +10,7 @@ import numpy as np
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import PhotographFigures
-from training.evaluation.measure.real_photographs import RealPhotograph
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.errors import Interval, PerError
 from training.evaluation.report.real.content import BodySummary, RealFigures, RealReport, RealRow
 from training.evaluation.summaries.bootstrap import Resampling

@@ -10,7 +10,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array, IndexArray
 from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures
-from training.evaluation.measure.real_photographs import RealPhotograph
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.errors import Interval
 from training.evaluation.summaries.bootstrap import Resampling, interval
 

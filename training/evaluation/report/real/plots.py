@@ -13,7 +13,7 @@ from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Uint8Array
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures
-from training.evaluation.measure.real_photographs import RealPhotograph
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.plots import color, save
 from training.evaluation.summaries.bodies import RealTable
 

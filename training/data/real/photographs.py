@@ -3,15 +3,13 @@
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from crfnet_core.response import ResponseCurve
-from training.evaluation.baselines import mean_in_log_irradiance
-from training.evaluation.measure.file_origin import Editing, editing, is_scaled
+from training.data.real.file_origin import Editing, editing, is_scaled
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -142,29 +140,3 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         photograph=folder / row["file"],
         measured=folder / row["gt"],
     )
-
-
-def mean_of_other_bodies(
-    photograph: RealPhotograph, photographs: Sequence[RealPhotograph], truths: dict[Path, ResponseCurve]
-) -> ResponseCurve:
-    """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
-
-    This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
-    that need caution are no part of it. Where there is no other body it is gamma 2.2.
-
-    Parameters
-    ----------
-    photograph : RealPhotograph
-        Whose fold is left out.
-    photographs : sequence of RealPhotograph
-        All of the folder.
-    truths : dict
-        File of a measured response -> response.
-    """
-    bodies: dict[str, dict[Path, ResponseCurve]] = {}
-    for other in photographs:
-        if other.is_in_mean and other.fold != photograph.fold:
-            bodies.setdefault(other.body_key, {})[other.measured] = truths[other.measured]
-    if not bodies:
-        return ResponseCurve.gamma(2.2)
-    return mean_in_log_irradiance([mean_in_log_irradiance(list(curves.values())) for curves in bodies.values()])

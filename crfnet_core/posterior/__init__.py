@@ -1,0 +1,31 @@
+"""From evidence to an answer: a bank of responses, a prior over their families, and the posterior.
+
+- `families`: where responses come from.
+- `responses`: the bank.
+- `prior`: how likely each family is before the photograph is looked at.
+- `evidence`: what a network says of a photograph, as a likelihood of responses.
+- `posterior`: prior times evidence, the answer of least expected error, and how far to trust it.
+"""
+
+from crfnet_core.posterior.evidence import Evidence, independent_share, scene_similarities
+from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, STATED_ODDS, UNUSUAL, Family
+from crfnet_core.posterior.posterior import Posterior
+from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
+from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
+
+__all__ = [
+    "BANK_FILE",
+    "DEFAULT_PRIOR",
+    "FAMILY_WORDS",
+    "IN_CAMERA",
+    "STATED_ODDS",
+    "UNUSUAL",
+    "Evidence",
+    "Family",
+    "Posterior",
+    "Prior",
+    "ResponseBank",
+    "independent_share",
+    "packaged_priors",
+    "scene_similarities",
+]

@@ -1,0 +1,84 @@
+"""The evidence of a photograph: how likely each response makes what the network read in it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.posterior.families import STATED_ODDS, Family
+from crfnet_core.posterior.responses import ResponseBank
+from crfnet_core.types import Float64Array
+
+#: EMoR weights that evidence is about: the others hardly change a photograph.
+EVIDENCE_WEIGHTS = 5
+
+#: Degrees of freedom of the evidence: tails heavier than a Gaussian's, so that no photograph outvotes everything else.
+DEGREES_OF_FREEDOM = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """A likelihood of responses, up to a factor: Student's t in their first EMoR weights, times odds of families.
+
+    Parameters
+    ----------
+    location : ndarray, float64, shape (5,)
+        The EMoR weights that explain the photograph best.
+    factor : ndarray, float64, shape (5, 5)
+        A factor of the precision matrix P = factor @ factor.T.
+    log_odds : ndarray, float64, shape (3,)
+        Logarithms of the likelihoods of the families `STATED_ODDS` against all others together.
+    """
+
+    location: Float64Array
+    factor: Float64Array
+    log_odds: Float64Array
+
+    def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
+        """Return the log likelihood of every response of a bank, shape (N,): Eq. 22 of docs/METHOD.md."""
+        offsets = (bank.weights[:, :EVIDENCE_WEIGHTS] - self.location) @ self.factor
+        squares = np.sum(offsets**2, axis=1)
+        exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
+        likelihoods = -exponent * np.log1p(squares / DEGREES_OF_FREEDOM)
+        for family, log_odds in zip(STATED_ODDS, self.log_odds, strict=True):
+            likelihoods[bank.of(family)] += log_odds
+        return np.asarray(likelihoods)
+
+    @property
+    def unexplained(self) -> float:
+        """The log likelihood of a picture that no response explains."""
+        return float(self.log_odds[STATED_ODDS.index(Family.UNEXPLAINED)])
+
+
+def independent_share(similarities: Float64Array) -> float:
+    """Return what fraction of the photographs' evidence is independent: Eq. 23 of docs/METHOD.md.
+
+    Photographs of one scene repeat each other's errors. With similarities r between 0 and 1, n photographs count as
+    n^2 / sum(r) independent ones: n if all differ, one if all are alike.
+
+    Parameters
+    ----------
+    similarities : ndarray, shape (n, n)
+        Between each two photographs; 1 on the diagonal.
+    """
+    return float(len(similarities) / np.sum(similarities))
+
+
+def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
+    """Return how alike the scenes of photographs are, shape (n, n): the correlations of their thumbnails, at least 0.
+
+    Parameters
+    ----------
+    thumbnails : sequence of ndarray, shape (16, 16)
+        Ranks of brightness on a coarse grid, which no exposure or response changes.
+    """
+    if len(thumbnails) == 1:
+        return np.ones((1, 1))
+    rows = np.stack([thumbnail.ravel() for thumbnail in thumbnails])
+    rows = rows - rows.mean(axis=1, keepdims=True)
+    lengths = np.maximum(np.linalg.norm(rows, axis=1), 1e-9)
+    similarities = np.maximum(rows @ rows.T / np.outer(lengths, lengths), 0)
+    np.fill_diagonal(similarities, 1)
+    return np.asarray(similarities)

@@ -1,0 +1,131 @@
+"""The posterior: prior times evidence over the bank, and what follows from it."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from crfnet_core.posterior.evidence import Evidence
+from crfnet_core.posterior.families import Family
+from crfnet_core.posterior.prior import Prior
+from crfnet_core.posterior.responses import SHAPE_SAMPLES, ResponseBank
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
+
+#: The fraction of the posterior that the band holds at every irradiance, and the irradiances at which it is computed.
+BAND, BAND_KNOTS = 0.9, 65
+
+
+@dataclass(frozen=True, eq=False)
+class Posterior:
+    """Weights over a bank of responses.
+
+    Parameters
+    ----------
+    bank : ResponseBank
+        The responses.
+    weights : ndarray, float64, shape (N,)
+        The probability of each response, given that one of them is right; their sum is 1.
+    unexplained : float
+        The probability that none of them is.
+    """
+
+    bank: ResponseBank
+    weights: Float64Array
+    unexplained: float
+
+    @classmethod
+    def of(
+        cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
+    ) -> Posterior:
+        """Return the posterior: Eq. 24 of docs/METHOD.md.
+
+        Parameters
+        ----------
+        bank : ResponseBank
+            The responses.
+        prior : Prior
+            Shares of the families.
+        evidences : sequence of Evidence
+            One of each photograph; without any, this is the prior.
+        independent : float
+            Fraction of the evidence that is independent, in (0, 1]: see `independent_share`.
+        """
+        exponent = prior.evidence * independent
+        logarithms = _log_prior(bank, prior)
+        unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
+        for evidence in evidences:
+            logarithms = logarithms + exponent * evidence.log_likelihoods(bank)
+            unexplained += exponent * evidence.unexplained
+        largest = logarithms.max()
+        weights = np.exp(logarithms - largest)
+        total = weights.sum()
+        log_explained = largest + np.log(total)
+        return cls(bank, weights / total, float(1 / (1 + np.exp(min(log_explained - unexplained, 700.0)))))
+
+    @cached_property
+    def families(self) -> dict[Family, float]:
+        """The probability of every family; their sum is 1."""
+        explained = {family: float(self.weights[self.bank.of(family)].sum()) for family in Family}
+        shares = {family: share * (1 - self.unexplained) for family, share in explained.items()}
+        return shares | {Family.UNEXPLAINED: self.unexplained}
+
+    @cached_property
+    def curve(self) -> ResponseCurve:
+        """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25."""
+        irradiance = np.exp2(self.weights @ self.bank.log_irradiance)
+        irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
+        uniform = np.linspace(0, 1, SAMPLES)
+        return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
+
+    @cached_property
+    def expected_error(self) -> float:
+        """The expected E_est of the answer."""
+        return float(self.weights @ np.linalg.norm(self.bank.brightness - self.curve.brightness, axis=1))
+
+    @cached_property
+    def expected_shape_error(self) -> float:
+        """The expected shape error of the answer, in stops."""
+        codes = np.linspace(0, 1, SAMPLES)[SHAPE_SAMPLES]
+        offsets = self.bank.log_irradiance[:, SHAPE_SAMPLES] - np.log2(self.curve.inverse(codes))
+        return float(self.weights @ offsets.std(axis=1))
+
+    @cached_property
+    def mean_weights(self) -> Float64Array:
+        """The mean EMoR weights, shape (11,)."""
+        return self.weights @ self.bank.weights
+
+    @cached_property
+    def expected_distance(self) -> float:
+        """The expected distance of the EMoR weights from their mean: about the expected E_est, at less cost."""
+        return float(self.weights @ np.linalg.norm(self.bank.weights - self.mean_weights, axis=1))
+
+    def band(self) -> Float64Array:
+        """Return the lower and upper end, shape (2, 1024), of the credible band that holds `BAND` at each irradiance."""
+        knots = np.linspace(0, SAMPLES - 1, BAND_KNOTS).round().astype(int)
+        values = self.bank.brightness[:, knots].astype(np.float64)
+        order = np.argsort(values, axis=0)
+        ordered = np.take_along_axis(values, order, axis=0)
+        cumulative = np.cumsum(self.weights[order], axis=0) - self.weights[order] / 2
+        levels = ((1 - BAND) / 2, (1 + BAND) / 2)
+        ends = [[np.interp(level, cumulative[:, k], ordered[:, k]) for k in range(BAND_KNOTS)] for level in levels]
+        uniform = np.arange(SAMPLES)
+        return np.stack([np.interp(uniform, knots, end) for end in ends])
+
+
+def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:
+    """Return the logarithm of every response's probability before a photograph is seen, shape (N,)."""
+    logarithms = np.empty(len(bank.families))
+    for family in Family:
+        members = bank.of(family)
+        if members.any():
+            logarithms[members] = _log(prior.shares.get(family, 0.0) / members.sum())
+    return logarithms
+
+
+def _log(share: float) -> float:
+    """Return the logarithm of a share; that of 0 is so low that no evidence brings it back."""
+    return float(np.log(max(share, 1e-300)))

@@ -1,0 +1,83 @@
+"""The prior: how likely each family of responses is before the photograph is looked at."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from crfnet_core.errors import PriorError
+from crfnet_core.posterior.families import Family
+
+#: The packaged priors, and the one that is used unless another is asked for.
+PRIORS = Path(__file__).parents[1] / "data" / "priors"
+DEFAULT_PRIOR = "camera"
+
+
+@dataclass(frozen=True)
+class Prior:
+    """Shares of the families, and how much the evidence of a photograph counts against them.
+
+    Parameters
+    ----------
+    name : str
+        What it is called in reports.
+    shares : dict
+        Family -> share; at least 0, and their sum is 1.
+    evidence : float
+        Exponent on the likelihood, in [0, 1]. Evidence is learned from simulated photographs; on real ones it is worth
+        less, and this is how much.
+    """
+
+    name: str
+    shares: Mapping[Family, float]
+    evidence: float
+
+    @classmethod
+    def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
+        """Return a packaged prior by its name, or the one in a JSON file.
+
+        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.5}`; families that it leaves out have no share.
+
+        Raises
+        ------
+        PriorError
+            If there is no such prior, or the file is none.
+        """
+        path = PRIORS / f"{wanted}.json"
+        path = path if path.is_file() else Path(wanted)
+        try:
+            entries = json.loads(path.read_text(encoding="utf-8"))
+        except OSError as problem:
+            names = ", ".join(packaged_priors())
+            raise PriorError(f"{wanted}: no prior ({problem.strerror}); give {names} or a JSON file") from None
+        except ValueError:
+            raise PriorError(f"{path}: is not JSON; see crfnet_core/data/priors for examples") from None
+        return cls._of_entries(path, entries)
+
+    @classmethod
+    def _of_entries(cls, path: Path, entries: object) -> Prior:
+        """Return the prior that a JSON file describes, or say what is wrong with it."""
+        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.5}'
+        if not isinstance(entries, dict) or set(entries) != {"shares", "evidence"}:
+            raise PriorError(f"{path}: {example}")
+        shares, evidence = entries["shares"], entries["evidence"]
+        if not isinstance(shares, dict) or not set(shares) <= set(Family):
+            raise PriorError(f"{path}: shares are of {', '.join(Family)}")
+        numbers = [*shares.values(), evidence]
+        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-1]):
+            raise PriorError(f"{path}: shares and evidence are numbers from 0 to 1, and one share is above 0")
+        total = sum(shares.values())
+        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, float(evidence))
+
+    def given(self, factors: Mapping[Family, float]) -> Prior:
+        """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""
+        shares = {family: share * factors.get(family, 1.0) for family, share in self.shares.items()}
+        total = sum(shares.values())
+        return Prior(self.name, {family: share / total for family, share in shares.items()}, self.evidence)
+
+
+def packaged_priors() -> list[str]:
+    """Return the names of the packaged priors, sorted."""
+    return sorted(path.stem for path in PRIORS.glob("*.json"))

@@ -1,0 +1,73 @@
+"""The bank of responses: the answers that an estimate weighs."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache, cached_property
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.emor import EmorBasis
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.posterior.families import Family
+from crfnet_core.response import SAMPLES
+from crfnet_core.types import BoolArray, Float32Array, Float64Array
+
+#: The packaged bank; ``python -m training.data.response_bank`` computes it.
+BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
+
+#: Brightness is stored in this many steps.
+STORED_STEPS = 65535
+
+#: Irradiance at which logarithms are cut off: 2^-16, below the noise of any sensor.
+LEAST_IRRADIANCE = 2.0**-16
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseBank:
+    """Responses of every family; those of one family are equally likely before a photograph is seen.
+
+    Parameters
+    ----------
+    brightness : ndarray, float32, shape (N, 1024)
+        Responses at uniform irradiances, non-decreasing from 0 to 1.
+    families : tuple of Family
+        The family of each.
+    """
+
+    brightness: Float32Array
+    families: tuple[Family, ...]
+
+    @classmethod
+    @cache
+    def load(cls) -> ResponseBank:
+        """Return the packaged bank."""
+        with np.load(BANK_FILE) as arrays:
+            steps, numbers = arrays["steps"], arrays["families"]
+        brightness = np.cumsum(steps, axis=1, dtype=np.uint16) / np.float32(STORED_STEPS)
+        members = list(Family)
+        return cls(brightness.astype(np.float32), tuple(members[number] for number in numbers))
+
+    def of(self, family: Family) -> BoolArray:
+        """Return which responses belong to a family, bool (N,)."""
+        return np.array([member is family for member in self.families])
+
+    @cached_property
+    def weights(self) -> Float64Array:
+        """EMoR weights of the responses, shape (N, 11)."""
+        return EmorBasis.load().project(self.brightness)
+
+    @cached_property
+    def log_irradiance(self) -> Float32Array:
+        """Logarithms, base 2, of the inverse responses at 1024 uniform brightnesses, shape (N, 1024)."""
+        codes = np.linspace(0, 1, SAMPLES)
+        rising = np.linspace(0, 1e-6, SAMPLES)  # makes flat parts strictly increasing
+        inverses = [np.interp(codes, (row + rising) / (1 + 1e-6), codes) for row in self.brightness]
+        return np.log2(np.maximum(np.stack(inverses), LEAST_IRRADIANCE)).astype(np.float32)
+
+
+#: Positions, of 1024 uniform brightnesses, between which the shape of a response matters: see `metrics.shape_error`.
+SHAPE_SAMPLES = slice(
+    round(FIRST_SHAPE_CODE / 255 * (SAMPLES - 1)), round(LAST_SHAPE_CODE / 255 * (SAMPLES - 1)) + 1, 4
+)

@@ -1,0 +1,111 @@
+"""Draws of responses of every family, to train on and for the bank of the posterior."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.posterior import Family
+from crfnet_core.types import Float64Array
+from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses
+
+#: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
+EDIT_AMOUNT = (-1.0, 0.8)
+
+#: Range of the powers of nearly linear data, of the factor a of log curves log(1 + a E), and of the black that log
+#: footage is stored with.
+LINEAR_POWERS, LOG_FACTORS = (0.82, 1.25), (30.0, 6000.0)
+
+
+def edited(responses: Float64Array, rng: np.random.Generator) -> Float64Array:
+    """Return responses, shape (N, 1024), as an editor leaves them: other contrast, brightness, black and white points.
+
+    An edit is a monotone curve on brightness: a power, an S-shaped or inverse S-shaped contrast around a pivot, and
+    black and white points that cut, as in the dialogues "Levels" and "Curves" of every editor. Most files that an
+    editor saved were only scaled or turned, so most edits are small, and a few are large.
+    """
+    return np.stack([_edited(response, rng) for response in responses])
+
+
+def _edited(response: Float64Array, rng: np.random.Generator) -> Float64Array:
+    """Return one edited response, shape (1024,), from 0 to 1."""
+    amount = np.exp(rng.normal(*EDIT_AMOUNT))
+    black, white = amount * rng.uniform(0, 0.04), 1 - amount * rng.uniform(0, 0.1)
+    brightness = np.clip((response - black) / (white - black), 0, 1)
+    brightness = brightness ** np.exp(amount * rng.normal(0, 0.2))
+    contrast, pivot = amount * rng.normal(0, 0.3), rng.uniform(0.35, 0.65)
+    bent = _s_curve(brightness, np.exp(contrast), pivot)
+    return (bent - bent[0]) / (bent[-1] - bent[0])
+
+
+def _s_curve(brightness: Float64Array, contrast: float, pivot: float) -> Float64Array:
+    """Return brightness with the slope `contrast` at the pivot, fixed at 0, pivot and 1: two mirrored powers."""
+    low = pivot * (brightness / pivot) ** contrast
+    high = 1 - (1 - pivot) * ((1 - np.maximum(brightness, pivot)) / (1 - pivot)) ** contrast
+    return np.where(brightness < pivot, low, high)
+
+
+def nearly_linear(count: int, rng: np.random.Generator) -> Float64Array:
+    """Return powers of irradiance near 1, shape (count, 1024)."""
+    return IRRADIANCE ** np.exp(rng.uniform(*np.log(LINEAR_POWERS), (count, 1)))
+
+
+def log_like(count: int, rng: np.random.Generator) -> Float64Array:
+    """Return curves log(1 + a E) / log(1 + a) bent by a small power, shape (count, 1024)."""
+    factor = np.exp(rng.uniform(*np.log(LOG_FACTORS), (count, 1)))
+    curves = np.log1p(factor * IRRADIANCE) / np.log1p(factor)
+    return curves ** np.exp(rng.normal(0, 0.08, (count, 1)))
+
+
+@dataclass(frozen=True)
+class ResponseFamilies:
+    """Draws responses of a family.
+
+    Parameters
+    ----------
+    in_camera : callable
+        Returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera".
+    film : CurveSource
+        DoRF: film, video and scientific cameras.
+    """
+
+    in_camera: Callable[[Family, int, np.random.Generator], Float64Array]
+    film: CurveSource
+
+    def draw(self, family: Family, count: int, rng: np.random.Generator) -> Float64Array:
+        """Return responses of a family other than "unexplained", shape (count, 1024)."""
+        if family is Family.FILM:
+            return np.stack([self.film.draw(rng) for _ in range(count)])
+        if family is Family.LINEAR:
+            return nearly_linear(count, rng)
+        if family is Family.LOG:
+            return log_like(count, rng)
+        if family is Family.EDITED:
+            kinds = (Family.PHONE, Family.COMPACT, Family.CAMERA)
+            drawn = [self.in_camera(kinds[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
+            return edited(np.stack(drawn), rng)
+        return self.in_camera(family, count, rng)
+
+
+@dataclass(frozen=True)
+class EditedResponses:
+    """Draws the responses of another source as an editor leaves them."""
+
+    source: DrawsResponses
+
+    def draw(self, rng: np.random.Generator) -> Float64Array:
+        """Return one edited response, shape (1024,)."""
+        return edited(self.source.draw(rng)[None], rng)[0]
+
+
+@dataclass(frozen=True)
+class OneAtATime:
+    """Draws single responses from a function that returns several."""
+
+    several: Callable[[int, np.random.Generator], Float64Array]
+
+    def draw(self, rng: np.random.Generator) -> Float64Array:
+        """Return one response, shape (1024,)."""
+        return self.several(1, rng)[0]

@@ -1,0 +1,96 @@
+"""In-camera responses: what measured bodies have in common, and how they differ, in the logarithm of irradiance."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
+from training.data.curves import IRRADIANCE
+from training.data.real.bodies import Body
+
+#: The kinds of bodies that have a mean of their own.
+KINDS = ("phone", "compact", "camera")
+
+#: Components of the deviations; the first is mostly the headroom. With more nothing changed out of fold.
+COMPONENTS = 6
+
+#: Bodies that the mean over all kinds counts as, when the mean of a kind is taken.
+PSEUDO_BODIES = 1.0
+
+#: Weight of the darkest brightnesses, below code 16 of 255, in the components: noise and black level rule there.
+DARK_WEIGHT, DARKEST = 0.2, 64
+
+#: Standard deviation of the logarithm of a draw's distance from the mean: tails heavier than a Gaussian's.
+TAILS = 0.25
+
+#: Brightnesses at which inverse responses are compared.
+BRIGHTNESS = np.linspace(0, 1, SAMPLES)
+
+#: Irradiance at which logarithms are cut off.
+LEAST_IRRADIANCE = 2.0**-16
+
+
+@dataclass(frozen=True)
+class InCameraResponses:
+    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance.
+
+    Parameters
+    ----------
+    means : dict
+        Kind -> mean log2 irradiance at 1024 uniform brightnesses, shape (1024,).
+    components : ndarray, shape (6, 1024)
+        Deviations of one standard deviation each, the same for all kinds.
+    """
+
+    means: dict[str, Float64Array]
+    components: Float64Array
+
+    @classmethod
+    def of(cls, bodies: Sequence[Body]) -> InCameraResponses:
+        """Return the distribution of measured bodies: each counts once, however many stacks it has."""
+        stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
+        average = np.mean([rows.mean(axis=0) for rows in stacks.values()], axis=0)
+        means = {kind: average + _shrunk_offset(bodies, stacks, kind, average) for kind in KINDS}
+        deviations = [
+            (row - means.get(body.kind, average)) / np.sqrt(len(stacks[body.key]))
+            for body in bodies
+            for row in stacks[body.key]
+        ]
+        return cls(means, _components(np.stack(deviations), bodies=len(bodies)))
+
+    def draw(self, kind: str, count: int, rng: np.random.Generator) -> Float64Array:
+        """Return responses of a kind, shape (count, 1024)."""
+        scores = rng.standard_normal((count, len(self.components))) * np.exp(rng.normal(0, TAILS, (count, 1)))
+        return np.stack([response_of(row) for row in self.means[kind] + scores @ self.components])
+
+
+def log_irradiance(curve: ResponseCurve) -> Float64Array:
+    """Return log2 of the inverse response at `BRIGHTNESS`, shape (1024,)."""
+    return np.log2(np.maximum(curve.inverse(BRIGHTNESS), LEAST_IRRADIANCE))
+
+
+def response_of(logarithms: Float64Array) -> Float64Array:
+    """Return the response, shape (1024,), whose inverse has these log2 irradiances, made monotone."""
+    irradiance = np.maximum.accumulate(np.exp2(logarithms))
+    irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0]) + 1e-7 * BRIGHTNESS
+    return np.interp(IRRADIANCE, irradiance / irradiance[-1], BRIGHTNESS)
+
+
+def _shrunk_offset(
+    bodies: Sequence[Body], stacks: dict[str, Float64Array], kind: str, average: Float64Array
+) -> Float64Array:
+    """Return how far the bodies of a kind lie from the average, shrunk by `PSEUDO_BODIES`, shape (1024,)."""
+    offsets = [stacks[body.key].mean(axis=0) - average for body in bodies if body.kind == kind]
+    return np.sum([*offsets, np.zeros(SAMPLES)], axis=0) / (len(offsets) + PSEUDO_BODIES)
+
+
+def _components(deviations: Float64Array, *, bodies: int) -> Float64Array:
+    """Return the principal components of deviations (N, 1024), each one standard deviation long, shape (6, 1024)."""
+    weights = np.where(np.arange(SAMPLES) < DARKEST, DARK_WEIGHT, 1.0)
+    _, lengths, directions = np.linalg.svd(deviations * weights, full_matrices=False)
+    deviation = lengths[:COMPONENTS] / np.sqrt(bodies - len(KINDS) - 1)
+    return deviation[:, None] * directions[:COMPONENTS] / weights

@@ -1,0 +1,82 @@
+"""The bank of responses that the posterior weighs: ``python -m training.data.response_bank --data DIR``."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.files import atomic_write
+from crfnet_core.posterior import BANK_FILE, Family, ResponseBank
+from crfnet_core.posterior.responses import STORED_STEPS
+from crfnet_core.types import Float64Array
+from training.data.curves import DORF_FILE, CurveSource, read_dorf
+from training.data.families import ResponseFamilies
+from training.data.in_camera import InCameraResponses
+from training.data.real.bodies import measured_bodies
+from training.data.real.photographs import RealPhotograph
+from training.data.splits import held_out_curves
+
+#: Responses of each family. Of film the curves of DoRF themselves come first.
+COUNTS = {
+    Family.PHONE: 250,
+    Family.COMPACT: 250,
+    Family.CAMERA: 300,
+    Family.EDITED: 400,
+    Family.FILM: 600,
+    Family.LINEAR: 40,
+    Family.LOG: 60,
+}
+
+
+def make_bank(
+    data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False, seed: int = 2017
+) -> ResponseBank:
+    """Return the bank.
+
+    Parameters
+    ----------
+    data : Path
+        Folder with dorf, real and real_bodies.
+    without : RealPhotograph, optional
+        The fold whose bodies are left out: see `measured_bodies`.
+    without_held_out : bool
+        Whether to leave out the curves of DoRF that P2 holds out.
+    seed : int
+        Of the draws.
+    """
+    in_camera = InCameraResponses.of(measured_bodies(data, without=without))
+    dorf = read_dorf(data / DORF_FILE)
+    if without_held_out:
+        dorf = np.delete(dorf, held_out_curves(dorf), axis=0)
+    film = CurveSource(dorf, (), camera_fraction=0, plain_fraction=0)
+    families = ResponseFamilies(lambda family, count, rng: in_camera.draw(family.value, count, rng), film)
+    rows: list[Float64Array] = []
+    for number, (family, count) in enumerate(COUNTS.items()):
+        known = dorf if family is Family.FILM else dorf[:0]
+        rows += [known, families.draw(family, count - len(known), np.random.default_rng([seed, number]))]
+    members = [family for family, count in COUNTS.items() for _ in range(count)]
+    return ResponseBank(np.concatenate(rows).astype(np.float32), tuple(members))
+
+
+def write_bank(bank: ResponseBank, path: Path) -> None:
+    """Write a bank as `ResponseBank.load` reads it: brightness in 65536 steps, as differences along irradiance."""
+    rounded = np.rint(bank.brightness.astype(np.float64) * STORED_STEPS).astype(np.uint16)
+    steps = np.diff(rounded, axis=1, prepend=np.uint16(0))
+    numbers = np.array([list(Family).index(family) for family in bank.families], np.uint8)
+    with atomic_write(path, overwrite=True) as temporary:
+        np.savez_compressed(temporary, steps=steps, families=numbers)
+
+
+def main() -> None:
+    """Write the packaged bank."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf, real and real_bodies")
+    bank = make_bank(parser.parse_args().data)
+    write_bank(bank, BANK_FILE)
+    print(f"wrote {BANK_FILE}: {len(bank.families)} responses, {BANK_FILE.stat().st_size} bytes")
+
+
+if __name__ == "__main__":
+    main()
