@@ -5,21 +5,33 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import Predictions, ResponseNetwork, Verdict, pooling
+from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import (
+    Evidence,
+    Family,
+    Posterior,
+    Prior,
+    ResponseBank,
+    Verdict,
+    independent_share,
+    scene_similarities,
+)
 from crfnet_core.response import ResponseCurve
-from crfnet_core.types import BoolArray, Float32Array, Float64Array, Progress
+from crfnet_core.types import Float32Array, Float64Array, Progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
 #: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
+
+#: Samples along each side of the thumbnails by which photographs of one scene are recognised.
+THUMBNAIL = 16
 
 
 @dataclass(frozen=True)
@@ -33,9 +45,9 @@ class WindowEstimate:
     window : Window
         Where it lies and how much of the range it covers.
     weights : ndarray, float64, shape (11,)
-        The EMoR weights that the network predicts from this window alone.
+        The EMoR weights that follow from this window alone.
     expected_error : float
-        The E_est that the network expects of them.
+        The E_est that is expected of them.
     kept : bool
         Whether the window agrees with the others (`pooling.inliers`). Without learned pooling, only such windows count.
     """
@@ -56,15 +68,21 @@ class ResponseEstimate:
     curve : ResponseCurve
         The estimated response.
     weights : ndarray, float64, shape (11,)
-        Its EMoR weights, before it was made monotone.
+        Its EMoR weights.
     windows : tuple of WindowEstimate
-        What the network says of each window.
-    spread : float
-        RMS distance of the kept windows' weights from their mean, in units of E_est.
+        What each window says by itself.
     uncertainty : float
         The expected E_est of this estimate.
+    shape_uncertainty : float
+        Its expected shape error, in stops: see `crfnet_core.metrics.shape_error`.
     band : ndarray, float64, shape (2, 1024)
-        Lower and upper end of the 90 % band around the response.
+        Lower and upper end of the 90 % credible band around the response.
+    families : dict
+        Family -> the probability that the response is of this family; their sum is 1.
+    verdict : Verdict
+        All this in one word.
+    prior : str
+        Name of the prior.
     warnings : tuple of str
         What makes a poor estimate likely, in words.
     model : str
@@ -76,23 +94,23 @@ class ResponseEstimate:
     curve: ResponseCurve
     weights: Float64Array
     windows: tuple[WindowEstimate, ...]
-    spread: float
     uncertainty: float
+    shape_uncertainty: float
     band: Float64Array
+    families: Mapping[Family, float]
+    verdict: Verdict
+    prior: str
     warnings: tuple[str, ...]
     model: str
     photos: tuple[str, ...]
-
-    @property
-    def verdict(self) -> Verdict:
-        """The uncertainty in words."""
-        return Verdict.of(self.uncertainty)
 
 
 def estimate_response(
     photos: Photo | Iterable[Photo],
     *,
     network: ResponseNetwork,
+    prior: Prior | None = None,
+    bank: ResponseBank | None = None,
     windows: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
@@ -100,9 +118,9 @@ def estimate_response(
 ) -> ResponseEstimate:
     """Estimate the response of the camera that took one or several photographs.
 
-    Windows are cut from every photograph. The network reads them, or statistics that are counted in them, and answers
-    with EMoR weights, which become a strictly monotone response. A network with learned pooling answers once for all
-    windows. For one without, such as that of the CRF-net paper, the windows that agree are averaged.
+    Windows are cut from every photograph. The network reads them, or statistics that are counted in them, and states
+    evidence: which responses make such a photograph likely. Prior times the evidence of all photographs is the
+    posterior over a bank of responses, and the answer is the response of least expected error in it.
 
     Parameters
     ----------
@@ -110,6 +128,10 @@ def estimate_response(
         Photographs of one camera with the same settings; an iterator needs the memory of one photograph only.
     network : ResponseNetwork
         See `ResponseNetwork.load`.
+    prior : Prior, optional
+        How likely each family of responses is beforehand; by default the packaged prior "camera".
+    bank : ResponseBank, optional
+        The responses to choose from; by default the packaged ones.
     windows : int
         Windows of each photograph.
     seed : int
@@ -128,22 +150,22 @@ def estimate_response(
     sources = [_choose_windows(photo, windows, seed, coverage) for photo in photos]
     if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
-    samples = np.concatenate([source.samples for source in sources])  # (N, 227, 227, 3)
-    inputs = network.inputs(samples, progress=progress)  # statistics (N, LENGTH), or the samples
-    predictions = network.predict(inputs, progress=progress)
-    kept = pooling.inliers(predictions.weights)
-    answer = predictions.pooled or pooling.robust_mean(predictions, kept)
-    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct(answer.weights))
-    spread = pooling.spread(predictions.weights[kept])
-    uncertainty = network.config.uncertainty_model.uncertainty(answer.expected_error, spread)
+    prior, bank = prior or Prior.load(), bank or ResponseBank.load()
+    readings = _readings(sources, network, progress)
+    independent = independent_share(scene_similarities([source.thumbnail for source in sources]))
+    evidences = [reading.evidence for reading in readings]
+    posterior = Posterior.of(bank, prior, evidences, independent=independent)
     return ResponseEstimate(
-        curve=curve,
-        weights=answer.weights,
-        windows=_window_estimates(sources, predictions, kept),
-        spread=spread,
-        uncertainty=uncertainty,
-        band=network.config.uncertainty_model.band(curve, uncertainty),
-        warnings=_warnings(sources, samples),
+        curve=posterior.curve,
+        weights=posterior.mean_weights,
+        windows=_window_estimates(sources, readings, bank, prior),
+        uncertainty=posterior.expected_error,
+        shape_uncertainty=posterior.expected_shape_error,
+        band=posterior.band(),
+        families=posterior.families,
+        verdict=Verdict.of(posterior),
+        prior=prior.name,
+        warnings=_warnings(sources),
         model=network.config.label,
         photos=tuple(source.name for source in sources),
     )
@@ -151,12 +173,21 @@ def estimate_response(
 
 @dataclass(frozen=True)
 class _Source:
-    """What stays of a photograph once its windows are cut: name, whether it is gray, windows and their samples."""
+    """What stays of a photograph once its windows are cut: name, is gray, windows, their samples, and a thumbnail."""
 
     name: str
     is_gray: bool
     windows: tuple[Window, ...]
     samples: Float32Array
+    thumbnail: Float64Array
+
+
+@dataclass(frozen=True)
+class _Reading:
+    """The evidence of a photograph, and of each of its windows by itself."""
+
+    evidence: Evidence
+    windows: tuple[Evidence, ...]
 
 
 def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Source:
@@ -165,25 +196,59 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Sour
         windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
-    return _Source(photo.path.name, photo.is_gray, windows, cut_windows(photo.pixels, windows))
+    samples = cut_windows(photo.pixels, windows)
+    return _Source(photo.path.name, photo.is_gray, windows, samples, _thumbnail(photo.pixels))
+
+
+def _thumbnail(pixels: Float32Array) -> Float64Array:
+    """Return ranks of brightness on a coarse grid, shape (16, 16): the scene, whatever the exposure and the response."""
+    rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
+    samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
+    cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
+    ranks: Float64Array = cells.ravel().argsort().argsort().reshape(cells.shape).astype(np.float64)
+    return ranks
+
+
+def _readings(sources: Sequence[_Source], network: ResponseNetwork, progress: Progress | None) -> list[_Reading]:
+    """Return what the network reads in each photograph."""
+    readings: list[_Reading] = []
+    total, done = sum(len(source.windows) for source in sources), 0
+    for source in sources:
+
+        def moved(count: int, _: int, before: int = done) -> None:
+            if progress is not None:
+                progress(before + count, total)
+
+        predictions = network.predict(network.inputs(source.samples, progress=moved), progress=moved)
+        evidence = predictions.pooled or pooling.robust_mean(predictions.windows)
+        readings.append(_Reading(evidence, predictions.windows))
+        done += len(source.windows)
+    return readings
 
 
 def _window_estimates(
-    sources: Sequence[_Source], predictions: Predictions, kept: BoolArray
+    sources: Sequence[_Source], readings: Sequence[_Reading], bank: ResponseBank, prior: Prior
 ) -> tuple[WindowEstimate, ...]:
-    """Return what the network says of each window, in the order of the photographs."""
+    """Return what each window says by itself, in the order of the photographs."""
     origins = [(number, window) for number, source in enumerate(sources) for window in source.windows]
-    answers = zip(predictions.weights, predictions.expected_errors.tolist(), kept.tolist(), strict=True)
-    return tuple(WindowEstimate(*origin, *answer) for origin, answer in zip(origins, answers, strict=True))
+    posteriors = [Posterior.of(bank, prior, [evidence]) for reading in readings for evidence in reading.windows]
+    weights = np.stack([posterior.mean_weights for posterior in posteriors])
+    answers = zip(weights, (posterior.expected_distance for posterior in posteriors), strict=True)
+    kept = pooling.inliers(weights).tolist()
+    return tuple(
+        WindowEstimate(*origin, *answer, kept=is_kept)
+        for origin, answer, is_kept in zip(origins, answers, kept, strict=True)
+    )
 
 
-def _warnings(sources: Sequence[_Source], samples: Float32Array) -> tuple[str, ...]:
+def _warnings(sources: Sequence[_Source]) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     warnings = []
     if not any(window.covers_range for source in sources for window in source.windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
     if all(source.is_gray for source in sources):
         warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
-    if np.mean((samples <= 0.5 / 255) | (samples >= 254.5 / 255)) > MOSTLY_CLIPPED:
+    clipped = [(source.samples <= 0.5 / 255) | (source.samples >= 254.5 / 255) for source in sources]
+    if np.mean([part.mean() for part in clipped]) > MOSTLY_CLIPPED:
         warnings.append("mostly clipped: take a photograph with another exposure")
     return tuple(warnings)

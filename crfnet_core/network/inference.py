@@ -1,9 +1,10 @@
-"""Run a trained network on the CPU: windows to its inputs, inputs to predictions."""
+"""Run a trained network on the CPU: windows to its inputs, inputs to evidence."""
 
 from __future__ import annotations
 
 import hashlib
 import os
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -13,8 +14,9 @@ import numpy as np
 from crfnet_core.errors import ModelError, one_line
 from crfnet_core.network.model import ModelConfig, model_folder, read_model_file
 from crfnet_core.network.runtime import onnxruntime
+from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
-from crfnet_core.types import Float32Array, Float64Array, Progress
+from crfnet_core.types import Float32Array, Progress
 
 _PROBLEMS = onnxruntime.capi.onnxruntime_pybind11_state
 
@@ -29,23 +31,19 @@ _UNLOADABLE = (
 
 
 @dataclass(frozen=True)
-class Answer:
-    """One answer for all windows together: EMoR weights (11,) and the E_est that the network expects of them."""
-
-    weights: Float64Array
-    expected_error: float
-
-
-@dataclass(frozen=True)
 class Predictions:
-    """What the network says of N windows: EMoR weights (N, 11) and the expected E_est (N,) of each window.
+    """What the network says of one photograph.
 
-    `pooled` is its answer for all of them together, if the network pools its windows by itself.
+    Parameters
+    ----------
+    windows : tuple of Evidence
+        The evidence of each window by itself.
+    pooled : Evidence or None
+        That of all windows together, if the network pools its windows by itself.
     """
 
-    weights: Float64Array
-    expected_errors: Float64Array
-    pooled: Answer | None = None
+    windows: tuple[Evidence, ...]
+    pooled: Evidence | None = None
 
 
 class ResponseNetwork:
@@ -126,9 +124,8 @@ class ResponseNetwork:
         else:
             rows = self._run_each(inputs, progress)
             outputs = [np.concatenate(column) for column in zip(*rows, strict=True)]
-        weights, log_errors, *pooled = (output.astype(np.float64) for output in outputs)
-        answer = Answer(pooled[0][0], float(np.exp(pooled[1][0]))) if pooled else None
-        return Predictions(weights, np.exp(log_errors), answer)
+        evidences = [_evidences(outputs[start : start + 3]) for start in range(0, len(outputs), 3)]
+        return Predictions(evidences[0], evidences[1][0] if len(evidences) > 1 else None)
 
     def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
         """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
@@ -149,6 +146,11 @@ class ResponseNetwork:
             list(self.config.output_names), {self.config.input_name: inputs}
         )
         return outputs
+
+
+def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:
+    """Return the evidence in a network's locations (N, 5), factors (N, 5, 5) and log-odds (N, 3)."""
+    return tuple(Evidence(*parts) for parts in zip(*(output.astype(np.float64) for output in outputs), strict=True))
 
 
 def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:

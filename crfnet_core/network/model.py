@@ -7,10 +7,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.emor import COMPONENTS
 from crfnet_core.errors import ModelError
 from crfnet_core.files import atomic_write_text
-from crfnet_core.network.uncertainty import UncertaintyModel
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
@@ -31,15 +30,15 @@ class ModelConfig:
     basis : str
         The response model of the outputs: "emor".
     components : int
-        Weights per window.
+        How many of its first weights the evidence is about.
     window_size : int
         Side of a window in samples.
     input_name : str
         "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, LENGTH): see
         `crfnet_core.statistics`.
     output_names : tuple of str
-        Of each window, EMoR weights (N, 11) and the logarithm of the expected E_est (N,); of a network that pools its
-        windows, then the same of all of them together, (1, 11) and (1,).
+        Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, 5), factors (N, 5, 5) and log-odds
+        (N, 3); of a network that pools its windows, then the same of all of them together, (1, ...).
     normalization : str
         What the input holds, in words.
     opset : int
@@ -48,8 +47,6 @@ class ModelConfig:
         The commit of this project that the training run began from; see run.json.
     training : dict
         What it has seen: "scene_kinds", and "held_out_curves", the DoRF curves that it has not.
-    uncertainty_model : UncertaintyModel
-        From what the network expects to an uncertainty.
     accuracy : dict
         Figures of the model card.
     """
@@ -65,7 +62,6 @@ class ModelConfig:
     opset: int
     training_commit: str
     training: dict[str, Any]
-    uncertainty_model: UncertaintyModel
     accuracy: dict[str, Any]
 
     @classmethod
@@ -82,12 +78,11 @@ class ModelConfig:
         if missing:
             raise ModelError(f"{path}: lacks {', '.join(missing)}; export the model again")
         entries["output_names"] = tuple(entries["output_names"])
-        entries["uncertainty_model"] = _read_uncertainty_model(path, entries["uncertainty_model"])
         config = cls(**{field.name: entries[field.name] for field in fields(cls)})
-        if (config.basis, config.components, config.window_size) != ("emor", COMPONENTS, WINDOW_SIZE):
+        if (config.basis, config.components, config.window_size) != ("emor", EVIDENCE_WEIGHTS, WINDOW_SIZE):
             raise ModelError(
                 f"{path}: is for {config.components} weights of {config.basis} and windows of {config.window_size};"
-                f" this version needs {COMPONENTS} of emor and {WINDOW_SIZE}"
+                f" this version needs {EVIDENCE_WEIGHTS} of emor and {WINDOW_SIZE}"
             )
         return config
 
@@ -127,14 +122,6 @@ def model_folder(wanted: str | Path | None = None) -> Path:
 def _version(folder: Path) -> tuple[int, ...]:
     """Return the version at the end of a packaged model's name, such as (1, 0)."""
     return tuple(map(int, folder.name.rpartition("-")[2].split(".")))
-
-
-def _read_uncertainty_model(path: Path, entries: object) -> UncertaintyModel:
-    """Return the uncertainty model in a model.json, or say what it lacks."""
-    names = [field.name for field in fields(UncertaintyModel)]
-    if not isinstance(entries, dict) or set(entries) != set(names):
-        raise ModelError(f"{path}: the uncertainty_model needs {', '.join(names)}; export the model again")
-    return UncertaintyModel(**{**entries, "band_profile": tuple(entries["band_profile"])})
 
 
 def read_model_file(path: Path) -> bytes:

@@ -4,7 +4,8 @@
 - `responses`: the bank.
 - `prior`: how likely each family is before the photograph is looked at.
 - `evidence`: what a network says of a photograph, as a likelihood of responses.
-- `posterior`: prior times evidence, the answer of least expected error, and how far to trust it.
+- `posterior`: prior times evidence, the answer of least expected error, and how large its errors are expected to be.
+- `verdict`: the posterior in one word.
 """
 
 from crfnet_core.posterior.evidence import Evidence, independent_share, scene_similarities
@@ -12,6 +13,7 @@ from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, STATED_ODDS,
 from crfnet_core.posterior.posterior import Posterior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
 from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
+from crfnet_core.posterior.verdict import Verdict
 
 __all__ = [
     "BANK_FILE",
@@ -25,6 +27,7 @@ __all__ = [
     "Posterior",
     "Prior",
     "ResponseBank",
+    "Verdict",
     "independent_share",
     "packaged_priors",
     "scene_similarities",

@@ -1,47 +1,64 @@
 """Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
 
-The steps are those of `training.export.model_folder`. The paper's network expects no error of its own, so its log error
-is a constant, that of the best mean E_est on the validation windows, and the uncertainty goes by the spread of the
-windows' estimates.
+The steps are those of `training.export.model_folder`. The paper's network states no uncertainty, so what its answers
+are worth as evidence is fitted on photographs of the validation scenes: see `training.crfnet2017.likelihood`.
 """
 
 from __future__ import annotations
 
-import math
 from pathlib import Path
 
 import torch
 from torch import Tensor, nn
 
+from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from training.crfnet2017.checkpoints import fold_normalization
+from training.crfnet2017.likelihood import Likelihood, fit, validation_answers
 from training.crfnet2017.network import CRFNet
 from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
 from training.export.onnx_graph import WINDOWED, rounded
 
 
+class WindowAnswers(nn.Module):
+    """Windows of shape (N, 227, 227, 3) in [0, 1] to EMoR weights (N, 11)."""
+
+    def __init__(self, network: CRFNet) -> None:
+        super().__init__()
+        self.network = network
+
+    def forward(self, windows: Tensor) -> Tensor:
+        """Return the answers of the network for each window."""
+        answers: Tensor = self.network(windows.permute(0, 3, 1, 2))
+        return answers
+
+
 class ShippedCRFNet(nn.Module):
-    """The network as the product runs it.
+    """The network as the product runs it: its answers as evidence.
 
     Parameters
     ----------
-    network : CRFNet
-        With 11 outputs.
-    expected_error : float
-        The E_est that is expected of every window.
+    answers : WindowAnswers
+        The network.
+    likelihood : Likelihood
+        What its answers are worth.
     """
 
-    def __init__(self, network: CRFNet, expected_error: float) -> None:
+    def __init__(self, answers: WindowAnswers, likelihood: Likelihood) -> None:
         super().__init__()
-        self.network = network
-        self.register_buffer("log_error", torch.tensor([math.log(expected_error)]))
+        self.answers = answers
+        for name in ("slopes", "intercepts", "factor"):
+            self.register_buffer(name, torch.from_numpy(getattr(likelihood, name)).float())
 
-    def forward(self, windows: Tensor) -> tuple[Tensor, Tensor]:
-        """Return EMoR weights (N, 11) and log errors (N,) of windows of shape (N, 227, 227, 3) in [0, 1]."""
-        return self.network(windows.permute(0, 3, 1, 2)), self.log_error.expand(windows.shape[0])
+    def forward(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
+        """Return the evidence of windows, shape (N, 227, 227, 3) in [0, 1]."""
+        locations = (self.answers(windows)[:, :EVIDENCE_WEIGHTS] - self.intercepts) / self.slopes
+        factors = self.factor.expand(windows.shape[0], -1, -1)
+        return locations, factors, locations[:, : len(STATED_ODDS)] * 0
 
 
-def load_network(run: Path) -> ShippedCRFNet:
+def load_network(run: Path) -> WindowAnswers:
     """Return the best network of a run, ready to infer, with its normalisations folded.
 
     Raises
@@ -54,18 +71,18 @@ def load_network(run: Path) -> ShippedCRFNet:
     if state["network"]["head.weight"].shape != network.head.weight.shape:
         raise SystemExit(f"{run}: is a run of the stage classify; export one of the stage regress")
     network.load_state_dict(state["network"])
-    return ShippedCRFNet(fold_normalization(network), min(row[2] for row in state["rows"])).eval()
+    return WindowAnswers(fold_normalization(network)).eval()
 
 
-def cost_of_rounding(network: ShippedCRFNet) -> float:
+def cost_of_rounding(network: WindowAnswers) -> float:
     """Return the largest change of a weight (units of E_est) on the golden windows when the network is `rounded`.
 
     The network stays rounded.
     """
     windows = torch.from_numpy(golden_windows())
     with torch.inference_mode():
-        before = network(windows)[0]
-        return float((rounded(network)(windows)[0] - before).abs().max())
+        before = network(windows)
+        return float((rounded(network)(windows) - before).abs().max())
 
 
 def main() -> None:
@@ -73,7 +90,8 @@ def main() -> None:
     options = export_options((__doc__ or "").splitlines()[0]).parse_args()
     network = load_network(options.run)
     print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
-    write_model(network, WINDOWED, options)
+    likelihood = fit(*validation_answers(network, options.data))
+    write_model(ShippedCRFNet(network, likelihood).eval(), WINDOWED, options)
 
 
 if __name__ == "__main__":

@@ -10,11 +10,13 @@ from typing import Any
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write_text
+from crfnet_core.posterior import ResponseBank
 from crfnet_core.types import Float64Array
+from training.data.real.photographs import RealPhotograph, real_photographs
+from training.data.response_bank import make_bank
 from training.evaluation.baselines import BASELINES
 from training.evaluation.measure.case_files import CaseFile, code_digest
-from training.evaluation.measure.real import measure_real
-from training.data.real.photographs import RealPhotograph, real_photographs
+from training.evaluation.measure.real import measure_real, ways_of
 from training.evaluation.measure.simulated import measure_simulated
 from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
 from training.evaluation.report.content import (
@@ -122,7 +124,7 @@ class Evaluation:
         """Return the case files of a protocol: those of the baselines and of every model."""
         estimators: dict[str, dict[str, str]] = {BASELINES: {}}
         for model in self.settings.models:
-            estimators[model.name] = {"sha256": model.measured.sha256, "uncertainty": model.uncertainty_digest}
+            estimators[model.name] = {"sha256": model.measured.sha256}
         files = {}
         for name, own in estimators.items():
             path = self._path(f"cases/{name}/{protocol}.json")
@@ -141,11 +143,18 @@ class Evaluation:
             self._folders,
             files,
             exposures=lambda: self._exposures,
+            bank=self._bank_of(protocol),
             workers=self.settings.workers,
             seed=self.settings.seed,
             title=protocol.upper(),
         )
         return files
+
+    def _bank_of(self, protocol: str) -> ResponseBank | None:
+        """Return the responses to choose from: for P2 those without the held-out curves, else the packaged ones."""
+        if protocol != "p2" or self.test_set.data is None:
+            return None
+        return make_bank(self.test_set.data, without_held_out=True)
 
     def _clean(self, protocol: str, curves: Sequence[int]) -> tuple[list[TestPhotograph], ErrorTable]:
         """Return the photographs of P0 or P2 and their errors."""
@@ -198,7 +207,8 @@ class Evaluation:
         """Measure real photographs, in each folder and together."""
         if self.test_set.data is None:
             raise CRFNetError("p4 needs real photographs; give --data instead of --quick")
-        names, sets = self.settings.names, real_photographs(self.test_set.data)
+        names = [name for model in self.settings.names for name in ways_of(model)]
+        sets = real_photographs(self.test_set.data)
         tables = {name: self._real_table(name, photographs) for name, photographs in sets.items()}
         if len(tables) > 1:
             tables[BOTH] = RealTable.joined(list(tables.values()))
@@ -209,7 +219,8 @@ class Evaluation:
     def _real_table(self, name: str, photographs: Sequence[RealPhotograph]) -> RealTable:
         """Measure the real photographs of one folder, and draw them."""
         files = self._files(f"p4-{name}", {"photographs": [photograph.name for photograph in photographs]})
-        measure_real(photographs, self._folders, files, self.test_set.curves, title=f"P4 {name}")
+        assert self.test_set.data is not None
+        measure_real(photographs, self._folders, files, self.test_set.curves, self.test_set.data, title=f"P4 {name}")
         table = RealTable.of(photographs, files)
         for model in self.settings.names:
             draw_real(self._path(f"p4-{name}-{model}.png"), table, model, f"P4, data/{name}: {model}")

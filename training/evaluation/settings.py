@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -29,15 +28,12 @@ class Model:
         The name in the report: that of the folder.
     folder : Path
         The folder.
-    uncertainty_digest : str
-        A hash of the uncertainty model, which the hash of the graph does not cover.
     measured : MeasuredModel
         What the report says of the model.
     """
 
     name: str
     folder: Path
-    uncertainty_digest: str
     measured: MeasuredModel
 
     @classmethod
@@ -54,10 +50,9 @@ class Model:
             names = ", ".join(folder.name for folder in packaged_models())
             raise CRFNetError(f"{wanted}: is no model folder; give its path, or one of {names}")
         config = ModelConfig.read(folder / "model.json")
-        digest = hashlib.sha256(repr(config.uncertainty_model).encode()).hexdigest()[:16]
         kinds, held_out = config.training.get("scene_kinds"), config.training.get("held_out_curves")
         measured = MeasuredModel(config.sha256, None if kinds is None else tuple(kinds), tuple(held_out or ()))
-        return cls(folder.resolve().name, folder, digest, measured)
+        return cls(folder.resolve().name, folder, measured)
 
     def lacks(self, held_out: Sequence[int]) -> bool:
         """Return whether model.json says that these responses were kept out of its training."""

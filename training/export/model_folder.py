@@ -1,7 +1,7 @@
 """Turn a run into a model folder: ``python -m training.export.model_folder --run DIR --data DIR --out DIR ...``.
 
-The steps: the graph (`onnx_graph`), the golden predictions and the parity with them (`golden`), the model of the
-uncertainty (`uncertainty`), model.json, and the record of the run beside it.
+The steps: the graph (`onnx_graph`), the golden predictions and the parity with them (`golden`), model.json, and the
+record of the run beside it.
 """
 
 from __future__ import annotations
@@ -13,13 +13,12 @@ from pathlib import Path
 import torch
 from torch import nn
 
-from crfnet_core.emor import COMPONENTS
-from crfnet_core.network import ModelConfig, UncertaintyModel
+from crfnet_core.network import ModelConfig
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
 from training.data.splits import SPLITS_FILE
 from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded
-from training.export.uncertainty import NOT_FITTED, fit_uncertainty_model
 from training.network.model import NetworkConfig, PhotographNet, ShippedNetwork
 from training.provenance import RUN_FILE, Record, file_sha256, read_run, training_commit, write_json
 
@@ -31,7 +30,7 @@ def load_network(run: Path) -> ShippedNetwork:
     return rounded(ShippedNetwork(net).eval())
 
 
-def write_config(folder: Path, signature: Signature, uncertainty_model: UncertaintyModel, record: Record) -> None:
+def write_config(folder: Path, signature: Signature, record: Record) -> None:
     """Write model.json for the model.onnx in `folder`, whose name is the model's.
 
     The figures come later, from `training.export.model_card`.
@@ -42,8 +41,6 @@ def write_config(folder: Path, signature: Signature, uncertainty_model: Uncertai
         The model folder.
     signature : Signature
         What the network reads and answers.
-    uncertainty_model : UncertaintyModel
-        Its model of the uncertainty.
     record : dict
         The record of the run: see `training.provenance`.
     """
@@ -52,7 +49,7 @@ def write_config(folder: Path, signature: Signature, uncertainty_model: Uncertai
         name=folder.name,
         sha256=file_sha256(folder / "model.onnx"),
         basis="emor",
-        components=COMPONENTS,
+        components=EVIDENCE_WEIGHTS,
         window_size=WINDOW_SIZE,
         input_name=signature.input_name,
         output_names=signature.output_names,
@@ -63,7 +60,6 @@ def write_config(folder: Path, signature: Signature, uncertainty_model: Uncertai
             "scene_kinds": ["panorama", "photograph"],
             "held_out_curves": json.loads(SPLITS_FILE.read_text())["held_out_curves"] if is_without_held_out else [],
         },
-        uncertainty_model=uncertainty_model,
         accuracy={},
     )
     config.write(folder / "model.json")
@@ -84,13 +80,11 @@ def write_model(network: nn.Module, signature: Signature, options: argparse.Name
     record = read_run(options.run)
     options.out.mkdir(parents=True, exist_ok=True)
     export_onnx(network, signature, options.out / "model.onnx")
-    write_config(options.out, signature, NOT_FITTED, record)
+    write_config(options.out, signature, record)
     write_golden(network, signature, options.golden)
     print(f"torch and onnxruntime differ by at most {assert_parity(options.out, options.golden):.1e}")
-    uncertainty_model = fit_uncertainty_model(options.data, options.out, workers=options.workers)
-    write_config(options.out, signature, uncertainty_model, record)
     write_json(options.out / RUN_FILE, record)
-    print(f"wrote {options.out}: {uncertainty_model}")
+    print(f"wrote {options.out}")
 
 
 def export_options(description: str | None) -> argparse.ArgumentParser:
@@ -100,7 +94,6 @@ def export_options(description: str | None) -> argparse.ArgumentParser:
     parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="the model's folder, named as the model")
     parser.add_argument("--golden", type=Path, required=True, help="file of the golden predictions")
-    parser.add_argument("--workers", type=int, default=2)
     return parser
 
 

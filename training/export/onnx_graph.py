@@ -43,11 +43,14 @@ class Signature:
     output_names: tuple[str, ...]
 
 
+#: The parts of evidence, of every window and of all windows together.
+OF_WINDOWS, POOLED = ("locations", "factors", "log_odds"), ("pooled_location", "pooled_factor", "pooled_log_odds")
+
 #: A network that reads the statistics of windows and pools them.
-POOLING = Signature("statistics", (LENGTH,), ("weights", "log_errors", "pooled_weights", "pooled_log_error"))
+POOLING = Signature("statistics", (LENGTH,), (*OF_WINDOWS, *POOLED))
 
 #: A network that reads windows and answers for each by itself.
-WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), ("weights", "log_errors"))
+WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), OF_WINDOWS)
 
 
 def rounded(network: Network) -> Network:

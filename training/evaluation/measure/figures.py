@@ -39,6 +39,10 @@ class PhotographFigures:
         E_est over the samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
     uncertainty : float, optional
         The E_est that a model expected; None for a baseline, as are the following.
+    shape_uncertainty : float, optional
+        The shape error in stops that it expected.
+    verdict : str, optional
+        What it said in one word: see `crfnet_core.posterior.Verdict`.
     coverage : float, optional
         Fraction of the true response inside the 90 % band, in [0, 1].
     curve : tuple of float, optional
@@ -52,6 +56,8 @@ class PhotographFigures:
     shape: float
     partial: float
     uncertainty: float | None = None
+    shape_uncertainty: float | None = None
+    verdict: str | None = None
     coverage: float | None = None
     curve: tuple[float, ...] | None = None
     band: tuple[tuple[float, ...], tuple[float, ...]] | None = None
@@ -128,6 +134,8 @@ def model_figures(
     figures = replace(
         baseline_figures(true, curve or estimate.curve, counts),
         uncertainty=round(estimate.uncertainty, DECIMALS),
+        shape_uncertainty=round(estimate.shape_uncertainty, DECIMALS),
+        verdict=estimate.verdict.value,
         coverage=round(float(inside.mean()), DECIMALS),
     )
     if not is_drawn:

@@ -15,12 +15,16 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float32Array, Float64Array
 from training.evaluation.measure.figures import PhotographFigures, all_baselines, model_figures
 from training.evaluation.plan import Condition, Query, TestPhotograph
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.camera import code_counts, render_photo, sensor_light
+
+#: The prior of simulated photographs, whose responses are of any kind.
+PRIOR = "any"
 
 #: Lights in a process's memory: those of a scene, and of the scenes pooled with it. The largest take 0.3 GB.
 LIGHTS_KEPT = 12
@@ -51,6 +55,8 @@ class Job:
         Name of a case file -> the folder of its model, or None for the baselines.
     constants : dict
         The guesses that are the same for every photograph.
+    bank : ResponseBank or None
+        The responses that estimates choose from; None for the packaged ones.
     seed : int
         Of dither and noise.
     """
@@ -61,6 +67,7 @@ class Job:
     exposures: dict[int, float]
     estimators: dict[str, Path | None]
     constants: dict[str, ResponseCurve]
+    bank: ResponseBank | None
     seed: int
 
     def photo(self, scene: int, curve: int, condition: Condition) -> Photo:
@@ -129,17 +136,19 @@ def _estimator(job: Job, photo: Photo, folder: Path) -> Callable[[TestPhotograph
         if question not in known:
             others = [(scene + n) % len(job.scenes) for n in range(1, query.pooled)]
             photos = [photo, *(job.photo(other, photograph.curve, photograph.condition) for other in others)]
-            known[question] = queried_estimate(photos, query, _network(folder))
+            known[question] = queried_estimate(photos, query, _network(folder), job.bank)
         return known[question]
 
     return estimate
 
 
-def queried_estimate(photos: Sequence[Photo], query: Query, network: ResponseNetwork) -> ResponseEstimate:
+def queried_estimate(
+    photos: Sequence[Photo], query: Query, network: ResponseNetwork, bank: ResponseBank | None = None
+) -> ResponseEstimate:
     """Return the product's estimate from photographs of one camera, asked as the query says."""
     asked = {"windows": query.windows, "coverage": query.coverage}
     options: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
-    return estimate_response(photos, network=network, **options)
+    return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, **options)
 
 
 def queried_curve(estimate: ResponseEstimate, query: Query) -> ResponseCurve:

@@ -3,15 +3,20 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import cache
 from pathlib import Path
 
 from tqdm import tqdm
 
-from crfnet_core.estimate import estimate_response
+from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.photo import Photo
+from crfnet_core.posterior import ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
+from training.data.real.photographs import RealPhotograph, real_photographs
+from training.data.response_bank import make_bank
 from training.evaluation.baselines import (
     BASELINES,
     ORACLE_DORF,
@@ -24,7 +29,6 @@ from training.evaluation.baselines import (
 )
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import all_baselines, model_figures
-from training.data.real.photographs import RealPhotograph
 from training.synthesis.camera import code_counts
 
 
@@ -33,6 +37,7 @@ def measure_real(
     models: dict[str, Path],
     files: dict[str, CaseFile],
     known: Float64Array,
+    data: Path,
     *,
     title: str = "P4",
 ) -> None:
@@ -48,6 +53,8 @@ def measure_real(
         Name of a model, or `BASELINES` -> its figures.
     known : ndarray, shape (N, 1024)
         Responses for the constant baselines, and for the oracle that picks the nearest; those of DoRF.
+    data : Path
+        The data folder. The bank that a photograph is estimated with knows nothing of the bodies of its fold.
     title : str
         Of the progress bar.
     """
@@ -70,9 +77,36 @@ def measure_real(
                 curves = constants | _of_real_cameras(others, true, known)
                 file.rows[photograph.name] = all_baselines(true, counts, curves)
             else:
-                estimate = estimate_response(photo, network=networks[name])
-                file.rows[photograph.name] = {name: model_figures(true, estimate, counts, is_drawn=True)}
+                bank = _bank_without(photograph, data)
+                estimates = _estimates(photo, networks[name], bank)
+                file.rows[photograph.name] = {
+                    way: model_figures(true, estimate, counts, is_drawn=True)
+                    for way, estimate in zip(ways_of(name), estimates, strict=True)
+                }
             file.save()
+
+
+def ways_of(model: str) -> list[str]:
+    """Return the names of the ways in which P4 asks a model: with the file's metadata, and without it."""
+    return [model, f"{model}, metadata ignored"]
+
+
+def _estimates(photo: Photo, network: ResponseNetwork, bank: ResponseBank) -> list[ResponseEstimate]:
+    """Return the estimates of one photograph, in the order of `ways_of`."""
+    return [estimate_response(photo, network=network, bank=bank, use_metadata=used) for used in (True, False)]
+
+
+def _bank_without(photograph: RealPhotograph, data: Path) -> ResponseBank:
+    """Return the bank without the bodies of the photograph's fold, made once for each fold."""
+    return _bank_of_fold(photograph.photograph.parents[1], photograph.fold, data)
+
+
+@cache
+def _bank_of_fold(folder: Path, fold: str, data: Path) -> ResponseBank:
+    """Return the bank without the bodies of a fold of a folder."""
+    members = [photograph for photographs in real_photographs(data).values() for photograph in photographs]
+    first = next(one for one in members if one.photograph.parents[1] == folder and one.fold == fold)
+    return make_bank(data, without=first)
 
 
 def _of_real_cameras(others: ResponseCurve, true: ResponseCurve, known: Float64Array) -> dict[str, ResponseCurve]:

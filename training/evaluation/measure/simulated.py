@@ -11,6 +11,7 @@ from pathlib import Path
 
 from tqdm import tqdm
 
+from crfnet_core.posterior import ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 from training.evaluation.baselines import BASELINES, constant_curves
@@ -34,6 +35,7 @@ def measure_simulated(
     files: dict[str, CaseFile],
     *,
     exposures: Callable[[], Float64Array],
+    bank: ResponseBank | None = None,
     workers: int,
     seed: int,
     title: str,
@@ -52,6 +54,8 @@ def measure_simulated(
         Name of a model, or `BASELINES` -> its figures.
     exposures : callable
         Returns s_crf of every response; called only when a photograph has to be taken.
+    bank : ResponseBank, optional
+        The responses that estimates choose from; by default the packaged ones.
     workers : int
         Processes.
     seed : int
@@ -66,7 +70,8 @@ def measure_simulated(
     scales, constants = exposures(), constant_curves(test_set.curves)
     folders: dict[str, Path | None] = {BASELINES: None, **models}
     work = [
-        _job(part, {name: folders[name] for name in names}, test_set, scales, constants, seed) for names, part in parts
+        _job(part, {name: folders[name] for name in names}, test_set, scales, constants, bank, seed)
+        for names, part in parts
     ]
     _measure(work, files, workers=workers, title=title)
 
@@ -136,6 +141,7 @@ def _job(
     test_set: TestSet,
     exposures: Float64Array,
     constants: dict[str, ResponseCurve],
+    bank: ResponseBank | None,
     seed: int,
 ) -> Job:
     """Return the job of some photographs, with the responses that they need."""
@@ -147,5 +153,6 @@ def _job(
         exposures={k: float(exposures[k]) for k in curves},
         estimators=estimators,
         constants=constants,
+        bank=bank,
         seed=seed,
     )

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import PhotographFigures
-from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.errors import Interval, PerError
 from training.evaluation.report.real.content import BodySummary, RealFigures, RealReport, RealRow
 from training.evaluation.summaries.bootstrap import Resampling
@@ -149,6 +149,8 @@ def _means(figures: Sequence[PhotographFigures]) -> RealFigures:
     return RealFigures(
         errors=PerError.combined(lambda *values: float(np.mean(values)), *(row.errors for row in figures)),
         uncertainty=_mean([row.uncertainty for row in figures]),
+        shape_uncertainty=_mean([row.shape_uncertainty for row in figures]),
+        verdict=", ".join(sorted({row.verdict for row in figures if row.verdict})),
         coverage=_mean([row.coverage for row in figures]),
     )
 

@@ -9,8 +9,8 @@ import numpy as np
 from crfnet_core.emor import EmorBasis
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array, IndexArray
-from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures
 from training.data.real.photographs import RealPhotograph
+from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures
 from training.evaluation.report.errors import Interval
 from training.evaluation.summaries.bootstrap import Resampling, interval
 

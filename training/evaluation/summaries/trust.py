@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crfnet_core.network import Verdict
+from crfnet_core.posterior import Verdict
 from training.evaluation.measure.figures import PhotographFigures
 from training.evaluation.report.real.content import FAR_OFF, FAR_OFF_STOPS, TrustedWrongly
 
@@ -14,7 +14,7 @@ def trusted_wrongly(figures: Sequence[PhotographFigures]) -> TrustedWrongly:
     errors = [
         (row.estimation > FAR_OFF, row.shape > FAR_OFF_STOPS)
         for row in figures
-        if row.uncertainty is not None and Verdict.of(row.uncertainty) != Verdict.DO_NOT_TRUST
+        if row.verdict in (Verdict.GOOD, Verdict.USABLE)
     ]
     return TrustedWrongly(
         photographs=len(errors),

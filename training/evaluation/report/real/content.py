@@ -37,12 +37,18 @@ class RealFigures:
         E_est, E_lin x 1e-2 and the shape error in stops.
     uncertainty : float, optional
         The E_est that a model expected; None for a baseline.
+    shape_uncertainty : float, optional
+        The shape error in stops that it expected.
+    verdict : str
+        Its verdicts; empty for a baseline.
     coverage : float, optional
         Fraction, 0 to 1, of the true response inside the model's 90 % band.
     """
 
     errors: PerError[float]
     uncertainty: float | None = None
+    shape_uncertainty: float | None = None
+    verdict: str = ""
     coverage: float | None = None
 
 

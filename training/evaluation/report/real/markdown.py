@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from training.evaluation.baselines import GAMMA, MEAN_CURVE, ORACLE_DORF, ORACLE_HEADROOM, OTHER_BODIES
 from training.data.real.file_origin import SCALED_BELOW, Editing
 from training.data.real.photographs import REAL, REAL_BODIES
+from training.evaluation.baselines import GAMMA, MEAN_CURVE, ORACLE_DORF, ORACLE_HEADROOM, OTHER_BODIES
 from training.evaluation.report import paper
 from training.evaluation.report.errors import ERROR_NAMES
 from training.evaluation.report.markdown_tables import (

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crfnet_core.network import Verdict
 from training.evaluation.baselines import OTHER_BODIES
 from training.evaluation.report.markdown_tables import rows_of
 from training.evaluation.report.real.content import FAR_OFF, FAR_OFF_STOPS, RealReport, RealRow, TrustedWrongly
@@ -46,12 +45,12 @@ def _photographs(photographs: Sequence[RealRow], model: str) -> str:
     for row in photographs:
         own, other = row.estimators[model], row.estimators[OTHER_BODIES]
         stated = own.uncertainty or 0.0
-        figures = [own.errors.shape, own.errors.estimation, stated]
+        figures = [own.errors.shape, own.shape_uncertainty or 0.0, own.errors.estimation, stated]
         origin = [row.editing, "yes" if row.is_scaled else "no", row.caution]
         cells = [f"{figure:.2f}" for figure in figures]
         others = [f"{other.errors.shape:.2f}", f"{other.errors.estimation:.2f}"]
-        rows.append([row.name, row.body, row.kind, *cells, Verdict.of(stated).value, *others, *origin])
-    header = ["photograph", "body", "kind", "shape", "E_est", "expected E_est", "verdict"]
+        rows.append([row.name, row.body, row.kind, *cells, own.verdict, *others, *origin])
+    header = ["photograph", "body", "kind", "shape", "expected", "E_est", "expected", "verdict"]
     header += [f"{OTHER_BODIES}: shape", "E_est", "edited", "scaled", "caution"]
     return rows_of(header, rows)
 

@@ -11,9 +11,9 @@ from PIL import Image, ImageOps
 
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Uint8Array
+from training.data.real.photographs import RealPhotograph
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures
-from training.data.real.photographs import RealPhotograph
 from training.evaluation.report.plots import color, save
 from training.evaluation.summaries.bodies import RealTable
 
