@@ -5,6 +5,7 @@
 - `jobs`: a part of the simulated photographs, taken and measured by one process.
 - `simulated`: all simulated photographs, on several processes.
 - `file_origin`: whether the file of a real photograph was edited or scaled.
+- `case_metadata`: what the list of real photographs says of their original files.
 - `real_photographs`: the folders of real photographs with measured responses, and the mean of other bodies.
 - `real`: all real photographs.
 """
