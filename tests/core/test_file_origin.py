@@ -3,9 +3,9 @@
 import pytest
 
 from crfnet_core.metadata import FAMILIES, FileMetadata, family_factors, file_origin
-from crfnet_core.metadata.family_factors import FACTORS, LEAST_FACTOR
-from crfnet_core.metadata.file_origin import Encoding, picture_shape
+from crfnet_core.metadata.factors import FACTORS, LEAST_FACTOR
 from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
+from crfnet_core.metadata.origin import Encoding, picture_shape
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}

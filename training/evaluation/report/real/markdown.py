@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from crfnet_core.metadata.origin import SCALED_BELOW
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, ORACLE_DORF, ORACLE_HEADROOM, OTHER_BODIES
-from training.evaluation.measure.file_origin import SCALED_BELOW, Editing
+from training.evaluation.measure.file_origin import Editing
 from training.evaluation.measure.real_photographs import REAL, REAL_BODIES
 from training.evaluation.report import paper
 from training.evaluation.report.errors import ERROR_NAMES

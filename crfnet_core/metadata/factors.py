@@ -7,7 +7,7 @@ They are set by hand, by the reasons beside them; none is fitted.
 from __future__ import annotations
 
 from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.file_origin import Encoding, FileOrigin
+from crfnet_core.metadata.origin import Encoding, FileOrigin
 
 #: Families of responses: three of renderings inside the device, then what programs and other media do.
 FAMILIES = ("phone", "compact", "camera", "edited", "film", "linear", "log", "unexplained")
