@@ -2,6 +2,7 @@
 
 estimate             the method on one screen: photographs in, response and uncertainty out
 photo, image_io      a photograph's code values, and the one reader of image files
+metadata             what a file says of how its photograph was made
 windows              the windows of a photograph that are analysed
 statistics           what is counted in a window
 network              the trained network: its folder, its inputs and predictions, pooling, uncertainty

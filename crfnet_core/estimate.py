@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.metadata import FileOrigin, family_factors, file_origin
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import (
@@ -83,6 +84,8 @@ class ResponseEstimate:
         All this in one word.
     prior : str
         Name of the prior.
+    origins : tuple of FileOrigin
+        What the metadata of each photograph says of how it was made; empty if metadata is ignored.
     warnings : tuple of str
         What makes a poor estimate likely, in words.
     model : str
@@ -100,6 +103,7 @@ class ResponseEstimate:
     families: Mapping[Family, float]
     verdict: Verdict
     prior: str
+    origins: tuple[FileOrigin, ...]
     warnings: tuple[str, ...]
     model: str
     photos: tuple[str, ...]
@@ -111,6 +115,7 @@ def estimate_response(
     network: ResponseNetwork,
     prior: Prior | None = None,
     bank: ResponseBank | None = None,
+    use_metadata: bool = True,
     windows: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
@@ -132,6 +137,8 @@ def estimate_response(
         How likely each family of responses is beforehand; by default the packaged prior "camera".
     bank : ResponseBank, optional
         The responses to choose from; by default the packaged ones.
+    use_metadata : bool
+        Whether what the files say of their making counts: see `crfnet_core.metadata`.
     windows : int
         Windows of each photograph.
     seed : int
@@ -150,7 +157,9 @@ def estimate_response(
     sources = [_choose_windows(photo, windows, seed, coverage) for photo in photos]
     if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
-    prior, bank = prior or Prior.load(), bank or ResponseBank.load()
+    bank = bank or ResponseBank.load()
+    origins = tuple(source.origin for source in sources if source.origin is not None and use_metadata)
+    prior = (prior or Prior.load()).given(_metadata_factors(origins))
     readings = _readings(sources, network, progress)
     independent = independent_share(scene_similarities([source.thumbnail for source in sources]))
     evidences = [reading.evidence for reading in readings]
@@ -165,7 +174,8 @@ def estimate_response(
         families=posterior.families,
         verdict=Verdict.of(posterior),
         prior=prior.name,
-        warnings=_warnings(sources),
+        origins=origins,
+        warnings=_warnings(sources, origins),
         model=network.config.label,
         photos=tuple(source.name for source in sources),
     )
@@ -173,13 +183,14 @@ def estimate_response(
 
 @dataclass(frozen=True)
 class _Source:
-    """What stays of a photograph once its windows are cut: name, is gray, windows, their samples, and a thumbnail."""
+    """What stays of a photograph once its windows are cut."""
 
     name: str
     is_gray: bool
     windows: tuple[Window, ...]
     samples: Float32Array
     thumbnail: Float64Array
+    origin: FileOrigin | None
 
 
 @dataclass(frozen=True)
@@ -197,11 +208,20 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Sour
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
     samples = cut_windows(photo.pixels, windows)
-    return _Source(photo.path.name, photo.is_gray, windows, samples, _thumbnail(photo.pixels))
+    origin = None if photo.metadata is None else file_origin(photo.metadata)
+    return _Source(photo.path.name, photo.is_gray, windows, samples, _thumbnail(photo.pixels), origin)
+
+
+def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
+    """Return factors on the families: the geometric mean over photographs, since one camera took them all."""
+    if not origins:
+        return {}
+    factors = [family_factors(origin) for origin in origins]
+    return {family: float(np.exp(np.mean([np.log(each[family]) for each in factors]))) for family in Family}
 
 
 def _thumbnail(pixels: Float32Array) -> Float64Array:
-    """Return ranks of brightness on a coarse grid, shape (16, 16): the scene, whatever the exposure and the response."""
+    """Return ranks of brightness on a coarse grid, shape (16, 16): no exposure or response changes them."""
     rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
     samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
     cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
@@ -241,9 +261,12 @@ def _window_estimates(
     )
 
 
-def _warnings(sources: Sequence[_Source]) -> tuple[str, ...]:
+def _warnings(sources: Sequence[_Source], origins: Sequence[FileOrigin]) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
-    warnings = []
+    editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
+    warnings = [
+        f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors
+    ]
     if not any(window.covers_range for source in sources for window in source.windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
     if all(source.is_gray for source in sources):

@@ -3,10 +3,7 @@
 from __future__ import annotations
 
 import mmap
-import re
-import struct
 import tempfile
-from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
@@ -15,6 +12,8 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.metadata.jpeg import JpegHeader, read_jpeg_header
 from crfnet_core.photo import CodeValues, Photo
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 4 GB of memory.
@@ -43,10 +42,7 @@ OTHER_PHOTOMETRIC = {5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b
 
 _WANTED = "JPEG, PNG, TIFF, WebP or DPX"
 _RAW = f"camera raw holds no encoded picture; give the {_WANTED} developed from it"
-_SEGMENT = re.compile(rb"\xff+([^\xff])(..)", re.DOTALL)
-_START_OF_SCAN = 0xDA
 _END_OF_IMAGE = b"\xff\xd9"
-_START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 
 def read_photo(path: str | Path) -> Photo:
@@ -69,7 +65,13 @@ def read_photo(path: str | Path) -> Photo:
         encoded photograph: CMYK, scene-linear, camera raw.
     """
     values = read_codes(path)
-    return Photo(pixels=values.pixels(), bit_depth=values.bit_depth, is_gray=values.is_gray, path=Path(path))
+    return Photo(
+        pixels=values.pixels(),
+        bit_depth=values.bit_depth,
+        is_gray=values.is_gray,
+        path=Path(path),
+        metadata=values.metadata,
+    )
 
 
 def read_codes(path: str | Path) -> CodeValues:
@@ -86,8 +88,7 @@ def read_codes(path: str | Path) -> CodeValues:
 
 def _read(path: Path, kind: str) -> CodeValues:
     """Return the integer samples of a file of a known format."""
-    if kind == "JPEG":
-        _check_jpeg(path)
+    jpeg = _checked_jpeg_header(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # colour as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
@@ -105,7 +106,7 @@ def _read(path: Path, kind: str) -> CodeValues:
         source.close()
     if values is None or problem:
         raise _damaged(path, kind, problem)
-    return _code_values(values, bit_depth, header)
+    return _code_values(values, bit_depth, header, metadata_of_header(header, kind, jpeg))
 
 
 def _kind(path: Path) -> str:
@@ -186,7 +187,7 @@ def _check_color(path: Path, header: Any) -> None:
         )
 
 
-def _code_values(values: NDArray[Any], bit_depth: int, header: Any) -> CodeValues:
+def _code_values(values: NDArray[Any], bit_depth: int, header: Any, metadata: FileMetadata) -> CodeValues:
     """Return OpenImageIO's samples, shape (H, W, 1 to 4), as three channels and alpha on the file's own scale."""
     if bit_depth in (10, 12):
         values = values >> (16 - bit_depth)  # OpenImageIO widens the codes to 16 bits and repeats their top bits below
@@ -198,32 +199,22 @@ def _code_values(values: NDArray[Any], bit_depth: int, header: Any) -> CodeValue
         bit_depth=bit_depth,
         is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),
         header=header,
+        metadata=metadata,
     )
 
 
-def _check_jpeg(path: Path) -> None:
+def _checked_jpeg_header(path: Path) -> JpegHeader:
     """Refuse a JPEG for what OpenImageIO would not: a huge frame, which opening allocates, and a missing end.
 
     Where the rest of a file is zeros (a failed download or recovery) the decoder paints gray and does not complain.
     """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        scan = 0
-        for marker, scan in _jpeg_segments(content):
-            if marker in _START_OF_FRAME:
-                height, width = struct.unpack(">HH", content[scan + 1 : scan + 5].ljust(4, b"\0"))
-                _check_size(path, width, height)
-        if content.rfind(_END_OF_IMAGE, scan) < 0:
+        header = read_jpeg_header(content)
+        for width, height in header.sizes:
+            _check_size(path, width, height)
+        if content.rfind(_END_OF_IMAGE, header.scan) < 0:
             raise _damaged(path, "JPEG", "it has no end marker")
-
-
-def _jpeg_segments(content: mmap.mmap) -> Iterator[tuple[int, int]]:
-    """Yield the marker of each segment, up to the first scan, and the position of its payload."""
-    position = 2
-    while segment := _SEGMENT.match(content, position):
-        yield segment[1][0], segment.end()
-        if segment[1][0] == _START_OF_SCAN:
-            return
-        position = segment.start(2) + max(2, int.from_bytes(segment[2], "big"))
+    return header
 
 
 def _read_base_image(path: Path) -> CodeValues:
@@ -232,8 +223,7 @@ def _read_base_image(path: Path) -> CodeValues:
     The file holds two JPEG pictures; without the second, the gain map, it is an ordinary one.
     """
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        scan = max(start for _, start in _jpeg_segments(content))
-        base = content[: content.find(_END_OF_IMAGE, scan) + 2]
+        base = content[: content.find(_END_OF_IMAGE, read_jpeg_header(content).scan) + 2]
         if len(base) == len(content):
             raise PhotoError(f"{path}: {_linear('a JPEG file of half samples')}")
     with tempfile.TemporaryDirectory() as folder:

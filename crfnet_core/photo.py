@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from crfnet_core.metadata.file_metadata import FileMetadata
 from crfnet_core.types import Float32Array
 
 CodeArray = NDArray[np.uint8] | NDArray[np.uint16]
@@ -28,12 +29,15 @@ class Photo:
         Whether the three channels are equal everywhere.
     path : Path
         The file.
+    metadata : FileMetadata, optional
+        What the file says beside the pixels; None for photographs that were not read from a file of their own.
     """
 
     pixels: Float32Array
     bit_depth: int
     is_gray: bool
     path: Path
+    metadata: FileMetadata | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,7 +55,9 @@ class CodeValues:
     is_associated : bool
         Whether the file stores its code values multiplied by alpha.
     header : OpenImageIO.ImageSpec
-        The header, metadata included.
+        The header, with all that OpenImageIO read.
+    metadata : FileMetadata
+        What the file says beside the pixels.
     """
 
     codes: CodeArray
@@ -59,6 +65,7 @@ class CodeValues:
     bit_depth: int
     is_associated: bool
     header: Any
+    metadata: FileMetadata
 
     @property
     def largest(self) -> int:

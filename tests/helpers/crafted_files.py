@@ -84,3 +84,22 @@ def with_jpeg_size(content: bytes, width: int, height: int) -> bytes:
     """Return a JPEG whose frame header claims another size."""
     start = next(at for marker in (b"\xff\xc0", b"\xff\xc2") if (at := content.find(marker)) > 0)
     return content[: start + 5] + struct.pack(">HH", height, width) + content[start + 9 :]
+
+
+def camera_jpeg(path: Path, **attributes: Any) -> bytes:
+    """Write a JPEG as cameras do, EXIF first and with quantization tables of its own, and return its bytes.
+
+    The picture of `jpeg` is written and its segments changed: no JFIF, and a luma table that the IJG library never has.
+    """
+    content = jpeg(path, **attributes)
+    size = int.from_bytes(content[4:6], "big")
+    assert content[2:4] == b"\xff\xe0"
+    table = content.index(b"\xff\xdb") + 5
+    content = content[:table] + bytes([3]) * 64 + content[table + 64 :]
+    path.write_bytes(content[:2] + content[4 + size :])
+    return path.read_bytes()
+
+
+def with_jpeg_segment(content: bytes, marker: int, payload: bytes) -> bytes:
+    """Return a JPEG with one more segment, in front."""
+    return content[:2] + bytes([0xFF, marker]) + struct.pack(">H", len(payload) + 2) + payload + content[2:]

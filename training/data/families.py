@@ -49,14 +49,20 @@ def _s_curve(brightness: Float64Array, contrast: float, pivot: float) -> Float64
 
 def nearly_linear(count: int, rng: np.random.Generator) -> Float64Array:
     """Return powers of irradiance near 1, shape (count, 1024)."""
-    return IRRADIANCE ** np.exp(rng.uniform(*np.log(LINEAR_POWERS), (count, 1)))
+    return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
 
 
 def log_like(count: int, rng: np.random.Generator) -> Float64Array:
     """Return curves log(1 + a E) / log(1 + a) bent by a small power, shape (count, 1024)."""
-    factor = np.exp(rng.uniform(*np.log(LOG_FACTORS), (count, 1)))
+    factor = _log_uniform(LOG_FACTORS, count, rng)
     curves = np.log1p(factor * IRRADIANCE) / np.log1p(factor)
     return curves ** np.exp(rng.normal(0, 0.08, (count, 1)))
+
+
+def _log_uniform(bounds: tuple[float, float], count: int, rng: np.random.Generator) -> Float64Array:
+    """Return numbers whose logarithms are uniform, shape (count, 1)."""
+    low, high = np.log(bounds)
+    return np.exp(rng.uniform(low, high, (count, 1)))
 
 
 @dataclass(frozen=True)

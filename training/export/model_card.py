@@ -44,7 +44,6 @@ def introduction(folder: Path, config: ModelConfig) -> str:
         .read_text()
         .format(
             **asdict(config),
-            **asdict(config.uncertainty_model),
             size=(folder / "model.onnx").stat().st_size / 1e6,
             statistics=LENGTH,
             scenes=VALIDATION_SCENES,

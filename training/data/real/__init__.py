@@ -1,6 +1,7 @@
 """Real photographs with measured responses: to measure on; only the responses, never the pixels, are learned from.
 
 - `photographs`: the two folders of photographs and what their lists say of them.
+- `case_metadata`: what their lists say of the original files.
 - `file_origin`: whether a file was edited or scaled after the camera wrote it.
 - `bodies`: the measured responses of every body.
 """

@@ -4,6 +4,9 @@ from __future__ import annotations
 
 from enum import StrEnum
 
+from crfnet_core.metadata.editors import is_editor
+from crfnet_core.metadata.origin import SCALED_BELOW
+
 
 class Editing(StrEnum):
     """Whether a program that changes tones saved the file."""
@@ -13,18 +16,8 @@ class Editing(StrEnum):
     UNKNOWN = "not known"
 
 
-#: Parts of the names, in lower case, of programs that can change tones. Others are firmware ("Ver.1.00"), or programs
-#: that only turn a photograph (Windows Photo Viewer).
-EDITORS = ("adobe", "photoshop", "lightroom", "gimp", "capture one", "darktable", "affinity", "snapseed", "easyhdr")
-
 #: What `use` of DATA/real_bodies says of a file that its publisher developed or edited.
 DEVELOPED = "edited/developed by software"
-
-#: Longest side in pixels below which a photograph is taken to have been scaled after the camera. The lists do not hold
-#: the native size of a sensor. The smallest file that is surely a camera's own has 1600 pixels, the sizes of web
-#: pages end at 1280, and the rows of DATA/real_bodies without a crop are just those below. A camera's own smaller
-#: sizes (M, S) stay on the unscaled side, and a compact of 2002 that records 1024 x 768 falls on the other.
-SCALED_BELOW = 1600
 
 
 def editing(software: str, *, make: str = "", model: str = "", use: str = "") -> Editing:
@@ -42,11 +35,16 @@ def editing(software: str, *, make: str = "", model: str = "", use: str = "") ->
     use : str
         What DATA/real_bodies says of the use of a photograph.
     """
-    if DEVELOPED in use or any(name in software.lower() for name in EDITORS):
+    if DEVELOPED in use or is_editor(software):
         return Editing.EDITED
     return Editing.NOT_NAMED if make or model else Editing.UNKNOWN
 
 
 def is_scaled(size: str) -> bool:
-    """Return whether a photograph of "WIDTHxHEIGHT" pixels was made smaller after the camera; see `SCALED_BELOW`."""
+    """Return whether a photograph of "WIDTHxHEIGHT" pixels was made smaller after the camera, by its longest side.
+
+    The lists do not hold the native size of a sensor. The rows of DATA/real_bodies without a crop are just those below
+    `SCALED_BELOW`. A camera's own smaller sizes (M, S) stay on the unscaled side, and a compact of 2002 that records
+    1024 x 768 falls on the other.
+    """
     return max(int(side) for side in size.split("x")) < SCALED_BELOW

@@ -8,7 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
+from crfnet_core.metadata import FileMetadata
 from crfnet_core.response import ResponseCurve
+from training.data.real.case_metadata import is_original, metadata_of_case
 from training.data.real.file_origin import Editing, editing, is_scaled
 
 #: The two folders of real photographs, which are also their names in the report.
@@ -61,6 +63,8 @@ class RealPhotograph:
         Bodies of one fold are left out of a mean together.
     photograph, measured : Path
         The files of the photograph and of its response.
+    metadata : FileMetadata, optional
+        That of the original file, where `photograph` is not the original and has lost it.
     """
 
     name: str
@@ -74,6 +78,7 @@ class RealPhotograph:
     fold: str
     photograph: Path
     measured: Path
+    metadata: FileMetadata | None = None
 
     @property
     def is_trusted(self) -> bool:
@@ -125,6 +130,11 @@ def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
     )
 
 
+def _crop(folder: Path, row: dict[str, str]) -> bytes:
+    """Return the part of the original file that is kept at full resolution, or nothing."""
+    return (folder / row["crop"]).read_bytes() if row["crop"] and (folder / row["crop"]).is_file() else b""
+
+
 def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
     """Return the photograph of a row of DATA/real_bodies/cases.csv; those of one exposure stack share a response."""
     return RealPhotograph(
@@ -139,4 +149,5 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         fold=row["fold"],
         photograph=folder / row["file"],
         measured=folder / row["gt"],
+        metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
     )

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -68,6 +69,7 @@ def measure_real(
     networks = {name: ResponseNetwork.load(folder) for name, folder in models.items()}
     for photograph in tqdm(wanted, desc=title, unit="photograph"):
         photo, true = read_photo(photograph.photograph), truths[photograph.measured]
+        photo = replace(photo, metadata=photograph.metadata or photo.metadata)
         counts = code_counts(photo)
         for name, file in files.items():
             if photograph.name in file.rows:

@@ -1,0 +1,164 @@
+"""Phone, compact or camera with interchangeable lenses: told by the maker and the model in EXIF.
+
+Makers of one kind are told by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
+make several kinds: there the first pattern that fits the model decides, and the last one often fits everything.
+Drones, action cameras, camcorders and cinema cameras stay unknown: none of the families is theirs.
+"""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+
+class Device(StrEnum):
+    """What kind of device took the photograph."""
+
+    PHONE = "phone"
+    COMPACT = "compact"
+    CAMERA = "camera"
+    SCANNER = "scanner"
+    UNKNOWN = ""
+
+
+_PHONE, _COMPACT, _CAMERA, _SCANNER, _UNKNOWN = Device
+
+#: Beginnings of the makes, in lower case, of those who make phones (and tablets) only.
+PHONE_MAKERS = (
+    *("apple", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus", "oppo", "realme", "vivo", "iqoo"),
+    *(
+        "motorola",
+        "lg",
+        "lge",
+        "htc",
+        "nokia",
+        "hmd",
+        "microsoft",
+        "blackberry",
+        "rim",
+        "research in motion",
+        "zte",
+        "nubia",
+    ),
+    *("lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm", "essential"),
+    *("fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee", "umidigi"),
+    *("blackview", "sharp", "fujitsu", "gionee", "coolpad", "letv", "leeco", "micromax", "amazon"),
+)
+
+#: Beginnings of the makes of those who made compacts only (as far as photographs of them are seen).
+COMPACT_MAKERS = (
+    *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "praktica"),
+    *("general imaging", "ge", "toshiba", "sanyo", "traveler", "aiptek", "kyocera"),
+)
+
+#: Beginnings of the makes of those who make digital backs, or cameras with interchangeable lenses only.
+CAMERA_MAKERS = ("phase one", "leaf", "mamiya", "pixii", "zenit")
+
+#: Beginnings of the makes of those who make scanners only: the photograph behind is on film or paper.
+SCANNER_MAKERS = ("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon")
+
+#: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
+PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
+    "canon": (
+        (r"eos", _CAMERA),
+        (r"powershot|ixus|digital ixus|ixy|digital ixy|pro\d|ivy", _COMPACT),
+        (r"canoscan|m[gpx]\d|ts\d|lide|image(class|runner)", _SCANNER),
+    ),
+    "nikon": (
+        (r"(super )?coolscan|ls-\d", _SCANNER),
+        (r"d\d|df\b|z|1 [a-z]", _CAMERA),
+        (r"coolpix|e\d|keymission", _COMPACT),
+    ),
+    "sony": (
+        (r"ilce|ilca|ilme|ilx|slt|dslr|nex|zv-e", _CAMERA),
+        (r"dsc|cyber-?shot|mvc|zv-", _COMPACT),
+        (r"xq-|so-?\d|so[vg]\d|sgp|pm-\d|[a-z]{2}\d\d[ai]|[a-j]\d{4}\b|a?\d{3}so|xperia", _PHONE),
+    ),
+    "samsung": (
+        (r"nx|gx-?\d", _CAMERA),
+        (r"(samsung-)?(sm|gt|sgh|sch|sph|shv|shw|sc|scv)-?\w|galaxy", _PHONE),
+        (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|digimax|vluu|<|techwin", _COMPACT),
+    ),
+    "panasonic": (
+        (r"dmc-(g|l10?$)|dc-[gs]|dc-b(gh|s)1", _CAMERA),
+        (r"dmc-cm", _PHONE),
+        (r"dmc-|dc-|lumix", _COMPACT),
+    ),
+    "fuji": (
+        (r"sp-?\d|frontier", _SCANNER),
+        (r"x-s1$|(finepix )?x\d|xf|xq|x half|gfx100rf", _COMPACT),
+        (r"x-|gfx|finepix ?s[1235] ?pro|is[- ]?pro|dbp", _CAMERA),
+        (r"", _COMPACT),
+    ),
+    "olympus": ((r"e-?[12]0\b|e-100rs", _COMPACT), (r"e-|om-|pen|air", _CAMERA), (r"", _COMPACT)),
+    "om digital": ((r"om-|e-|pen", _CAMERA), (r"", _COMPACT)),
+    "pentax": (
+        (r"optio|x\d|x-\d|wg|mx-1|i-10|efina|vs\d|rs\d|rz\d|ei", _COMPACT),
+        (r"k|\*|645|q", _CAMERA),
+    ),
+    "ricoh": (
+        (r"pentax (k|\*|645|q)|k-|gxr", _CAMERA),
+        (r"(ricoh )?theta", _UNKNOWN),
+        (r"", _COMPACT),
+    ),
+    "leica": (
+        (r"leitz phone", _PHONE),
+        (r"[dvc]-lux|digilux( [12])?$|digilux 4|x|q", _COMPACT),
+        (r"", _CAMERA),
+    ),
+    "sigma": ((r"dp", _COMPACT), (r"sd|fp|bf", _CAMERA)),
+    "konica": ((r"dimage scan", _SCANNER), (r"dimage|revio|kd", _COMPACT), (r"", _CAMERA)),
+    "minolta": ((r"dimage scan", _SCANNER), (r"dimage", _COMPACT), (r"", _CAMERA)),
+    "kodak": ((r"dcs|pixpro s-1|s-1", _CAMERA), (r"", _COMPACT)),
+    "hasselblad": ((r"flextight", _SCANNER), (r"l\dd", _UNKNOWN), (r"stellar", _COMPACT), (r"", _CAMERA)),
+    "contax": ((r"n digital", _CAMERA), (r"", _COMPACT)),
+    "hp": ((r".*scan", _SCANNER), (r"", _COMPACT)),
+    "epson": ((r"r-d1", _CAMERA), (r"photopc|l-\d", _COMPACT), (r"", _SCANNER)),
+}
+
+#: Makes that begin in another way than the patterns' names.
+_OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "seiko epson": "epson", "leitz": "leica"}
+
+
+def device_of(make: str, model: str) -> Device:
+    """Return the kind of device; UNKNOWN where neither the maker nor the model tells.
+
+    Parameters
+    ----------
+    make, model : str
+        EXIF Make and Model; where the make is absent, the model may begin with it ("NIKON D90").
+    """
+    maker = (make or model).casefold().strip()
+    for begin, name in _OTHER_NAMES.items():
+        maker = name if maker.startswith(begin) else maker
+    for makers, device in (
+        (PHONE_MAKERS, _PHONE),
+        (SCANNER_MAKERS, _SCANNER),
+        (COMPACT_MAKERS, _COMPACT),
+        (CAMERA_MAKERS, _CAMERA),
+    ):
+        if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
+            return device
+    for name, patterns in PATTERNS.items():
+        if maker.startswith(name):
+            return _of_model(name, model, patterns)
+    return _UNKNOWN
+
+
+def camera_name(make: str, model: str) -> str:
+    """Return make and model in one name: "Canon EOS 20D", "FUJIFILM X-E1"; empty where both are."""
+    first = make.split()[0] if make.split() else ""
+    repeats = bool(first) and model.casefold().startswith(first.casefold())
+    return " ".join((model if repeats else f"{_short(make)} {model}").split())
+
+
+def _of_model(maker: str, model: str, patterns: tuple[tuple[str, Device], ...]) -> Device:
+    """Return the kind of the first pattern that fits the model, with the maker's name left out in front."""
+    name = re.sub(rf"^(?:{maker}\w*|fujifilm|ricoh)\b[ _]*", "", model.casefold().strip())
+    return next((device for pattern, device in patterns if re.match(pattern, name)), _UNKNOWN)
+
+
+def _short(make: str) -> str:
+    """Return a make without its legal form: "NIKON" for "NIKON CORPORATION"."""
+    ending = r",? *(corporation|corp\.?|co\.?,? *ltd\.?|company,? *ltd\.?|imaging corp\.?|inc\.?|ag)\.?$"
+    return re.sub(ending, "", make.strip(), flags=re.IGNORECASE)

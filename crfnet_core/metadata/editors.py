@@ -1,0 +1,88 @@
+"""Programs that edit or develop photographs, by what they write as EXIF Software and into the XMP history."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Sequence
+
+#: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
+#: "Digital Camera X-E1 Ver2.00", "15.3.1", "G960USQS9FUG2") holds none of them.
+EDITORS = (
+    # Adobe
+    *("adobe", "photoshop", "lightroom", "camera raw"),
+    # raw developers, of camera makers too
+    *(
+        "capture one",
+        "captureone",
+        "darktable",
+        "rawtherapee",
+        "ufraw",
+        "dcraw",
+        "dxo",
+        "silkypix",
+        "raw file converter",
+    ),
+    *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
+    *(
+        "olympus workspace",
+        "olympus viewer",
+        "olympus master",
+        "om workspace",
+        "photofunstudio",
+        "iridient",
+        "aperture ",
+    ),
+    *("phocus", "filmpack", "photolab", "rawpower", "raw power"),
+    # editors on computers
+    *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
+    *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
+    *(
+        "irfanview",
+        "xnview",
+        "faststone",
+        "picasa",
+        "iphoto",
+        "photos ",
+        "digikam",
+        "shotwell",
+        "gthumb",
+        "microsoft ice",
+    ),
+    *("windows photo", "windows live photo", "microsoft windows photo", "photodirector", "movavi", "ashampoo", "magix"),
+    *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
+    # HDR merging and panoramas
+    *("photomatix", "easyhdr", "aurora hdr", "luminance hdr", "qtpfsgui", "hdr efex", "oloneo", "sns-hdr", "hdrsoft"),
+    *("dynamic photo", "enfuse", "hugin", "ptgui", "autopano", "hdr projects"),
+    # on phones and in the web
+    *("snapseed", "vsco", "instagram", "picsart", "polarr", "pixlr", "befunky", "fotor", "meitu", "beautyplus", "b612"),
+    *("camera360", "facetune", "afterlight", "prisma", "canva", "retrica", "faceapp", "remini", "touchretouch"),
+)
+
+#: Programs that only turn or label photographs, though their names look like those of editors.
+NO_EDITORS = ("windows photo viewer", "adobe bridge")
+
+#: What `Software` is exactly after a change in Google Photos or Picasa Web.
+EXACT = ("google", "google photos")
+
+_EDITOR = re.compile(r"(?<![a-z])(?:" + "|".join(map(re.escape, EDITORS)) + ")")
+
+
+def editor_name(software: str, history: Sequence[str] = ()) -> str:
+    """Return the program that edited or developed the photograph, as it writes itself, or an empty text.
+
+    Parameters
+    ----------
+    software : str
+        EXIF Software; in many files that of the camera's firmware.
+    history : sequence of str
+        Programs in the XMP history; the last counts, where `software` names none.
+    """
+    return next((name for name in (software, *reversed(history)) if is_editor(name)), "")
+
+
+def is_editor(software: str) -> bool:
+    """Return whether a program can change tones: firmware and mere viewers cannot."""
+    name = software.casefold()
+    if any(part in name for part in NO_EDITORS):
+        return False
+    return name in EXACT or bool(_EDITOR.search(name))

@@ -1,0 +1,79 @@
+"""How metadata shifts the prior: the probability of what the file says under each family of responses.
+
+The factors of several findings are multiplied as if they were independent, so each is mild where another says the same.
+They are set by hand, by the reasons beside them; none is fitted.
+"""
+
+from __future__ import annotations
+
+from crfnet_core.metadata.devices import Device
+from crfnet_core.metadata.origin import Encoding, FileOrigin
+
+#: Families of responses: three of renderings inside the device, then what programs and other media do.
+FAMILIES = ("phone", "compact", "camera", "edited", "film", "linear", "log", "unexplained")
+
+#: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.
+LEAST_FACTOR = 0.005
+
+#: Finding -> P(finding | family) in the order of `FAMILIES`, up to a common factor; 1 says nothing.
+FACTORS: dict[str, tuple[float, ...]] = {
+    # EXIF of a device is kept by editors and lost by scans and frames; apps write linear and log pictures, rarely.
+    Device.PHONE: (1, 0.03, 0.03, 0.3, 0.02, 0.02, 0.05, 0.2),
+    # A maker gives its compacts and its cameras much the same rendering; compacts have no log pictures.
+    Device.COMPACT: (0.03, 1, 0.15, 0.3, 0.02, 0.02, 0.02, 0.2),
+    # As before; those who develop raw files to linear pictures, or grab log frames, use such cameras.
+    Device.CAMERA: (0.03, 0.1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
+    # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
+    Device.SCANNER: (0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    # Web pages and messengers strip EXIF from camera pictures; frames, scans and renderings never had it.
+    "no camera": (0.6, 0.6, 0.6, 0.8, 1, 1, 1, 1),
+    # Who saves from an editor mostly changed tones, though some only scale or turn; developers also write the rest.
+    "editor": (1, 1, 1, 5, 2, 2, 1, 2),
+    # Nothing but the camera has written the file; its picture may still be flat on purpose, or an app's.
+    "as the camera wrote it": (1, 1, 1, 0.05, 0.1, 0.1, 0.3, 0.4),
+    # Who scales for the web often edits before; linear and log pictures are for work and keep their size.
+    "scaled": (1, 1, 1, 1.5, 1, 0.5, 0.5, 1.2),
+    # The program that encoded it again is a messenger, a site or an editor.
+    "encoded again": (1, 1, 1, 1.5, 1, 0.7, 0.7, 1.2),
+    # The shapes count only where no device is named. 3:2 is that of reflex and mirrorless cameras, and of 35 mm film.
+    "3:2": (0.15, 0.15, 1, 0.8, 1, 0.7, 0.3, 0.6),
+    # Phones, compacts and Micro Four Thirds take 4:3, and old video does.
+    "4:3": (1, 1, 0.35, 0.7, 0.6, 0.7, 0.4, 0.7),
+    # Phones and video take 16:9; cameras and compacts only if asked to.
+    "16:9": (1, 0.4, 0.3, 0.7, 0.7, 0.8, 2, 1),
+    # Phones as long as their screens, and cinema.
+    "2:1": (1, 0.1, 0.1, 0.5, 0.5, 0.5, 1, 0.8),
+    # The profile was written by a program that knew: it says what the values are.
+    Encoding.LINEAR: (0.02, 0.02, 0.02, 0.1, 0.05, 1, 0.05, 0.3),
+    Encoding.LOG: (0.02, 0.02, 0.02, 0.1, 0.1, 0.05, 1, 0.3),
+    # DPX holds scanned film, log and video frames; no still camera writes it.
+    Encoding.FOOTAGE: (0.05, 0.05, 0.1, 0.5, 1, 0.5, 1, 0.5),
+}
+
+
+def family_factors(origin: FileOrigin) -> dict[str, float]:
+    """Return family -> P(metadata | family), relative: the largest is 1, and none is below `LEAST_FACTOR`.
+
+    Multiply the prior shares of the families by them, and divide by the sum.
+    """
+    factors = dict.fromkeys(FAMILIES, 1.0)
+    for finding in findings(origin):
+        for family, factor in zip(FAMILIES, FACTORS[finding], strict=True):
+            factors[family] *= factor
+    largest = max(factors.values())
+    return {family: max(factor / largest, LEAST_FACTOR) for family, factor in factors.items()}
+
+
+def findings(origin: FileOrigin) -> list[str]:
+    """Return the rows of `FACTORS` that hold of a file."""
+    rows = {
+        origin.device: origin.device != Device.UNKNOWN,
+        "no camera": not origin.camera,
+        origin.picture_shape: origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
+        "editor": bool(origin.editor),
+        "scaled": origin.is_scaled is True,
+        "encoded again": origin.is_resaved is True and not origin.editor and not origin.is_scaled,
+        "as the camera wrote it": origin.is_resaved is False,
+        origin.encoding: origin.encoding != Encoding.UNKNOWN,
+    }
+    return [str(finding) for finding, holds in rows.items() if holds]

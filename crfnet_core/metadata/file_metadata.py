@@ -1,0 +1,130 @@
+"""What the header of an image file says of the photograph, beside its pixels."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from typing import Any
+
+from crfnet_core.metadata.jpeg import JpegHeader, Table
+
+#: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
+LONGEST_TEXT = 200
+
+
+@dataclass(frozen=True)
+class FileMetadata:
+    """The metadata of an image file; every field is empty or None where the file does not say.
+
+    Texts hold printable characters only, so that they can be shown, and no spaces at their ends.
+
+    Parameters
+    ----------
+    width, height : int
+        The picture in pixels, as stored; 0 if unknown.
+    make, model : str
+        The camera, as it writes itself: EXIF Make and Model.
+    software : str
+        The program that wrote the file last, or the camera's firmware: EXIF Software.
+    history : tuple of str
+        Programs in the XMP history (stEvt:softwareAgent), the first first.
+    year : int, optional
+        Of EXIF DateTimeOriginal, by the camera's clock.
+    iso : int, optional
+        EXIF PhotographicSensitivity.
+    exif_size : (int, int), optional
+        EXIF PixelXDimension and PixelYDimension: the size that the camera, or an editor, says that it wrote.
+    luma_table, chroma_table : tuple of int
+        Quantization tables of a JPEG file, 64 divisors each in the order of the file.
+    subsampling : str
+        Chroma subsampling of a JPEG file, such as "4:2:0".
+    has_jfif, has_adobe : bool
+        Whether a JPEG file has a JFIF segment, and one of Adobe: see `JpegHeader`.
+    profile : str
+        Description of the ICC profile; of DPX its transfer characteristic.
+    file_format : str
+        "JPEG", "PNG", "TIFF", "WebP" or "DPX".
+    """
+
+    width: int = 0
+    height: int = 0
+    make: str = ""
+    model: str = ""
+    software: str = ""
+    history: tuple[str, ...] = ()
+    year: int | None = None
+    iso: int | None = None
+    exif_size: tuple[int, int] | None = None
+    luma_table: Table = ()
+    chroma_table: Table = ()
+    subsampling: str = ""
+    has_jfif: bool = False
+    has_adobe: bool = False
+    profile: str = ""
+    file_format: str = ""
+
+    @property
+    def has_camera(self) -> bool:
+        """Whether the file names the camera."""
+        return bool(self.make or self.model)
+
+
+def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = None) -> FileMetadata:
+    """Return the metadata in an open file's header; what is damaged stays empty.
+
+    Parameters
+    ----------
+    header : OpenImageIO.ImageSpec
+        Of the picture that is read.
+    file_format : str
+        "JPEG", "PNG", "TIFF", "WebP" or "DPX".
+    jpeg : JpegHeader, optional
+        The segments of a JPEG file.
+    """
+    jpeg = jpeg or JpegHeader()
+    sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
+    history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
+    return FileMetadata(
+        width=header.width,
+        height=header.height,
+        make=_text(header, "Make"),
+        model=_text(header, "Model"),
+        software=_text(header, "Software"),
+        history=tuple(part.strip() for part in history.split(";") if part.strip()),
+        year=_year(_text(header, "Exif:DateTimeOriginal") or _text(header, "exif:DateTimeOriginal")),
+        iso=_number(header, "Exif:PhotographicSensitivity"),
+        exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
+        luma_table=jpeg.luma_table,
+        chroma_table=jpeg.chroma_table,
+        subsampling=jpeg.subsampling,
+        has_jfif=jpeg.has_jfif,
+        has_adobe=jpeg.has_adobe,
+        profile=_text(header, "ICCProfile:profile_description") or _text(header, "dpx:Transfer"),
+        file_format=file_format,
+    )
+
+
+def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
+    """Return the printable characters of a text in the header."""
+    value = _attribute(header, name)
+    return "".join(filter(str.isprintable, value[:longest])).strip() if isinstance(value, str) else ""
+
+
+def _number(header: Any, name: str) -> int | None:
+    """Return a positive whole number in the header."""
+    value = _attribute(header, name)
+    return value if isinstance(value, int) and value > 0 else None
+
+
+def _attribute(header: Any, name: str) -> Any:
+    """Return a value in the header; None where it is absent or no value of Python's."""
+    try:
+        return header.getattribute(name)
+    except (RuntimeError, TypeError, ValueError):
+        return None
+
+
+def _year(time: str) -> int | None:
+    """Return the year of "2004:01:02 03:04:05" or "2004-01-02T03:04:05"."""
+    year = re.match(r"((?:19|20)\d\d)[:-]", time)
+    return int(year[1]) if year else None

@@ -1,0 +1,219 @@
+"""What became of a photograph before it was read: which device took it, and which programs changed the file."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass
+from enum import StrEnum
+
+from crfnet_core.metadata.devices import Device, camera_name, device_of
+from crfnet_core.metadata.editors import editor_name
+from crfnet_core.metadata.file_metadata import FileMetadata
+from crfnet_core.metadata.jpeg import ijg_quality
+
+#: The editor of a file with a segment of Adobe that names no program.
+ADOBE = "a program of Adobe"
+
+#: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
+#: 18:9 to 20:9 are the screens of phones.
+SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "2:1": (2.1, 0.07)}
+
+#: A picture and the size in EXIF have one shape if their ratios differ by less than this: scaled sides are rounded.
+SAME_SHAPE = 0.02
+
+#: Longest side in pixels below which a picture is taken to have been scaled, unless the camera says that it wrote it:
+#: the smallest size of cameras of the last fifteen years has 1600 pixels, the sizes of web pages end at 1280.
+SCALED_BELOW = 1600
+
+#: Longest sides in pixels to which messengers and photograph sites scale.
+WEB_SIDES = (1600, 1920, 2048)
+
+#: Sensors write sides that are multiples of these, longer and shorter, and since 2004 at least so many pixels.
+NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
+
+#: From this quality on the tables of the IJG library are nearly all ones, as those of many cameras are.
+INDISTINCT_QUALITY = 98
+
+_DEVICES = {
+    Device.PHONE: "a phone",
+    Device.COMPACT: "a compact camera",
+    Device.CAMERA: "a camera with interchangeable lenses",
+    Device.SCANNER: "a scanner of film or paper",
+}
+
+
+class Encoding(StrEnum):
+    """What the file says of its code values, if it says anything but a picture for a display."""
+
+    LINEAR = "scene-linear"
+    LOG = "log"
+    FOOTAGE = "film or video"
+    UNKNOWN = ""
+
+
+#: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
+_ENCODINGS = (
+    (Encoding.LINEAR, r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|g10\b|gamma ?1\.0\b"),
+    (
+        Encoding.LOG,
+        r"\bs-?log|\bv-?log|\bc-?log|\bn-?log|\bf-?log|\blog ?c|log3g|\blogarithmic|\bcineon|\bprinting density",
+    ),
+)
+
+
+@dataclass(frozen=True)
+class FileOrigin:
+    """What metadata says of how a file was made.
+
+    Parameters
+    ----------
+    device : Device
+        What kind of device took the photograph.
+    camera : str
+        Maker and model; empty if the file names none.
+    editor : str
+        The program that edited or developed the photograph; empty if none is known.
+    is_scaled : bool, optional
+        Whether the picture was scaled after the camera; None if unknown.
+    is_resaved : bool, optional
+        Whether a program encoded the file; False if just as the camera wrote it, None if unknown.
+    jpeg_quality : int, optional
+        The quality at which the IJG library writes the file's quantization tables; None for others' tables.
+    picture_shape : str
+        Ratio of the sides: "3:2", "4:3", "16:9", "2:1" or "other".
+    encoding : Encoding
+        What the file says of its code values.
+    words : tuple of str
+        The same in plain words, one sentence part each, for people.
+    """
+
+    device: Device
+    camera: str
+    editor: str
+    is_scaled: bool | None
+    is_resaved: bool | None
+    jpeg_quality: int | None
+    picture_shape: str
+    encoding: Encoding
+    words: tuple[str, ...]
+
+
+def file_origin(metadata: FileMetadata) -> FileOrigin:
+    """Return what the metadata says of how the file was made; see the fields of `FileOrigin`."""
+    device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
+    editor = editor_name(metadata.software, metadata.history) or (ADOBE if metadata.has_adobe else "")
+    quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
+    encoded_by = _encoded_by_program(metadata, device, quality)
+    is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
+    is_resaved = True if editor or is_scaled else encoded_by
+    encoding = _encoding(metadata)
+    return FileOrigin(
+        device=device,
+        camera=camera,
+        editor=editor,
+        is_scaled=is_scaled,
+        is_resaved=is_resaved,
+        jpeg_quality=quality,
+        picture_shape=picture_shape(metadata.width, metadata.height),
+        encoding=encoding,
+        words=(
+            _taken_words(camera, device),
+            *_saved_words(editor, is_scaled, is_resaved, quality),
+            *_scaled_words(metadata, is_scaled),
+            *_encoding_words(metadata, encoding),
+        ),
+    )
+
+
+def picture_shape(width: int, height: int) -> str:
+    """Return the ratio of the sides, whichever is longer: "3:2", "4:3", "16:9", "2:1" (to 20:9) or "other"."""
+    longer, shorter = max(width, height), min(width, height)
+    if shorter <= 0:
+        return "other"
+    near = (name for name, (ratio, margin) in SHAPES.items() if abs(longer / shorter / ratio - 1) <= margin)
+    return next(near, "other")
+
+
+def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
+    """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not tell.
+
+    Cameras begin the file with EXIF, as its standard asks, and most have tables of their own. Libraries begin it with
+    JFIF, and most use the IJG library's tables. Phones may do either.
+    """
+    if metadata.file_format != "JPEG" or not metadata.luma_table:
+        return None
+    is_ijg = quality is not None and quality < INDISTINCT_QUALITY
+    if not metadata.has_camera:
+        return True if is_ijg or metadata.has_adobe else None
+    if is_ijg or metadata.has_jfif or metadata.has_adobe:
+        return True if metadata.has_adobe or (is_ijg and metadata.has_jfif and device != Device.PHONE) else None
+    return False
+
+
+def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
+    """Return whether the picture was scaled: by the size in EXIF, then by sizes that cameras, or web pages, have.
+
+    A picture that is smaller than EXIF says, and of another shape, was cut: then nothing is known of its scale.
+    """
+    size = sorted((metadata.width, metadata.height))
+    exif_size = sorted(metadata.exif_size or ())
+    if size[0] <= 0:
+        return None
+    if exif_size and exif_size != size:
+        ratios = size[0] / exif_size[0], size[1] / exif_size[1]
+        return True if size[1] > exif_size[1] or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
+    if exif_size and metadata.has_camera and not is_changed:
+        return False
+    if metadata.file_format == "DPX":
+        return None
+    if size[1] < SCALED_BELOW or (size[1] in WEB_SIDES and metadata.file_format == "JPEG" and not metadata.has_camera):
+        return True
+    return False if _is_native(*size) else None
+
+
+def _is_native(shorter: int, longer: int) -> bool:
+    """Return whether sensors have such a size: whole blocks, one of their shapes, enough pixels."""
+    blocks = longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
+    return blocks and shorter * longer >= NATIVE_PIXELS and picture_shape(longer, shorter) != "other"
+
+
+def _encoding(metadata: FileMetadata) -> Encoding:
+    """Return what the profile, or DPX's transfer characteristic, says of the code values."""
+    profile = metadata.profile.casefold()
+    found = (encoding for encoding, words in _ENCODINGS if re.search(words, profile))
+    return next(found, Encoding.FOOTAGE if metadata.file_format == "DPX" else Encoding.UNKNOWN)
+
+
+def _taken_words(camera: str, device: Device) -> str:
+    """Return which camera took the photograph."""
+    if not camera:
+        return "the file names no camera"
+    return f"taken by {camera}, {_DEVICES[device]}" if device else f"taken by {camera}"
+
+
+def _saved_words(editor: str, is_scaled: bool | None, is_resaved: bool | None, quality: int | None) -> list[str]:
+    """Return who saved the file, if that is known."""
+    if editor:
+        return [f"saved by {editor}"]
+    if is_resaved is False:
+        return ["the file is as the camera wrote it"]
+    if is_resaved and not is_scaled:
+        return [
+            f"encoded again by a program, as JPEG of quality {quality}" if quality else "encoded again by a program"
+        ]
+    return []
+
+
+def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
+    """Return that the picture was scaled, surely if EXIF keeps the size before."""
+    if not is_scaled:
+        return []
+    now, exif_size = f"{metadata.width} x {metadata.height}", metadata.exif_size
+    if exif_size and sorted(exif_size) != sorted((metadata.width, metadata.height)):
+        return [f"scaled from {exif_size[0]} x {exif_size[1]} to {now} pixels after the camera wrote it"]
+    return [f"probably scaled after the camera wrote it: it has {now} pixels"]
+
+
+def _encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
+    """Return what the file says of its code values, if it says anything."""
+    return [f"its values are {encoding}: so says its {metadata.profile or metadata.file_format}"] if encoding else []

@@ -1,0 +1,194 @@
+"""What follows from file metadata: the file's origin, in words too, and the factors of the prior."""
+
+import pytest
+
+from crfnet_core.metadata import FAMILIES, FileMetadata, family_factors, file_origin
+from crfnet_core.metadata.factors import FACTORS, LEAST_FACTOR
+from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
+from crfnet_core.metadata.origin import Encoding, picture_shape
+
+OWN_TABLE = (3,) * 64
+OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
+
+
+def origin(**fields):
+    """The origin of a file with these metadata and a picture of 3504 x 2336 pixels."""
+    return file_origin(FileMetadata(**{"width": 3504, "height": 2336, "file_format": "JPEG"} | fields))
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "shape"),
+    [
+        (3504, 2336, "3:2"),
+        (2848, 4288, "3:2"),
+        (640, 426, "3:2"),
+        (4000, 3000, "4:3"),
+        (870, 653, "4:3"),
+        (4624, 2604, "16:9"),
+        (4000, 2252, "16:9"),
+        (4032, 1960, "2:1"),
+        (4000, 1800, "2:1"),
+        (2160, 2160, "other"),
+        (4096, 2160, "other"),
+        (2538, 1080, "other"),
+        (0, 0, "other"),
+    ],
+)
+def test_shape_of_the_picture(width, height, shape):
+    assert picture_shape(width, height) == shape
+
+
+@pytest.mark.parametrize(
+    ("width", "height", "fields", "is_scaled"),
+    [
+        (3504, 2336, OWN_CAMERA | {"exif_size": (3504, 2336)}, False),
+        (2336, 3504, OWN_CAMERA | {"exif_size": (3504, 2336)}, False),  # turned
+        (1024, 768, OWN_CAMERA | {"exif_size": (1024, 768)}, False),  # the camera's own small size
+        (1280, 853, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),
+        (324, 324, OWN_CAMERA | {"exif_size": (2160, 2160)}, True),
+        (7008, 4672, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),  # made larger
+        (2000, 2000, OWN_CAMERA | {"exif_size": (3504, 2336)}, None),  # cut
+        (1024, 683, OWN_CAMERA | {"exif_size": (1024, 683), "software": "GIMP 2.8"}, True),
+        (6000, 4000, OWN_CAMERA | {"exif_size": (6000, 4000), "software": "GIMP 2.8"}, False),
+        (5168, 3448, {}, False),
+        (4240, 2830, {}, None),
+        (2048, 1536, {}, True),
+        (2048, 1536, {"make": "Sony", "model": "D6503"}, None),
+        (1280, 720, {}, True),
+        (1280, 720, {"file_format": "DPX"}, None),
+        (0, 0, {}, None),
+    ],
+)
+def test_scaled_or_not(width, height, fields, is_scaled):
+    assert origin(width=width, height=height, **fields).is_scaled is is_scaled
+
+
+IJG = {"luma_table": scaled_table(ANNEX_K_LUMA, 92)}
+IJG_FINE = {"luma_table": scaled_table(ANNEX_K_LUMA, 99)}
+
+
+@pytest.mark.parametrize(
+    ("fields", "is_resaved"),
+    [
+        (OWN_CAMERA, False),
+        (OWN_CAMERA | IJG_FINE, False),
+        (OWN_CAMERA | IJG, None),  # some cameras use the tables of the library
+        (OWN_CAMERA | {"has_jfif": True}, None),  # or a program turned it without loss
+        (OWN_CAMERA | IJG | {"has_jfif": True}, True),
+        (IJG | {"make": "Apple", "model": "iPhone 6", "has_jfif": True}, None),
+        (OWN_CAMERA | {"has_adobe": True}, True),
+        (OWN_CAMERA | {"software": "darktable 3.4"}, True),
+        (OWN_CAMERA | {"exif_size": (7008, 4672)}, True),
+        (IJG, True),
+        (IJG_FINE, None),
+        ({"luma_table": OWN_TABLE}, None),
+        ({}, None),
+        ({"file_format": "PNG"}, None),
+    ],
+)
+def test_saved_again_or_not(fields, is_resaved):
+    assert origin(**fields).is_resaved is is_resaved
+
+
+@pytest.mark.parametrize(
+    ("profile", "file_format", "encoding"),
+    [
+        ("sRGB IEC61966-2.1", "JPEG", Encoding.UNKNOWN),
+        ("Adobe RGB (1998)", "TIFF", Encoding.UNKNOWN),
+        ("Display P3", "JPEG", Encoding.UNKNOWN),
+        ("Linear Rec.709", "TIFF", Encoding.LINEAR),
+        ("sRGB-elle-V2-g10.icc", "TIFF", Encoding.LINEAR),
+        ("ACEScg", "TIFF", Encoding.LINEAR),
+        ("Nonlinear sRGB", "TIFF", Encoding.UNKNOWN),
+        ("S-Log3 S-Gamut3.Cine", "TIFF", Encoding.LOG),
+        ("V-Log", "PNG", Encoding.LOG),
+        ("ARRI LogC3", "TIFF", Encoding.LOG),
+        ("Logarithmic", "DPX", Encoding.LOG),
+        ("Linear", "DPX", Encoding.LINEAR),
+        ("Undefined", "DPX", Encoding.FOOTAGE),
+        ("Catalog", "JPEG", Encoding.UNKNOWN),
+    ],
+)
+def test_encoding_by_profile(profile, file_format, encoding):
+    assert origin(profile=profile, file_format=file_format).encoding is encoding
+
+
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({}, ("the file names no camera",)),
+        ({"make": "DJI", "model": "FC220"}, ("taken by DJI FC220",)),
+        (
+            OWN_CAMERA | {"software": "GIMP 2.8", "exif_size": (7008, 4672)},
+            (
+                "taken by Canon EOS 20D, a camera with interchangeable lenses",
+                "saved by GIMP 2.8",
+                "scaled from 7008 x 4672 to 3504 x 2336 pixels after the camera wrote it",
+            ),
+        ),
+        (IJG, ("the file names no camera", "encoded again by a program, as JPEG of quality 92")),
+        (
+            {"width": 640, "height": 480},
+            ("the file names no camera", "probably scaled after the camera wrote it: it has 640 x 480 pixels"),
+        ),
+        (
+            {"profile": "V-Log", "file_format": "PNG"},
+            ("the file names no camera", "its values are log: so says its V-Log"),
+        ),
+    ],
+)
+def test_words(fields, words):
+    assert origin(**fields).words == words
+
+
+def largest(**fields):
+    """The family that the metadata favours."""
+    factors = family_factors(origin(**fields))
+    return max(factors, key=factors.__getitem__)
+
+
+def test_a_row_for_every_family():
+    assert all(len(row) == len(FAMILIES) and min(row) > 0 for row in FACTORS.values())
+
+
+@pytest.mark.parametrize(
+    "fields", [{}, OWN_CAMERA, OWN_CAMERA | {"software": "GIMP"}, {"profile": "V-Log", "width": 640}]
+)
+def test_factors_are_relative_to_the_largest(fields):
+    factors = family_factors(origin(**fields))
+    assert tuple(factors) == FAMILIES
+    assert max(factors.values()) == 1
+    assert min(factors.values()) >= LEAST_FACTOR
+
+
+def test_the_device_favours_its_family():
+    assert largest(make="Apple", model="iPhone 6") == "phone"
+    assert largest(make="Canon", model="Canon PowerShot G7") == "compact"
+    assert largest(make="Canon", model="Canon EOS 20D") == "camera"
+    assert largest(make="NORITSU KOKI", model="QSS-32_33") == "film"
+
+
+def test_an_editor_makes_edited_five_times_as_likely():
+    plain = family_factors(origin(make="DJI", model="FC220"))
+    edited = family_factors(origin(make="DJI", model="FC220", software="GIMP 2.8"))
+    assert edited["edited"] / edited["camera"] == pytest.approx(5 * plain["edited"] / plain["camera"])
+
+
+def test_the_shape_counts_only_where_no_device_is_known():
+    camera = {"make": "Canon", "model": "Canon EOS 20D"}
+    wide, long = {"width": 3504, "height": 1971}, {"width": 3504, "height": 2336}
+    assert family_factors(origin(**camera, **wide)) == family_factors(origin(**camera, **long))
+    unknown_wide, unknown_long = family_factors(origin(**wide)), family_factors(origin(**long))
+    assert unknown_wide["phone"] > unknown_wide["camera"]
+    assert unknown_long["camera"] > unknown_long["phone"]
+
+
+def test_a_camera_file_as_written_is_hardly_edited():
+    as_written = family_factors(origin(**OWN_CAMERA))
+    unclear = family_factors(origin(**OWN_CAMERA, has_jfif=True))
+    assert as_written["edited"] < unclear["edited"]
+
+
+def test_a_profile_decides_for_linear_and_log():
+    assert largest(profile="Linear Rec.709", file_format="TIFF") == "linear"
+    assert largest(profile="S-Log3", file_format="TIFF") == "log"

@@ -1,0 +1,197 @@
+"""File metadata: what is read of a file; what follows from it is in test_file_origin.py."""
+
+import mmap
+import struct
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import family_factors, file_origin
+from crfnet_core.metadata.jpeg import (
+    ANNEX_K_CHROMA,
+    ANNEX_K_LUMA,
+    JpegHeader,
+    ijg_quality,
+    read_jpeg_header,
+    scaled_table,
+)
+from crfnet_core.metadata.origin import ADOBE
+from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
+from tests.helpers.images import write_image
+
+EXIF = {
+    "Make": "Canon",
+    "Model": "Canon EOS 20D",
+    "Software": "Adobe Photoshop CS6",
+    "Exif__DateTimeOriginal": "2004:01:02 03:04:05",
+    "Exif__PhotographicSensitivity": 200,
+    "Exif__PixelXDimension": 3504,
+    "Exif__PixelYDimension": 2336,
+}
+OWN_TABLE = (3,) * 64
+
+
+def read(path):
+    """The metadata of a photograph's file."""
+    return read_photo(path).metadata
+
+
+@pytest.mark.parametrize("name", ["a.jpg", "a.png", "a.tif"])
+def test_exif_is_read(tmp_path, name):
+    metadata = read(write_image(tmp_path / name, np.zeros((16, 24, 3), np.uint8), **EXIF))
+    assert (metadata.width, metadata.height) == (24, 16)
+    assert (metadata.make, metadata.model, metadata.software) == ("Canon", "Canon EOS 20D", "Adobe Photoshop CS6")
+    assert (metadata.year, metadata.exif_size) == (2004, (3504, 2336))
+    assert metadata.file_format == {"a.jpg": "JPEG", "a.png": "PNG", "a.tif": "TIFF"}[name]
+
+
+def test_sensitivity_is_read(tmp_path):
+    jpeg(tmp_path / "a.jpg", **EXIF)
+    assert read(tmp_path / "a.jpg").iso == 200
+
+
+@pytest.mark.parametrize(
+    ("name", "file_format"), [("a.jpg", "JPEG"), ("a.png", "PNG"), ("a.tif", "TIFF"), ("a.webp", "WebP")]
+)
+def test_a_file_without_metadata_is_empty(tmp_path, name, file_format):
+    metadata = read(write_image(tmp_path / name, np.zeros((16, 24, 3), np.uint8)))
+    assert not metadata.has_camera
+    assert (metadata.software, metadata.year, metadata.iso, metadata.exif_size) == ("", None, None, None)
+    assert metadata.file_format == file_format
+
+
+@pytest.mark.parametrize("subsampling", ["4:4:4", "4:2:2", "4:2:0"])
+@pytest.mark.parametrize("quality", [50, 75, 92])
+def test_tables_and_subsampling_of_the_ijg_library(tmp_path, quality, subsampling):
+    path = tmp_path / "a.jpg"
+    jpeg(path, Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)
+    metadata = read(path)
+    assert metadata.luma_table == scaled_table(ANNEX_K_LUMA, quality)
+    assert metadata.chroma_table == scaled_table(ANNEX_K_CHROMA, quality)
+    assert metadata.subsampling == subsampling
+    assert metadata.has_jfif
+    assert file_origin(metadata).jpeg_quality == quality
+
+
+def test_a_gray_jpeg_has_one_table_and_no_subsampling(tmp_path):
+    metadata = read(write_image(tmp_path / "a.jpg", np.zeros((16, 16, 1), np.uint8), Compression="jpeg:80"))
+    assert (metadata.chroma_table, metadata.subsampling) == ((), "")
+    assert file_origin(metadata).jpeg_quality == 80
+
+
+def test_a_jpeg_as_a_camera_writes_it(tmp_path):
+    size = {"Exif__PixelXDimension": 160, "Exif__PixelYDimension": 120}
+    camera_jpeg(tmp_path / "a.jpg", **EXIF | size | {"Software": "Ver.1.00"})
+    metadata = read(tmp_path / "a.jpg")
+    assert not metadata.has_jfif
+    assert metadata.luma_table == OWN_TABLE
+    found = file_origin(metadata)
+    assert (found.is_resaved, found.is_scaled, found.jpeg_quality) == (False, False, None)
+    assert found.words == (
+        "taken by Canon EOS 20D, a camera with interchangeable lenses",
+        "the file is as the camera wrote it",
+    )
+
+
+def test_adobes_segment_names_an_editor_where_no_text_does(tmp_path):
+    content = jpeg(tmp_path / "a.jpg")
+    (tmp_path / "a.jpg").write_bytes(with_jpeg_segment(content, 0xEE, b"Adobe\0\x64\0\0\0\0\x01"))
+    assert file_origin(read(tmp_path / "a.jpg")).editor == ADOBE
+
+
+def test_an_editor_that_stands_in_the_xmp_history_only(tmp_path):
+    xmp = (
+        b'http://ns.adobe.com/xap/1.0/\0<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf='
+        b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
+        b' xmlns:stEvt="http://ns.adobe.com/xap/1.0/sType/ResourceEvent#"><xmpMM:History><rdf:Seq>'
+        b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)"/></rdf:Seq>'
+        b"</xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
+    )
+    content = jpeg(tmp_path / "a.jpg", Software="Ver.1.0")
+    (tmp_path / "a.jpg").write_bytes(with_jpeg_segment(content, 0xE1, xmp))
+    metadata = read(tmp_path / "a.jpg")
+    assert metadata.history == ("Adobe Photoshop CC (Macintosh)",)
+    assert file_origin(metadata).editor == "Adobe Photoshop CC (Macintosh)"
+
+
+def test_names_are_shown_without_control_characters(tmp_path):
+    content = jpeg(tmp_path / "a.jpg", Make="Canon", Model="EOS1\n\x1b[2J20D", Software="x" * 1000)
+    (tmp_path / "a.jpg").write_bytes(content.replace(b"EOS1", b"EOS\xff"))
+    metadata = read(tmp_path / "a.jpg")
+    assert metadata.model == "EOS[2J20D"
+    assert len(metadata.software) == 200
+
+
+def test_damaged_metadata_is_no_error(tmp_path):
+    content = jpeg(tmp_path / "a.jpg", **EXIF)
+    end = read_jpeg_header(content).scan
+    rng = np.random.default_rng(0)
+    read_files = 0
+    for _ in range(100):
+        damaged = bytearray(content)
+        for position in rng.integers(2, end, 8):
+            damaged[position] = rng.integers(256)
+        (tmp_path / "a.jpg").write_bytes(damaged)
+        try:
+            metadata = read(tmp_path / "a.jpg")
+        except PhotoError:
+            continue  # the picture itself was hit
+        " ".join(file_origin(metadata).words).encode()
+        family_factors(file_origin(metadata))
+        read_files += 1
+    assert read_files > 20
+
+
+@pytest.mark.parametrize(
+    "content",
+    [
+        b"",
+        b"\xff\xd8",
+        b"\xff\xd8\xff",
+        b"\xff\xd8\xff\xdb\0\x05\x00\x01\x02",
+        b"\xff\xd8\xff\xc0\0\x04\x08\0",
+        b"\xff\xd8\xff\xc0\0\x0b\x08\0\x10\0\x10\xff\x01\x00\x00",
+        b"\xff\xd8\xff\xdb\xff\xff\0",
+    ],
+)
+def test_damaged_segments_leave_fields_empty(content):
+    header = read_jpeg_header(content)
+    assert (header.luma_table, header.chroma_table, header.subsampling) == ((), (), "")
+
+
+def test_tables_of_16_bits():
+    table = tuple(range(200, 264))
+    payload = b"\x10" + struct.pack(">64H", *table)
+    content = (
+        b"\xff\xd8\xff\xdb" + struct.pack(">H", len(payload) + 2) + payload
+        + b"\xff\xc0\0\x0b\x08\0\x10\0\x20\x01\x01\x11\0"
+    )  # fmt: skip
+    header = read_jpeg_header(content)
+    assert (header.luma_table, header.sizes) == (table, ((32, 16),))
+
+
+def test_the_header_is_read_from_a_mapped_file(tmp_path):
+    content = jpeg(tmp_path / "a.jpg")
+    with (tmp_path / "a.jpg").open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
+        assert read_jpeg_header(mapped) == read_jpeg_header(content) != JpegHeader()
+
+
+@pytest.mark.parametrize("quality", [1, 25, 50, 75, 95, 100])
+def test_quality_of_the_ijg_library(quality):
+    luma, chroma = scaled_table(ANNEX_K_LUMA, quality), scaled_table(ANNEX_K_CHROMA, quality)
+    assert ijg_quality(luma, chroma) == ijg_quality(luma) == quality
+
+
+def test_other_tables_have_no_quality():
+    assert ijg_quality(()) is None
+    assert ijg_quality(OWN_TABLE) is None
+    assert ijg_quality(scaled_table(ANNEX_K_LUMA, 90), scaled_table(ANNEX_K_CHROMA, 80)) is None
+
+
+def test_annex_k():
+    """The first row, the last divisor and the sums of the tables of ITU-T T.81, K.1 and K.2."""
+    assert ANNEX_K_LUMA[:3] == (16, 11, 12)
+    assert (len(ANNEX_K_LUMA), sum(ANNEX_K_LUMA), ANNEX_K_LUMA[-1]) == (64, 3688, 99)
+    assert (len(ANNEX_K_CHROMA), sum(ANNEX_K_CHROMA)) == (64, 5505)

@@ -1,0 +1,43 @@
+"""The metadata of a photograph of DATA/real_bodies, from its list: larger ones were point-sampled without EXIF."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata.jpeg import read_jpeg_header
+
+
+def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
+    """Return what is known of the original file: camera, software, ISO and size, and its tables by the crop.
+
+    The size in EXIF, the profile and the XMP history are lost. Where the photograph is the original byte for byte
+    (`is_original`), `read_photo` finds all of it: prefer that.
+
+    Parameters
+    ----------
+    row : mapping of str to str
+        A row of DATA/real_bodies/cases.csv.
+    crop : bytes, optional
+        The JPEG file in its column `crop`, cut without recompression: it has the original's quantization tables and
+        subsampling, but its JFIF segment is of the program that cut it.
+    """
+    jpeg = read_jpeg_header(crop)
+    width, height = (int(side) for side in row["original_size"].split("x"))
+    return FileMetadata(
+        width=width,
+        height=height,
+        make=row["exif_make"].strip(),
+        model=row["exif_model"].strip(),
+        software=row["exif_software"].strip(),
+        iso=round(float(row["iso"])) if row["iso"] else None,
+        luma_table=jpeg.luma_table,
+        chroma_table=jpeg.chroma_table,
+        subsampling=jpeg.subsampling,
+        file_format="JPEG",
+    )
+
+
+def is_original(row: Mapping[str, str]) -> bool:
+    """Return whether the photograph of a row is the original file: the larger ones are WebP."""
+    return not row["file"].endswith(".webp")
