@@ -7,4 +7,5 @@
 - `file_origin`: whether the file of a real photograph was edited or scaled.
 - `real_photographs`: the folders of real photographs with measured responses, and the mean of other bodies.
 - `real`: all real photographs.
+- `unusual`: pictures that must be refused, and how many are accepted.
 """
