@@ -23,9 +23,9 @@ SRGB = srgb_encode(IRRADIANCE)
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
 ROLL_OFF, CONTRAST = (1.0, 3.5), (0.0, 0.6)
 
-#: Stops that log footage is exposed above the light whose white is 1, and the part of its colour that wide primaries
+#: Stops that log footage is exposed above light whose white is 1, and the part of its colour that wide primaries
 #: take away.
-LOG_STOPS, WIDE_GAMUT = (0.0, 2.5), (0.05, 0.3)
+LOG_STOPS, WIDE_GAMUT = (-1.0, 2.5), (0.05, 0.3)
 
 #: Fraction of log footage whose code values 64 to 940 of 1023 were stretched to the whole range when it was decoded.
 STRETCHED = 0.3
