@@ -5,4 +5,5 @@
 - `jobs`: a part of the simulated photographs, taken and measured by one process.
 - `simulated`: all simulated photographs, on several processes.
 - `real`: all real photographs.
+- `unusual`: pictures that must be refused, and how many are accepted.
 """

@@ -1,0 +1,83 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+pytest.importorskip("PIL", reason="training needs the train extra")
+
+from crfnet_core.windows import WINDOW_SIZE
+from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, unusual_photo, unusual_windows
+
+#: Kinds whose pictures do not come from the light.
+DRAWN = (UnusualKind.LINE_ART,)
+
+
+@pytest.fixture
+def light(scene):
+    """Two windows of the scene."""
+    return np.stack([scene.pixels[:WINDOW_SIZE, x : x + WINDOW_SIZE] for x in (0, 200)])
+
+
+def windows(kind, light, seed=1):
+    return unusual_windows(kind, light, 0.3, np.random.default_rng(seed))
+
+
+def test_every_kind_has_a_recipe_and_a_reason():
+    assert set(RECIPES) == set(UnusualKind)
+    assert all(recipe.reason for recipe in RECIPES.values())
+
+
+@pytest.mark.parametrize("kind", UnusualKind)
+def test_windows_are_codes_of_the_shape_of_the_light(kind, light):
+    before = light.copy()
+    codes = windows(kind, light)
+    assert codes.shape == light.shape
+    assert codes.dtype == np.uint8
+    assert np.ptp(codes) > 40
+    np.testing.assert_array_equal(light, before)
+
+
+@pytest.mark.parametrize("kind", UnusualKind)
+def test_the_same_seed_gives_the_same_windows_and_another_seed_others(kind, light):
+    np.testing.assert_array_equal(windows(kind, light), windows(kind, light))
+    assert (windows(kind, light) != windows(kind, light, seed=2)).any()
+
+
+@pytest.mark.parametrize("kind", UnusualKind)
+def test_a_rendering_stays_in_range_in_darkness_and_in_the_sun(kind, light, rng):
+    harsh = np.concatenate([np.zeros_like(light[:1]), light[:1] * 1e5])
+    encoded = RECIPES[kind].rendering(harsh, rng)
+    assert np.isfinite(encoded).all()
+    assert encoded.min() >= -1e-6
+    assert encoded.max() <= 1 + 1e-6
+
+
+@pytest.mark.parametrize("kind", UnusualKind)
+def test_a_photograph_is_a_whole_frame_that_can_be_analysed(kind, scene):
+    photo = unusual_photo(kind, scene, np.random.default_rng(3))
+    assert photo.pixels.dtype == np.float32
+    assert photo.bit_depth == 8
+    assert min(photo.pixels.shape[:2]) >= WINDOW_SIZE
+    if kind is not UnusualKind.MESSENGER:  # it scales
+        assert photo.pixels.shape == scene.pixels.shape
+    np.testing.assert_allclose(photo.pixels * 255, np.rint(photo.pixels * 255), atol=1e-4)
+
+
+@pytest.mark.parametrize("kind", [kind for kind in UnusualKind if kind not in DRAWN])
+def test_the_picture_shows_the_light(kind, light):
+    assert (windows(kind, light) != windows(kind, light[:, ::-1])).any()
+
+
+def test_limited_range_leaves_out_black_and_white(light, rng):
+    encoded = RECIPES[UnusualKind.LIMITED_RANGE].rendering(light * np.float32(3), rng)
+    assert encoded.min() >= 16 / 255
+    assert encoded.max() == pytest.approx(235 / 255)
+
+
+def test_a_palette_has_few_colors(light):
+    colors = np.unique(windows(UnusualKind.PALETTE, light).reshape(-1, 3), axis=0)
+    assert len(colors) <= 128
+
+
+def test_the_exposure_saturates_a_few_percent(scene, rng):
+    saturated = (scene.pixels.max(axis=-1) * random_exposure(scene.pixels, rng) > 1).mean()
+    assert 0.003 < saturated < 0.16

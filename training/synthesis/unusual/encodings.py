@@ -1,0 +1,120 @@
+"""Encodings that are no response of a camera: log, near-linear and limited range, and what messengers send.
+
+Here and in the modules beside it, a rendering takes irradiance, float32 (N, H, W, 3), 1 = white and not clipped, and
+returns the encoded pictures, float32 (N, H, W, 3) in [0, 1]; it draws its settings once for all N.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from PIL import Image
+
+from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.types import Float32Array, Float64Array, Uint8Array
+from crfnet_core.windows import WINDOW_SIZE
+from training.data.curves import IRRADIANCE
+from training.data.scenes import LUMINANCE
+from training.synthesis.camera import apply_response, enlarged, jpeg_compressed
+from training.synthesis.unusual.log_curves import log_curves
+
+#: The sRGB encoding as a response, at 1024 irradiances.
+SRGB = srgb_encode(IRRADIANCE)
+
+#: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
+ROLL_OFF, CONTRAST = (1.0, 3.5), (0.0, 0.6)
+
+#: Stops that log footage is exposed above light whose white is 1, and the part of its colour that wide primaries
+#: take away.
+LOG_STOPS, WIDE_GAMUT = (-1.0, 2.5), (0.05, 0.3)
+
+#: Fraction of log footage whose code values 64 to 940 of 1023 were stretched to the whole range when it was decoded.
+STRETCHED = 0.3
+
+#: Powers on the irradiance of near-linear data.
+POWERS = (0.85, 1.15)
+
+#: How many times the light is enlarged for a messenger, how many pixels along each side it then averages to one, and
+#: its JPEG qualities.
+ENLARGED, SCALED_BY, MESSENGER_QUALITY = 2, (2, 3, 4), (60, 75)
+
+#: Entries of a table from irradiance to codes: sixteen for each sample of a response.
+TABLE = 2**14
+
+
+def log_footage(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return log footage in a maker's curve and wide primaries, as stored or with its legal range stretched."""
+    curves = log_curves()
+    curve = curves[sorted(curves)[rng.integers(len(curves))]]
+    exposed = irradiance * np.float32(np.exp2(rng.uniform(*LOG_STOPS)))
+    encoded = curve(saturated(exposed, 1 - rng.uniform(*WIDE_GAMUT)))
+    if rng.random() < STRETCHED:
+        encoded = (encoded * 1023 - 64) / 876
+    return np.clip(encoded, 0, 1).astype(np.float32)
+
+
+def near_linear(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return irradiance to a power near 1: data that nobody encoded."""
+    return apply_response(irradiance, IRRADIANCE ** rng.uniform(*POWERS))
+
+
+def limited_range(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return a camera's picture in the codes 16 to 235 of video, stored as if they were 0 to 255."""
+    return (np.float32(16) + np.float32(219) * camera_rendering(irradiance, rng)) / np.float32(255)
+
+
+def messenger(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return a camera's picture, averaged down after its encoding and twice compressed at a low quality.
+
+    The light is enlarged first, so that its pixels are as soft as those of a large photograph. A picture that gets
+    smaller than a window is continued by its mirror image to the size of a window.
+    """
+    times, curve = int(rng.choice(SCALED_BY)), drawn_camera_curve(rng)
+    sent = np.stack([reduced(encoded_codes(enlarged(light, ENLARGED), curve), times) for light in irradiance])
+    lacking = [(0, max(0, WINDOW_SIZE - side)) for side in sent.shape[1:3]]
+    sent = np.pad(sent, [(0, 0), *lacking, (0, 0)], mode="symmetric")
+    for quality in rng.integers(*MESSENGER_QUALITY, size=2, endpoint=True):
+        sent = jpeg_compressed(sent, int(quality), True)
+    return np.divide(sent, np.float32(255), dtype=np.float32)
+
+
+def encoded_codes(irradiance: Float32Array, curve: Float64Array) -> Uint8Array:
+    """Return the 8-bit codes of irradiance under a response, by nearest entry: quicker than `apply_response`."""
+    table = codes_of(np.interp(np.linspace(0, 1, TABLE), IRRADIANCE, curve).astype(np.float32))
+    return table[(np.clip(irradiance, 0, 1) * np.float32(TABLE - 1) + np.float32(0.5)).astype(np.uint16)]
+
+
+def reduced(codes: Uint8Array, times: int) -> Uint8Array:
+    """Return a picture (H, W, 3) averaged down: the mean code of times x times samples, rounded."""
+    return np.asarray(Image.fromarray(codes).reduce(times))
+
+
+def camera_rendering(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return the ordinary picture of a camera, in a response of `camera_curve`: what other programs then change."""
+    return apply_response(irradiance, drawn_camera_curve(rng))
+
+
+def drawn_camera_curve(rng: np.random.Generator) -> Float64Array:
+    """Return the response of a random ordinary camera, shape (1024,)."""
+    return camera_curve(rng.uniform(*ROLL_OFF), rng.uniform(*CONTRAST))
+
+
+def camera_curve(roll_off: float, contrast: float) -> Float64Array:
+    """Return the response of an ordinary camera, shape (1024,): roll-off, sRGB encoding, S-curve.
+
+    With s = `roll_off` and k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding of u; f = (1 - k) v +
+    k v^2 (3 - 2 v). It needs no measured response, so these pictures tell nothing of the test cameras.
+    """
+    rolled = roll_off * IRRADIANCE / (1 + (roll_off - 1) * IRRADIANCE)
+    encoded = srgb_encode(rolled)
+    return (1 - contrast) * encoded + contrast * encoded**2 * (3 - 2 * encoded)
+
+
+def saturated(pixels: Float32Array, factor: float) -> Float32Array:
+    """Return pixels (..., 3) whose distance from their luminance is multiplied by a factor; it may leave [0, 1]."""
+    luminance = (pixels @ LUMINANCE)[..., None]
+    return (luminance + np.float32(factor) * (pixels - luminance)).astype(np.float32, copy=False)
+
+
+def codes_of(encoded: Float32Array) -> Uint8Array:
+    """Return the 8-bit codes of encoded pictures, of the same shape."""
+    return np.rint(np.clip(encoded, 0, 1) * np.float32(255)).astype(np.uint8)

@@ -1,0 +1,195 @@
+"""The kinds of pictures that an estimate must refuse, and how each is made of linear light."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from enum import StrEnum
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.photo import Photo
+from crfnet_core.types import Float32Array, Uint8Array
+from training.data.curves import IRRADIANCE
+from training.data.scenes import Scene
+from training.synthesis.camera import Capture, blurred, sensor_light, simulate_capture
+from training.synthesis.unusual.encodings import limited_range, log_footage, messenger, near_linear
+from training.synthesis.unusual.film_scan import film_scan
+from training.synthesis.unusual.filters import artistic_filter, false_color, palette, solarized
+from training.synthesis.unusual.graphics import line_art, screenshot
+from training.synthesis.unusual.tone_mapping import global_tone_mapping, local_tone_mapping
+from training.synthesis.unusual.view_transforms import agx, filmic
+
+#: Irradiance, float32 (N, H, W, 3), to encoded pictures, float32 (N, H, W, 3) in [0, 1].
+Rendering = Callable[[Float32Array, np.random.Generator], Float32Array]
+
+#: Percentile of the brightest channel that `random_exposure` puts at irradiance 1.
+SATURATED = (85, 99.5)
+
+
+class UnusualKind(StrEnum):
+    """Kinds of pictures that no family of camera responses explains, by the name in a report."""
+
+    LOG_FOOTAGE = "log footage"
+    NEAR_LINEAR = "near-linear data"
+    LIMITED_RANGE = "limited range"
+    LOCAL_TONE_MAPPING = "HDR, local tone mapping"
+    GLOBAL_TONE_MAPPING = "HDR, global tone mapping"
+    SCREENSHOT = "screenshot"
+    FILMIC = "rendering, Filmic"
+    AGX = "rendering, AgX"
+    FILM_SCAN = "film scan"
+    MESSENGER = "messenger"
+    ARTISTIC_FILTER = "artistic filter"
+    SOLARIZED = "solarised or inverted"
+    PALETTE = "palette"
+    LINE_ART = "line art"
+    FALSE_COLOR = "false color"
+
+
+@dataclass(frozen=True)
+class Recipe:
+    """How a kind is made, and why it must be refused.
+
+    Parameters
+    ----------
+    reason : str
+        Why an estimate of a response must not be trusted.
+    rendering : callable
+        Irradiance to encoded pictures; see `Rendering`.
+    is_recorded : bool
+        Whether a sensor's blur and noise come before the rendering, and sharpening and grain after it.
+    is_compressed : bool
+        Whether a share is compressed as JPEG of random quality at the end.
+    """
+
+    reason: str
+    rendering: Rendering
+    is_recorded: bool = True
+    is_compressed: bool = True
+
+
+RECIPES: dict[UnusualKind, Recipe] = {
+    UnusualKind.LOG_FOOTAGE: Recipe(
+        "its maker publishes the curve: the exact LUT exists, and black and white lie far inside the codes", log_footage
+    ),
+    UnusualKind.NEAR_LINEAR: Recipe(
+        "it is linear already, or a render's data: a camera's response would bend what is straight", near_linear
+    ),
+    UnusualKind.LIMITED_RANGE: Recipe(
+        "codes 16 and 235 stand for black and white: a response from 0 to 1 is wrong until the range is stretched",
+        limited_range,
+    ),
+    UnusualKind.LOCAL_TONE_MAPPING: Recipe(
+        "the same light has another code in another place: there is no response", local_tone_mapping
+    ),
+    UnusualKind.GLOBAL_TONE_MAPPING: Recipe(
+        "the operator maps luminance and keeps or bends colour ratios: no curve holds for every channel",
+        global_tone_mapping,
+    ),
+    UnusualKind.SCREENSHOT: Recipe(
+        "most of it was drawn, not photographed, and the rest was scaled after its encoding",
+        screenshot,
+        is_recorded=False,
+    ),
+    UnusualKind.FILMIC: Recipe(
+        "a published view transform of 16.5 stops, which no camera has; its exact inverse exists",
+        filmic,
+        is_recorded=False,
+    ),
+    UnusualKind.AGX: Recipe(
+        "a published view transform that mixes the channels before and after its curve; its exact inverse exists",
+        agx,
+        is_recorded=False,
+    ),
+    UnusualKind.FILM_SCAN: Recipe(
+        "film, base and scanner each have a curve, different in every channel, and the grain is no sensor's", film_scan
+    ),
+    UnusualKind.MESSENGER: Recipe(
+        "averaging encoded codes and strong compression have replaced the mixtures of light at edges",
+        messenger,
+        is_compressed=False,
+    ),
+    UnusualKind.ARTISTIC_FILTER: Recipe(
+        "each channel has a curve of its own, and black is not 0: one response for all does not exist", artistic_filter
+    ),
+    UnusualKind.SOLARIZED: Recipe("brightness falls where light grows: it has no response that rises", solarized),
+    UnusualKind.PALETTE: Recipe(
+        "a few dozen colours are left, and dither mixes them: codes no longer measure light",
+        palette,
+        is_compressed=False,
+    ),
+    UnusualKind.LINE_ART: Recipe("no light was recorded at all", line_art, is_recorded=False),
+    UnusualKind.FALSE_COLOR: Recipe("colours are a legend: the channels rise and fall along one scale", false_color),
+}
+
+
+def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng: np.random.Generator) -> Uint8Array:
+    """Return windows of one picture of a kind, 8 bits, uint8 (N, 227, 227, 3); other sizes are as good.
+
+    Parameters
+    ----------
+    kind : UnusualKind
+        The kind; its settings are drawn once for all windows.
+    light : ndarray, float32, shape (N, 227, 227, 3)
+        Windows of linear light; not changed.
+    exposure : float
+        Irradiance per unit of light; irradiance 1 is white, and what is brighter is used where the kind holds more.
+    rng : Generator
+        Draws the settings, noise and compression.
+    """
+    recipe, capture = RECIPES[kind], Capture.draw(rng)
+    irradiance = light * np.float32(exposure)
+    if recipe.is_recorded:
+        irradiance = _sensed(irradiance, capture, rng)
+    else:
+        capture = replace(capture, sharpening=0.0, grain=0.0)
+    if not recipe.is_compressed:
+        capture = Capture()
+    after = replace(capture, shot_noise=0.0, read_noise=0.0, blur=0.0)
+    return simulate_capture(recipe.rendering(irradiance, rng), IRRADIANCE, after, rng)
+
+
+def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, exposure: float | None = None) -> Photo:
+    """Return a whole frame of a kind, as the estimator reads it from a file.
+
+    Parameters
+    ----------
+    kind : UnusualKind
+        The kind.
+    scene : Scene
+        The light; not changed.
+    rng : Generator
+        Draws everything that is random.
+    exposure : float, optional
+        Irradiance per unit of light; by default one that puts a percentile from `SATURATED` at 1.
+    """
+    light = sensor_light(scene, rng)
+    exposure = random_exposure(light, rng) if exposure is None else exposure
+    codes = unusual_windows(kind, light[None], exposure, rng)[0]
+    is_gray = bool((codes == codes[..., :1]).all())
+    pixels = np.divide(codes, np.float32(255), dtype=np.float32)
+    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(f"{kind}, {scene.name}"))
+
+
+def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
+    """Return an exposure that puts a percentile from `SATURATED` of the brightest channel of light at irradiance 1.
+
+    Parameters
+    ----------
+    light : ndarray, float32, shape (..., H, W, 3)
+        Linear light.
+    rng : Generator
+        Draws the percentile.
+    """
+    return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
+
+
+def _sensed(irradiance: Float32Array, capture: Capture, rng: np.random.Generator) -> Float32Array:
+    """Return irradiance with the capture's blur and its noise of the sensor, not clipped above, nowhere negative."""
+    light = blurred(irradiance, capture.blur) if capture.blur else irradiance
+    if capture.shot_noise or capture.read_noise:
+        deviation = np.sqrt(capture.shot_noise * light + capture.read_noise**2)
+        light = light + deviation * rng.standard_normal(light.shape, dtype=np.float32)
+    return np.maximum(light, 0)
