@@ -20,7 +20,10 @@ DEGREES_OF_FREEDOM = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """A likelihood of responses, up to a factor: Student's t in their first EMoR weights, times odds of families.
+    """A likelihood of responses, up to a factor.
+
+    Of ordinary responses it is Student's t in their first EMoR weights. Of the families `STATED_ODDS`, whose pictures
+    show more than their curve, it is one number for all members.
 
     Parameters
     ----------
@@ -29,7 +32,7 @@ class Evidence:
     factor : ndarray, float64, shape (5, 5)
         A factor of the precision matrix P = factor @ factor.T.
     log_odds : ndarray, float64, shape (3,)
-        Logarithms of the likelihoods of the families `STATED_ODDS` against all others together.
+        Logarithms of the likelihoods of the families `STATED_ODDS` against that of an ordinary response at `location`.
     """
 
     location: Float64Array
@@ -43,7 +46,7 @@ class Evidence:
         exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
         likelihoods = -exponent * np.log1p(squares / DEGREES_OF_FREEDOM)
         for family, log_odds in zip(STATED_ODDS, self.log_odds, strict=True):
-            likelihoods[bank.of(family)] += log_odds
+            likelihoods[bank.of(family)] = log_odds
         return np.asarray(likelihoods)
 
     @property

@@ -3,7 +3,7 @@
     python tests/data/make_fixed_model.py         (needs onnx, which comes with the train extra)
 
 It answers the true response of plate.jpg, moved along the first component by the mean brightness of the window, so that
-windows differ; the error that it expects is always the same.
+windows differ; its evidence is always as strong.
 """
 
 import hashlib
@@ -13,42 +13,59 @@ from pathlib import Path
 import numpy as np
 from onnx import TensorProto, helper, numpy_helper
 
-from crfnet_core.emor import COMPONENTS, EmorBasis
+from crfnet_core.emor import EmorBasis
+from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
 
 ASSETS = Path(__file__).parent
 OPSET, IR_VERSION = 17, 8
-EXPECTED_ERROR = 0.5
+
+#: Factor of the precision of every weight: the inverse of its standard deviation.
+PRECISION_FACTOR = 3.0
+
+#: Of the families that are not ordinary: clearly against them.
+LOG_ODDS = -6.0
 
 #: First weight per unit of mean brightness, and the brightness at which the answer is true.
 MOVE, MIDDLE = 0.5, 0.4
 
 
 def make_graph() -> bytes:
-    """Return the serialised network: windows (N, 227, 227, 3) to weights (N, 11) and the log of the error (N,)."""
+    """Return the serialised network: windows (N, 227, 227, 3) to evidence (N, 5), (N, 5, 5) and (N, 3)."""
     true = np.loadtxt(ASSETS / "plate_response.csv", delimiter=",", skiprows=1)[:, 1]
-    slope = np.eye(COMPONENTS)[:1] * MOVE
-    start = EmorBasis.load().project(true) - slope * MIDDLE
+    slope = np.eye(EVIDENCE_WEIGHTS)[:1] * MOVE
+    start = EmorBasis.load().project(true)[:EVIDENCE_WEIGHTS] - slope * MIDDLE
     constants = {
         "slope": slope.astype(np.float32),
         "start": start.astype(np.float32),
         "column": np.array([1], dtype=np.int64),
-        "zero": np.float32(0),
-        "level": np.float32(np.log(EXPECTED_ERROR)),
+        "matrix": np.array([1, 2], dtype=np.int64),
+        "zeros": np.zeros((1, len(STATED_ODDS)), dtype=np.float32),
+        "odds": np.float32(LOG_ODDS),
+        "nothing": np.zeros((1, 1, 1), dtype=np.float32),
+        "factor": (np.eye(EVIDENCE_WEIGHTS)[None] * PRECISION_FACTOR).astype(np.float32),
     }
     nodes = [
         helper.make_node("ReduceMean", ["windows"], ["mean"], axes=[1, 2, 3], keepdims=0),
         helper.make_node("Unsqueeze", ["mean", "column"], ["means"]),
         helper.make_node("Mul", ["means", "slope"], ["moved"]),
-        helper.make_node("Add", ["moved", "start"], ["weights"]),
-        helper.make_node("Mul", ["mean", "zero"], ["zeros"]),
-        helper.make_node("Add", ["zeros", "level"], ["log_error"]),
+        helper.make_node("Add", ["moved", "start"], ["locations"]),
+        helper.make_node("Mul", ["means", "zeros"], ["no_odds"]),
+        helper.make_node("Add", ["no_odds", "odds"], ["log_odds"]),
+        helper.make_node("Unsqueeze", ["mean", "matrix"], ["matrices"]),
+        helper.make_node("Mul", ["matrices", "nothing"], ["no_matrices"]),
+        helper.make_node("Add", ["no_matrices", "factor"], ["factors"]),
     ]
     windows = helper.make_tensor_value_info("windows", TensorProto.FLOAT, ["n", WINDOW_SIZE, WINDOW_SIZE, 3])
-    weights = helper.make_tensor_value_info("weights", TensorProto.FLOAT, ["n", COMPONENTS])
-    log_error = helper.make_tensor_value_info("log_error", TensorProto.FLOAT, ["n"])
+    shapes = {
+        "locations": [EVIDENCE_WEIGHTS],
+        "factors": [EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS],
+        "log_odds": [len(STATED_ODDS)],
+    }
+    outputs = [helper.make_tensor_value_info(name, TensorProto.FLOAT, ["n", *shape]) for name, shape in shapes.items()]
     initial = [numpy_helper.from_array(np.asarray(values), name) for name, values in constants.items()]
-    graph = helper.make_graph(nodes, "fixed", [windows], [weights, log_error], initial)
+    graph = helper.make_graph(nodes, "fixed", [windows], outputs, initial)
     model = helper.make_model(graph, opset_imports=[helper.make_opsetid("", OPSET)], ir_version=IR_VERSION)
     return bytes(model.SerializeToString())
 
@@ -62,20 +79,14 @@ def main() -> None:
         "name": "fixed",
         "sha256": hashlib.sha256(graph).hexdigest(),
         "basis": "emor",
-        "components": COMPONENTS,
+        "components": EVIDENCE_WEIGHTS,
         "window_size": WINDOW_SIZE,
         "input_name": "windows",
-        "output_names": ["weights", "log_error"],
+        "output_names": ["locations", "factors", "log_odds"],
         "normalization": "code value / largest code, in [0, 1]",
         "opset": OPSET,
         "training_commit": "none",
         "training": {},
-        "uncertainty_model": {
-            "base": 0.1,
-            "of_predicted": 0.9,
-            "of_spread": 0.5,
-            "band_profile": [0, 0.05, 0.07, 0.05, 0],
-        },
         "accuracy": {},
     }
     (folder / "model.onnx").write_bytes(graph)

@@ -15,7 +15,7 @@ from training.crfnet2017.network import CRFNet
 from training.export.onnx_graph import HALF_SUFFIX
 
 #: In front of the parameters' names in the graph of an exported network.
-GRAPH_PREFIX = "network."
+GRAPH_PREFIX = "answers.network."
 
 
 @dataclass

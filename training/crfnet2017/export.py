@@ -50,12 +50,13 @@ class ShippedCRFNet(nn.Module):
         self.answers = answers
         for name in ("slopes", "intercepts", "factor"):
             self.register_buffer(name, torch.from_numpy(getattr(likelihood, name)).float())
+        self.log_odds = likelihood.log_odds
 
     def forward(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
         """Return the evidence of windows, shape (N, 227, 227, 3) in [0, 1]."""
         locations = (self.answers(windows)[:, :EVIDENCE_WEIGHTS] - self.intercepts) / self.slopes
         factors = self.factor.expand(windows.shape[0], -1, -1)
-        return locations, factors, locations[:, : len(STATED_ODDS)] * 0
+        return locations, factors, locations[:, : len(STATED_ODDS)] * 0 + self.log_odds
 
 
 def load_network(run: Path) -> WindowAnswers:

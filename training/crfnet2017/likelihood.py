@@ -33,11 +33,23 @@ LEAST_SLOPE = 0.05
 
 @dataclass(frozen=True)
 class Likelihood:
-    """Slopes a and intercepts b, shape (5,), and the factor of the precision of the weights, shape (5, 5)."""
+    """What an answer of the network is worth.
+
+    Parameters
+    ----------
+    slopes, intercepts : ndarray, shape (5,)
+        a and b.
+    factor : ndarray, shape (5, 5)
+        Of the precision of the weights.
+    log_odds : float
+        Of every family in `STATED_ODDS`: the mean log likelihood of ordinary responses, so that the answer says
+        nothing for or against these families, which the network does not know.
+    """
 
     slopes: Float64Array
     intercepts: Float64Array
     factor: Float64Array
+    log_odds: float
 
 
 def fit(true: Float64Array, answers: Float64Array) -> Likelihood:
@@ -46,7 +58,11 @@ def fit(true: Float64Array, answers: Float64Array) -> Likelihood:
     slopes = np.maximum((centered * answers).sum(axis=0) / (centered**2).sum(axis=0), LEAST_SLOPE)
     intercepts = answers.mean(axis=0) - slopes * true.mean(axis=0)
     scale = np.cov((answers - slopes * true - intercepts).T) * (DEGREES_OF_FREEDOM - 2) / DEGREES_OF_FREEDOM
-    return Likelihood(slopes, intercepts, slopes[:, None] * np.linalg.cholesky(np.linalg.inv(scale)))
+    factor = slopes[:, None] * np.linalg.cholesky(np.linalg.inv(scale))
+    offsets = ((answers - intercepts) / slopes)[:, None] - true[None]  # (N, N, 5)
+    exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
+    likelihoods = (1 + np.sum((offsets @ factor) ** 2, axis=2) / DEGREES_OF_FREEDOM) ** -exponent
+    return Likelihood(slopes, intercepts, factor, float(np.log(likelihoods.mean(axis=1)).mean()))
 
 
 def validation_answers(network: nn.Module, data: Path) -> tuple[Float64Array, Float64Array]:

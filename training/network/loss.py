@@ -29,7 +29,7 @@ class EvidenceLoss:
 
     def __init__(self, weights: Tensor, families: Tensor) -> None:
         self.weights, self.families = weights, families
-        self.is_explained = families < UNEXPLAINED
+        self.is_ordinary = families == ORDINARY
 
     def __call__(
         self, evidence: tuple[EvidenceTensors, EvidenceTensors], present: Tensor, weights: Tensor, families: Tensor
@@ -58,7 +58,7 @@ class EvidenceLoss:
         own = log_likelihoods(evidence, weights[:, None], families[:, None]).squeeze(1)
         normalization = torch.logsumexp(torch.cat([scores, own[:, None]], dim=1), dim=1)
         negative_log = normalization - own - torch.log(torch.tensor(float(scores.shape[1])))
-        return negative_log + ERROR_WEIGHT * self._errors(scores, weights) * (families < UNEXPLAINED)
+        return negative_log + ERROR_WEIGHT * self._errors(scores, weights) * (families == ORDINARY)
 
     def errors(self, evidence: EvidenceTensors, weights: Tensor) -> Tensor:
         """Return the distance between the posterior's mean and the truth, shape (N,), in units of E_est."""
@@ -69,13 +69,13 @@ class EvidenceLoss:
         return log_likelihoods(evidence, self.weights[None], self.families[None])
 
     def _errors(self, scores: Tensor, weights: Tensor) -> Tensor:
-        """Return the distance between the mean over the explained responses and the truth, shape (N,)."""
-        posterior = scores.masked_fill(~self.is_explained, -torch.inf).softmax(1)
+        """Return the distance between the mean over the ordinary responses and the truth, shape (N,)."""
+        posterior = scores.masked_fill(~self.is_ordinary, -torch.inf).softmax(1)
         return ((posterior @ self.weights - weights) ** 2).sum(1).add(1e-6).sqrt()
 
 
-#: The number of the family of pictures that no response explains.
-UNEXPLAINED = 3
+#: The number of the families of ordinary responses; the others' evidence is one number each.
+ORDINARY = 0
 
 
 def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
@@ -93,7 +93,7 @@ def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor
     location, factor, log_odds = evidence
     squares = _squares(weights[..., :EVIDENCE_WEIGHTS], location, factor)
     exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
-    likelihoods = -exponent * torch.log1p(squares / DEGREES_OF_FREEDOM) * (families < UNEXPLAINED)
+    likelihoods = -exponent * torch.log1p(squares / DEGREES_OF_FREEDOM) * (families == ORDINARY)
     odds = torch.cat([torch.zeros_like(log_odds[:, :1]), log_odds], dim=1)  # (N, 4)
     return likelihoods + torch.gather(odds, 1, families.expand(len(odds), -1))
 
