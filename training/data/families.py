@@ -104,14 +104,3 @@ class EditedResponses:
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one edited response, shape (1024,)."""
         return edited(self.source.draw(rng)[None], rng)[0]
-
-
-@dataclass(frozen=True)
-class OneAtATime:
-    """Draws single responses from a function that returns several."""
-
-    several: Callable[[int, np.random.Generator], Float64Array]
-
-    def draw(self, rng: np.random.Generator) -> Float64Array:
-        """Return one response, shape (1024,)."""
-        return self.several(1, rng)[0]

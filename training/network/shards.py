@@ -19,13 +19,14 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import STATED_ODDS, Family
 from crfnet_core.statistics import window_statistics
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
-from training.data.families import EditedResponses, OneAtATime, log_like, nearly_linear
+from training.data.families import EditedResponses
 from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
 from training.provenance import record_making
 from training.synthesis.camera import reference_luminance
 from training.synthesis.photographs import PhotographSource
+from training.synthesis.unusual import UnusualKind
 
 #: Photographs in a shard file.
 SHARD = 500
@@ -48,13 +49,22 @@ class CurveSet(IntEnum):
 
 #: Fractions of the photographs whose response is of DoRF (both sets together), and of each other set. All families are
 #: common enough to be learned; what they are worth in use is the prior's affair.
-OF_DORF = 0.5
+OF_DORF = 0.42
 FRACTIONS = {
-    CurveSet.IN_CAMERA: 0.3,
+    CurveSet.IN_CAMERA: 0.26,
     CurveSet.EDITED: 0.1,
-    CurveSet.LINEAR: 0.04,
-    CurveSet.LOG: 0.06,
-    CurveSet.UNEXPLAINED: 0.0,
+    CurveSet.LINEAR: 0.03,
+    CurveSet.LOG: 0.04,
+    CurveSet.UNEXPLAINED: 0.15,
+}
+
+#: What the photographs of these sets show in place of a response: pictures that none explains.
+UNUSUAL_KINDS: dict[int, tuple[UnusualKind, ...]] = {
+    CurveSet.LINEAR: (UnusualKind.NEAR_LINEAR,),
+    CurveSet.LOG: (UnusualKind.LOG_FOOTAGE,),
+    CurveSet.UNEXPLAINED: tuple(
+        kind for kind in UnusualKind if kind not in (UnusualKind.NEAR_LINEAR, UnusualKind.LOG_FOOTAGE)
+    ),
 }
 
 #: The family of a set as the network states it: 0 of an ordinary response, else 1 + its position in `STATED_ODDS`.
@@ -112,15 +122,13 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
         CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
         CurveSet.IN_CAMERA: in_camera,
         CurveSet.EDITED: EditedResponses(in_camera),
-        CurveSet.LINEAR: OneAtATime(nearly_linear),
-        CurveSet.LOG: OneAtATime(log_like),
-        CurveSet.UNEXPLAINED: OneAtATime(nearly_linear),
+        **dict.fromkeys((CurveSet.LINEAR, CurveSet.LOG, CurveSet.UNEXPLAINED), in_camera),
     }
     held_out = float(is_held_out.mean())
     fractions = {CurveSet.DORF: OF_DORF * (1 - held_out), CurveSet.HELD_OUT: OF_DORF * held_out, **FRACTIONS}
     luminance = reference_luminance(read_scenes(data / "linear", "train"))
     scenes = read_scenes(data / "linear", split)
-    return PhotographSource(scenes, tuple(sets.values()), tuple(fractions.values()), luminance)
+    return PhotographSource(scenes, tuple(sets.values()), tuple(fractions.values()), luminance, unusual=UNUSUAL_KINDS)
 
 
 def make_shard(data: Path, out: Path, split: str, number: int) -> Path:

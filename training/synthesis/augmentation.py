@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, zoom
+from scipy.ndimage import gaussian_filter, uniform_filter1d, zoom
 
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import WINDOW_SIZE
@@ -14,29 +14,30 @@ from training.data.scenes import LUMINANCE
 GRAY, GRADIENT, CONTRAST, POWER = 0.08, 0.3, 0.2, 0.3
 
 
-def recolor(light: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return windows (N, 227, 227, 3) rotated and mirrored alike, under another illuminant and with other primaries.
+def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4) -> Float32Array:
+    """Return windows (N, S, S, 3) rotated and mirrored alike, under another illuminant and with other primaries.
 
-    A fraction `GRAY` of them loses all colour instead.
+    A fraction `GRAY` of them loses all colour instead. The illuminant's gains on the channels have a standard deviation
+    of `cast` stops.
     """
     turned = np.rot90(light, int(rng.integers(4)), axes=(1, 2))
     turned = turned[:, :, ::-1] if rng.random() < 0.5 else turned
     if rng.random() < GRAY:
         return np.repeat((turned @ LUMINANCE)[..., None], 3, axis=-1)
     matrix = np.eye(3) + rng.uniform(0, 0.15, (3, 3))
-    matrix = matrix / matrix.sum(axis=1, keepdims=True) * np.exp2(rng.normal(0, 0.4, 3))[:, None]
+    matrix = matrix / matrix.sum(axis=1, keepdims=True) * np.exp2(rng.normal(0, cast, 3))[:, None]
     return turned @ matrix.T.astype(np.float32)
 
 
 def relight(light: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return windows (N, 227, 227, 3), float32, some under a smooth illumination gradient, some with other contrast.
+    """Return windows (N, S, S, 3), float32, some under a smooth illumination gradient, some with other contrast.
 
     The scenes are few, and another distribution of light makes other photographs of them. A power law on the
     irradiance changes how light mixes at edges, which is what the network measures, so the power stays near 1. A
     change of the contrast at large scale leaves edges as they are, so it may be large.
     """
     if rng.random() < GRADIENT:
-        light = light * illumination_gradient(len(light), rng)
+        light = light * illumination_gradient(len(light), rng, side=light.shape[1])
     if rng.random() < CONTRAST:
         light = light * contrast_gain(light, rng)
     if rng.random() < POWER:
@@ -44,32 +45,51 @@ def relight(light: Float32Array, rng: np.random.Generator) -> Float32Array:
     return np.ascontiguousarray(light, dtype=np.float32)
 
 
-def illumination_gradient(count: int, rng: np.random.Generator) -> Float32Array:
-    """Return smooth gains around 1, shape (count, 227, 227, 1): one wave across each window, of up to 2 stops."""
-    position = np.linspace(0, 1, WINDOW_SIZE, dtype=np.float32)
+def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> Float32Array:
+    """Return smooth gains around 1, shape (count, side, side, 1): one wave across each window, of up to 2 stops."""
+    position = np.linspace(0, 1, side, dtype=np.float32)
     angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
-    across = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :]  # (count, 227, 227)
+    across = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :]  # (count, side, side)
     stops = rng.uniform(0.2, 2, (count, 1, 1)) * np.sin(rng.uniform(1, 5, (count, 1, 1)) * across + phase)
     return np.exp2(stops)[..., None].astype(np.float32)
 
 
 def contrast_gain(light: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return smooth gains, shape (N, 227, 227, 1), that raise or lower the large-scale contrast of windows."""
-    log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, 57, 57)
-    coarse = gaussian_filter(log_luminance, (0, *np.full(2, rng.uniform(2, 10))))
-    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, WINDOW_SIZE / coarse.shape[1])), order=1)
+    """Return smooth gains, shape (N, S, S, 1), that raise or lower the large-scale contrast of windows."""
+    log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
+    radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
+    coarse = gaussian_filter(log_luminance, (0, radius, radius))
+    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, light.shape[1] / coarse.shape[1])), order=1)
     return np.exp((np.exp(rng.normal(0, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
 
 
+def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return windows (N, S, S, 3) with parts out of focus, as photographs have them; panoramas are sharp everywhere."""
+    radius = int(rng.integers(1, 6) * light.shape[1] / WINDOW_SIZE)
+    soft = np.stack([_soft(window, radius) for window in light])
+    stops = np.log2(illumination_gradient(len(light), rng, side=light.shape[1]))
+    share = np.clip(0.5 + 4 * stops + np.float32(rng.uniform(-1, 1)), 0, 1)
+    return light + share * (soft - light)
+
+
 def composited(light: Float32Array, other: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return windows (N, 227, 227, 3) of which one side of a straight border shows `other` at another exposure.
+    """Return windows (N, S, S, 3) of which one side of a straight border shows `other` at another exposure.
 
     A sample on the border mixes the light of both sides, as in a photograph.
     """
     exposure = np.float32(np.exp2(rng.normal(0, 1.2)))
-    position = np.arange(WINDOW_SIZE, dtype=np.float32) - WINDOW_SIZE / 2
+    side = light.shape[1]
+    position = np.arange(side, dtype=np.float32) - side / 2
     angle = rng.uniform(0, 2 * np.pi, (len(light), 1, 1))
-    distance = rng.uniform(-60, 60, (len(light), 1, 1))
+    distance = rng.uniform(-60, 60, (len(light), 1, 1)) * side / WINDOW_SIZE
     beyond = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :] - distance
     coverage = np.clip(beyond + 0.5, 0, 1)[..., None].astype(np.float32)
     return light * (1 - coverage) + other * exposure * coverage
+
+
+def _soft(window: Float32Array, radius: int) -> Float32Array:
+    """Return one window, (S, S, 3), under two boxes of 2 radius + 1 samples along each side."""
+    planes = [np.ascontiguousarray(window[..., channel]) for channel in range(3)]
+    for axis in (0, 1, 0, 1):
+        planes = [uniform_filter1d(plane, 2 * radius + 1, axis=axis) for plane in planes]
+    return np.stack(planes, axis=-1)

@@ -2,20 +2,24 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
-from training.data.curves import DrawsResponses
+from training.data.curves import IRRADIANCE, DrawsResponses
 from training.data.scenes import Scene, dithered
-from training.synthesis.augmentation import composited, recolor, relight
+from training.synthesis.augmentation import composited, defocused, recolor, relight
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
+from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
+from training.synthesis.development import develop
 from training.synthesis.resampling import THUMBNAIL_STEP, AffineResampling
+from training.synthesis.unusual import UnusualKind, random_exposure, unusual_windows
 
-#: Windows of a training photograph, and how many are drawn to choose them from, by the codes that they fill.
-WINDOWS, WINDOWS_TRIED = 4, 8
+#: How many windows are drawn for each that is taken, by the codes that they fill.
+TRIED = 2
 
 #: Codes, of 256, that the best window of a training photograph fills at least.
 LEAST_FILLED = 120
@@ -28,9 +32,19 @@ FOLDS = 3
 #: scenes are composited in every window; only the response and 8-bit rounding lie between the light and the file.
 TWO_SCENES, RESAMPLED, COMPOSITED, CLEAN = 0.25, 0.35, 0.15, 0.15
 
-#: Fraction of photographs exposed by the automatic exposure, and the range of the factor on it; the others put a
-#: percentile of the windows, from this range, at saturation.
-AUTOMATIC, FACTORS, SATURATED = 0.6, (0.5, 1.6), (80, 99.9)
+#: Fraction of the photographs of cameras that develop in which parts are out of focus.
+DEFOCUSED = 0.35
+
+#: Standard deviation, in stops, of the gains of the illuminant: of plain captures, and of cameras that balance white.
+CASTS = (0.4, 0.12)
+
+#: Fraction of photographs exposed by the automatic exposure; the others put a percentile of the windows at saturation.
+AUTOMATIC = 0.6
+
+#: Ranges of the factor on the automatic exposure, and of the percentile: of plain captures, then of cameras that
+#: develop, which leave more light unclipped.
+FACTORS = ((0.5, 1.6), (0.25, 1.2))
+SATURATED = ((80, 99.9), (90, 99.95))
 
 
 @dataclass(frozen=True)
@@ -71,6 +85,10 @@ class PhotographSource:
         See `training.synthesis.camera.automatic_exposure`.
     cameras : int
         Cameras that take the same windows of a scene.
+    unusual : dict
+        Number of a set -> kinds of pictures that no response explains, in place of photographs with its responses.
+    shares : CameraShares
+        Fractions of the photographs by what their cameras do.
     """
 
     scenes: list[Scene]
@@ -78,63 +96,107 @@ class PhotographSource:
     fractions: tuple[float, ...]
     luminance: Float32Array
     cameras: int = 3
+    unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
+    shares: CameraShares = MIXED
 
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:
         """Return up to `cameras` photographs of the same windows."""
         fold = int(rng.integers(min(FOLDS, len(self.scenes))))
-        light = relight(recolor(self._windows(self.scenes[fold::FOLDS], rng), rng), rng)
-        drawn = (self._photograph(light, fold, rng) for _ in range(self.cameras))
-        return [photo for photo in drawn if max(map(filled_codes, photo.windows)) >= LEAST_FILLED]
+        kind = self.shares.draw(rng)
+        frames = Frames.draw(kind, rng)
+        light = self._light(self.scenes[fold::FOLDS], frames, rng)
+        develops = kind is not FrameKind.PLAIN
+        if develops and rng.random() < DEFOCUSED:
+            light = defocused(light, rng)
+        light = relight(recolor(light, rng, cast=CASTS[develops]), rng)
+        drawn = (self._photograph(light, kind, fold, rng) for _ in range(self.cameras))
+        return [photo for photo in drawn if photo.curve_set in self.unusual or _fills_codes(photo)]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
         """Return a response, shape (1024,), and the number of its set."""
         chosen = int(rng.choice(len(self.fractions), p=self.fractions))
         return self.curve_sets[chosen].draw(rng), chosen
 
-    def _windows(self, scenes: list[Scene], rng: np.random.Generator) -> Float32Array:
-        """Return linear windows (4, 227, 227, 3) of one, two or three of the scenes."""
+    def _light(self, scenes: list[Scene], frames: Frames, rng: np.random.Generator) -> Float32Array:
+        """Return the linear light of frames, (count, side, side, 3), of one, two or three of the scenes."""
+        count, side = frames.count, frames.side
         first, second = (scenes[i] for i in rng.integers(len(scenes), size=2))
-        if rng.random() > TWO_SCENES:
-            light = _scene_windows(first, WINDOWS, rng)
+        if rng.random() > TWO_SCENES or count == 1:
+            light = _scene_windows(first, count, side, rng)
         else:
-            light = np.concatenate([_scene_windows(scene, WINDOWS // 2, rng) for scene in (first, second)])
+            light = np.concatenate([_scene_windows(scene, count // 2, side, rng) for scene in (first, second)])
         if rng.random() < COMPOSITED:
-            light = composited(light, _scene_windows(scenes[rng.integers(len(scenes))], WINDOWS, rng), rng)
+            light = composited(light, _scene_windows(scenes[rng.integers(len(scenes))], count, side, rng), rng)
         return light
 
-    def _photograph(self, light: Float32Array, fold: int, rng: np.random.Generator) -> TrainingPhotograph:
+    def _photograph(
+        self, light: Float32Array, kind: FrameKind, fold: int, rng: np.random.Generator
+    ) -> TrainingPhotograph:
         """Return the windows as a random camera records them."""
         curve, chosen = self.draw_curve(rng)
-        capture = Capture() if rng.random() < CLEAN else Capture.draw(rng)
-        exposure = np.float32(self._exposure(light, curve, rng))
-        return TrainingPhotograph(simulate_capture(light * exposure, curve, capture, rng), curve, chosen, fold)
+        if chosen in self.unusual:
+            return _unusual_photograph(light, self.unusual[chosen], chosen, fold, rng)
+        irradiance = light * np.float32(self._exposure(light, curve, kind, rng))
+        if kind is FrameKind.PLAIN:
+            capture = Capture() if rng.random() < CLEAN else Capture.draw(rng)
+            windows = simulate_capture(irradiance, curve, capture, rng)
+        else:
+            windows = develop(irradiance, curve, draw_development(kind, rng), rng, windows=WINDOWS)
+        return TrainingPhotograph(windows, curve, chosen, fold)
 
-    def _exposure(self, light: Float32Array, curve: Float64Array, rng: np.random.Generator) -> float:
+    def _exposure(self, light: Float32Array, curve: Float64Array, kind: FrameKind, rng: np.random.Generator) -> float:
         """Return the exposure: a random factor times s_crf, or one that saturates a high percentile of the windows."""
+        develops = kind is not FrameKind.PLAIN
         if rng.random() < AUTOMATIC:
-            return automatic_exposure(curve, self.luminance) * rng.uniform(*FACTORS)
-        return 1 / max(float(np.percentile(light[:, ::4, ::4].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
+            return automatic_exposure(curve, self.luminance) * rng.uniform(*FACTORS[develops])
+        return 1 / max(float(np.percentile(light[:, ::4, ::4].max(axis=-1), rng.uniform(*SATURATED[develops]))), 1e-6)
 
 
-def _scene_windows(scene: Scene, count: int, rng: np.random.Generator) -> Float32Array:
+def _fills_codes(photo: TrainingPhotograph) -> bool:
+    """Return whether the best window of a photograph fills `LEAST_FILLED` codes."""
+    return max(map(filled_codes, photo.windows)) >= LEAST_FILLED
+
+
+def _unusual_photograph(
+    light: Float32Array, kinds: Sequence[UnusualKind], curve_set: int, fold: int, rng: np.random.Generator
+) -> TrainingPhotograph:
+    """Return windows of a picture of one of the kinds; the response is a mere stand-in, the identity."""
+    windows = _parts(light, rng)
+    kind = kinds[int(rng.integers(len(kinds)))]
+    codes = unusual_windows(kind, windows, random_exposure(windows, rng), rng)
+    return TrainingPhotograph(codes, IRRADIANCE, curve_set, fold)
+
+
+def _parts(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+    """Return four windows, (4, 227, 227, 3), of frames (count, side, side, 3): cut out, or point-sampled."""
+    count, side = light.shape[:2]
+    step = int(rng.integers(1, side // WINDOW_SIZE + 1))
+    room = side - (WINDOW_SIZE - 1) * step
+    corners = rng.integers(room, size=(WINDOWS, 2))
+    reach = (WINDOW_SIZE - 1) * step + 1
+    parts = [light[n % count, y : y + reach : step, x : x + reach : step] for n, (y, x) in enumerate(corners)]
+    return np.stack(parts)
+
+
+def _scene_windows(scene: Scene, count: int, side: int, rng: np.random.Generator) -> Float32Array:
     """Return `count` linear windows of a scene: of twice as many that are drawn, those that fill most codes."""
-    tried = count * WINDOWS_TRIED // WINDOWS
-    if rng.random() < RESAMPLED:
-        drawn = [AffineResampling.draw(scene, rng) for _ in range(tried)]
+    tried = count * TRIED
+    if rng.random() < RESAMPLED or min(scene.pixels.shape[:2]) < side:
+        drawn = [AffineResampling.draw(scene, rng, side=side) for _ in range(tried)]
         chosen = [drawn[i].window() for i in _best_covering([one.thumbnail() for one in drawn], count)]
     else:
-        crops = [_crop(scene, rng) for _ in range(tried)]
+        crops = [_crop(scene, side, rng) for _ in range(tried)]
         thumbnails = [crop[::THUMBNAIL_STEP, ::THUMBNAIL_STEP] for crop in crops]
         chosen = [crops[i] for i in _best_covering(thumbnails, count)]
     light = np.stack(chosen)
     return dithered(light, rng) if scene.is_panorama else light
 
 
-def _crop(scene: Scene, rng: np.random.Generator) -> Float32Array:
+def _crop(scene: Scene, side: int, rng: np.random.Generator) -> Float32Array:
     """Return a window of the scene, point-sampled at any step that fits."""
     height, width = scene.pixels.shape[:2]
-    step = int(rng.integers(1, min(height, width) // WINDOW_SIZE + 1))
-    extent = (WINDOW_SIZE - 1) * step + 1
+    step = int(rng.integers(1, min(height, width) // side + 1))
+    extent = (side - 1) * step + 1
     y, x = rng.integers(height - extent + 1), rng.integers(width - extent + 1)
     return scene.pixels[y : y + extent : step, x : x + extent : step]
 

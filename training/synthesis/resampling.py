@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.ndimage import affine_transform, gaussian_filter1d
+from PIL import Image
+from scipy.ndimage import gaussian_filter1d
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray
 from crfnet_core.windows import WINDOW_SIZE
@@ -28,7 +29,7 @@ THUMBNAIL_STEP = 4
 
 @dataclass(frozen=True)
 class AffineResampling:
-    """A window of 227 x 227 samples at center + matrix @ (row, column), mirrored beyond the sides of the scene.
+    """A window of side x side samples at center + matrix @ (row, column), mirrored beyond the sides of the scene.
 
     Parameters
     ----------
@@ -38,20 +39,25 @@ class AffineResampling:
         From samples to pixels of the scene.
     center : ndarray, shape (2,)
         Row and column of the scene at the centre of the window.
+    side : int
+        Samples along each side.
     """
 
     scene: Scene
     matrix: Float64Array
     center: Float64Array
+    side: int = WINDOW_SIZE
 
     @classmethod
-    def draw(cls, scene: Scene, rng: np.random.Generator) -> AffineResampling:
-        """Return a window at a random position, angle, scale and stretch."""
-        scale, angle = float(np.exp(rng.uniform(*np.log(SCALES)))), rng.uniform(0, 2 * np.pi)
+    def draw(cls, scene: Scene, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> AffineResampling:
+        """Return a window at a random position, angle, scale and stretch; a larger one shows more, in finer samples."""
+        largest = SCALES[1] * min(1.0, 1.4 * WINDOW_SIZE / side)
+        smallest = min(SCALES[0], largest / 2)
+        scale, angle = float(np.exp(rng.uniform(*np.log((smallest, largest))))), rng.uniform(0, 2 * np.pi)
         stretch = np.exp(rng.normal(0, STRETCH))
         rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
         matrix = scale * rotation @ np.diag([stretch, 1 / stretch])
-        return cls(scene, matrix, rng.uniform(0, scene.pixels.shape[:2]))
+        return cls(scene, matrix, rng.uniform(0, scene.pixels.shape[:2]), side)
 
     @property
     def scale(self) -> float:
@@ -59,16 +65,16 @@ class AffineResampling:
         return float(np.sqrt(abs(np.linalg.det(self.matrix))))
 
     def window(self) -> Float32Array:
-        """Return the linear window, float32 (227, 227, 3)."""
+        """Return the linear window, float32 (side, side, 3)."""
         return self._sampled(1)
 
     def thumbnail(self) -> Float32Array:
-        """Return every fourth sample along both sides, not prefiltered, float32 (57, 57, 3)."""
+        """Return every fourth sample along both sides, not prefiltered, float32 (C, C, 3)."""
         return self._sampled(THUMBNAIL_STEP)
 
     def _sampled(self, step: int) -> Float32Array:
         """Return every step-th sample, bilinear between the pixels of the scene."""
-        reach = np.abs(self.matrix) @ np.full(2, WINDOW_SIZE / 2) + 3 * max(1.0, self.scale)
+        reach = np.abs(self.matrix) @ np.full(2, self.side / 2) + 3 * max(1.0, self.scale)
         first, last = np.floor(self.center - reach).astype(int), np.ceil(self.center + reach).astype(int)
         size = self.scene.pixels.shape[:2]
         rows, columns = (_mirrored(np.arange(first[k], last[k] + 1), size[k]) for k in (0, 1))
@@ -76,13 +82,13 @@ class AffineResampling:
         if step == 1 and self.scale > 1:
             for axis in (0, 1):
                 light = gaussian_filter1d(light, PREFILTER * self.scale, axis=axis, truncate=2)
-        start = self.center - first - self.matrix @ np.full(2, WINDOW_SIZE / 2)
-        side = (WINDOW_SIZE - 1) // step + 1
-        channels = [
-            affine_transform(light[:, :, k], self.matrix * step, start, (side, side), order=1, mode="nearest")
-            for k in range(3)
-        ]
-        return np.stack(channels, axis=-1)
+        start = self.center - first - self.matrix @ np.full(2, self.side / 2)
+        side = (self.side - 1) // step + 1
+        (a, b), (c, d) = (self.matrix * step)[::-1, ::-1]  # Pillow has columns before rows, and pixel centres at 0.5
+        x, y = start[::-1] + 0.5 - (self.matrix * step)[::-1].sum(axis=1) / 2
+        affine = (Image.Transform.AFFINE, (a, b, x, c, d, y), Image.Resampling.BILINEAR)
+        channels = [Image.fromarray(light[:, :, k]).transform((side, side), *affine) for k in range(3)]
+        return np.stack([np.asarray(channel) for channel in channels], axis=-1)
 
 
 def _mirrored(index: IndexArray, size: int) -> IndexArray:

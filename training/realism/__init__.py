@@ -1,0 +1,6 @@
+"""Whether simulated photographs can be told from real ones: ``python -m training.realism``.
+
+- `__main__`: the command and its table.
+- `samples`: photographs, real and simulated, as the network's features of their windows.
+- `classifier`: a classifier between two sets of photographs, cross-validated by scene and by body.
+"""

@@ -1,0 +1,146 @@
+"""Random cameras that develop: what each kind of file went through, with the shares and ranges of real ones."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, fields
+from enum import StrEnum
+
+import numpy as np
+from PIL import Image
+
+from crfnet_core.windows import WINDOW_SIZE
+from training.synthesis.development import Development, Export, ToneMapping
+from training.synthesis.picture import Finish, Jpeg, Sharpening
+from training.synthesis.sensor import Demosaicing, Sensor
+
+#: Windows of a training photograph.
+WINDOWS = 4
+
+
+class FrameKind(StrEnum):
+    """How a window comes from the camera's frame.
+
+    `PLAIN` is `training.synthesis.camera.Capture`; a window of a `NATIVE` frame has all its samples; a `SAMPLED` one is
+    point-sampled, as the product does with large photographs; a `SCALED` one was made smaller after it was encoded.
+    """
+
+    PLAIN = "plain"
+    NATIVE = "native"
+    SAMPLED = "sampled"
+    SCALED = "scaled"
+
+
+@dataclass(frozen=True)
+class CameraShares:
+    """Fractions of the training photographs of each `FrameKind`; their sum is 1."""
+
+    plain: float = 0.25
+    native: float = 0.15
+    sampled: float = 0.35
+    scaled: float = 0.25
+
+    @classmethod
+    def only(cls, kind: FrameKind) -> CameraShares:
+        """Return the shares of photographs that are all of one kind."""
+        return cls(**{field.name: float(field.name == kind) for field in fields(cls)})
+
+    def draw(self, rng: np.random.Generator) -> FrameKind:
+        """Return a random kind."""
+        kinds = list(FrameKind)
+        return kinds[rng.choice(len(kinds), p=[getattr(self, kind) for kind in kinds])]
+
+
+#: The shares of training.
+MIXED = CameraShares()
+
+
+@dataclass(frozen=True)
+class Frames:
+    """The frames that the windows of a photograph come from: how many, and the samples along each of their sides."""
+
+    count: int
+    side: int
+
+    @classmethod
+    def draw(cls, kind: FrameKind, rng: np.random.Generator) -> Frames:
+        """Return the frames of a kind. Where they are point-sampled, several windows come from each."""
+        if kind is FrameKind.SAMPLED:
+            step = int(rng.choice((2, 3), p=(0.8, 0.2)))
+            return cls(2 if step == 2 else 1, WINDOW_SIZE * step)
+        if kind is FrameKind.SCALED:
+            return cls(WINDOWS, round(WINDOW_SIZE * rng.choice((1.5, 2.0), p=(0.7, 0.3))))
+        return cls(WINDOWS, WINDOW_SIZE)
+
+
+def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
+    """Return the development of a random camera for a kind of frame other than `PLAIN`."""
+    return Development(
+        lens_blur=rng.uniform(0.2, 1.1) if kind is FrameKind.NATIVE else rng.uniform(0, 0.6),
+        glare=rng.uniform(0, 0.04),
+        sensor=_sensor(rng),
+        tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,
+        keeps_hue=bool(rng.random() < 0.3),
+        finish=_finish(rng),
+        jpeg=_jpeg(rng),
+        export=_export(rng) if kind is FrameKind.SCALED else None,
+        scatter=int(rng.integers(4)) if kind is FrameKind.SAMPLED else 0,
+    )
+
+
+def _sensor(rng: np.random.Generator) -> Sensor:
+    """Return a sensor between base and high sensitivity."""
+    shot_noise = 10 ** rng.uniform(-5.2, -3.7)
+    return Sensor(
+        shot_noise=shot_noise,
+        read_noise=float(np.sqrt(shot_noise)) * rng.uniform(0.01, 0.04),
+        gains=(rng.uniform(1, 2.4), 1.0, rng.uniform(1, 2.4)),
+        white=rng.uniform(1, 1.3),
+        clips_apart=bool(rng.random() < 0.3),
+        crosstalk=rng.uniform(0, 0.4),
+        saturation=float(np.exp(rng.normal(-0.2, 0.45))),
+        demosaicing=rng.choice((Demosaicing.BILINEAR, Demosaicing.GRADIENT_CORRECTED), p=(0.25, 0.75)),
+    )
+
+
+def _tone_mapping(rng: np.random.Generator) -> ToneMapping:
+    """Return a local tone mapping."""
+    return ToneMapping(strength=rng.uniform(0.05, 0.35), radius=rng.uniform(0.03, 0.15))
+
+
+def _finish(rng: np.random.Generator) -> Finish:
+    """Return the steps of a camera on the encoded picture."""
+    return Finish(
+        chroma_blur=int(rng.choice((0, 3, 5))),
+        luma_smoothing=rng.uniform(1, 6) / 255 if rng.random() < 0.8 else 0.0,
+        chroma_gain=rng.uniform(0.9, 1.35),
+        sharpening=_sharpening(rng) if rng.random() < 0.85 else None,
+    )
+
+
+def _sharpening(rng: np.random.Generator) -> Sharpening:
+    """Return an unsharp mask."""
+    return Sharpening(
+        amount=rng.uniform(0.2, 1.5),
+        radius=rng.uniform(0.6, 2),
+        limit=rng.uniform(8, 50) / 255,
+        threshold=rng.uniform(0, 2) / 255,
+    )
+
+
+def _jpeg(rng: np.random.Generator) -> Jpeg:
+    """Return the compression of a camera: IJG qualities of about 90 to 98, some with flatter tables."""
+    return Jpeg(
+        scale=0.04 * 10 ** rng.uniform(0, 0.8),
+        flatness=rng.uniform(0, 0.8) if rng.random() < 0.5 else 0.0,
+        subsampling=int(rng.choice((0, 1, 2), p=(0.15, 0.5, 0.35))),
+    )
+
+
+def _export(rng: np.random.Generator) -> Export:
+    """Return a scaling for the web, some with sharpening, and a JPEG of IJG quality 75 to 98."""
+    filters = (Image.Resampling.BOX, Image.Resampling.BICUBIC, Image.Resampling.LANCZOS, Image.Resampling.BILINEAR)
+    return Export(
+        resample=filters[rng.integers(len(filters))],
+        finish=Finish(sharpening=_sharpening(rng)) if rng.random() < 0.4 else Finish(),
+        jpeg=Jpeg(0.04 * 10 ** rng.uniform(0, 1.1), 0.0, int(rng.choice((0, 2)))),
+    )

@@ -1,0 +1,186 @@
+"""What a camera or an editor does to an encoded picture: noise reduction, colour, sharpening, JPEG, scaling.
+
+Pictures are three planes, red, green and blue, each float32 (N, S, S) in [0, 1], of N frames.
+"""
+
+from __future__ import annotations
+
+import io
+from dataclasses import dataclass
+
+import numpy as np
+from PIL import Image
+from scipy.ndimage import gaussian_filter1d, uniform_filter1d
+
+from crfnet_core.types import Float32Array, Uint8Array
+from training.synthesis.sensor import Planes
+
+#: Weights of red, green and blue in the luma of JPEG (ITU-R BT.601).
+LUMA = (0.299, 0.587, 0.114)
+
+#: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
+STANDARD_TABLES = (
+    (
+        (16, 11, 10, 16, 24, 40, 51, 61),
+        (12, 12, 14, 19, 26, 58, 60, 55),
+        (14, 13, 16, 24, 40, 57, 69, 56),
+        (14, 17, 22, 29, 51, 87, 80, 62),
+        (18, 22, 37, 56, 68, 109, 103, 77),
+        (24, 35, 55, 64, 81, 104, 113, 92),
+        (49, 64, 78, 87, 103, 121, 120, 101),
+        (72, 92, 95, 98, 112, 100, 103, 99),
+    ),
+    (
+        (17, 18, 24, 47, 99, 99, 99, 99),
+        (18, 21, 26, 66, 99, 99, 99, 99),
+        (24, 26, 56, 99, 99, 99, 99, 99),
+        (47, 66, 99, 99, 99, 99, 99, 99),
+        *((99,) * 8,) * 4,
+    ),
+)
+
+
+@dataclass(frozen=True)
+class Jpeg:
+    """A JPEG compression.
+
+    Parameters
+    ----------
+    scale : float
+        Factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98.
+    flatness : float
+        In [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie, as in cameras.
+    subsampling : int
+        0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0).
+    """
+
+    scale: float = 0.2
+    flatness: float = 0.0
+    subsampling: int = 2
+
+    @property
+    def tables(self) -> list[list[int]]:
+        """The two tables of quantisation, 64 integers each, row by row."""
+        standard = [np.array(table, dtype=np.float64).ravel() for table in STANDARD_TABLES]
+        bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in standard]
+        return [np.clip(np.rint(table * self.scale), 1, 255).astype(int).tolist() for table in bent]
+
+    def compressed(self, codes: Uint8Array) -> Uint8Array:
+        """Return frames, uint8 (N, H, W, 3), as they come back from the file."""
+        tables = self.tables
+        pictures = []
+        for frame in codes:
+            file = io.BytesIO()
+            Image.fromarray(frame).save(file, "JPEG", qtables=tables, subsampling=self.subsampling)
+            pictures.append(np.asarray(Image.open(file)))
+        return np.stack(pictures)
+
+
+@dataclass(frozen=True)
+class Sharpening:
+    """An unsharp mask on luma, with halos.
+
+    Parameters
+    ----------
+    amount : float
+        Factor on the difference between the luma and its blurred copy, which is added.
+    radius : float
+        Standard deviation, in samples, of the Gaussian that blurs.
+    limit : float
+        The most that is added or taken away, in [0, 1].
+    threshold : float
+        Differences are made smaller by this first, so that noise is not sharpened.
+    """
+
+    amount: float
+    radius: float = 1.0
+    limit: float = 1.0
+    threshold: float = 0.0
+
+    def added(self, luma: Float32Array) -> Float32Array:
+        """Return what the mask adds to luma, float32 (N, S, S)."""
+        detail = luma - gaussian(luma, self.radius)
+        if self.threshold:
+            detail -= np.clip(detail, -self.threshold, self.threshold)
+        return np.clip(detail * np.float32(self.amount), -self.limit, self.limit)
+
+
+@dataclass(frozen=True)
+class Finish:
+    """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out.
+
+    Parameters
+    ----------
+    chroma_blur : float
+        Chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd.
+    luma_smoothing : float
+        Luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise.
+    chroma_gain : float
+        Factor on chroma.
+    sharpening : Sharpening, optional
+        The unsharp mask.
+    """
+
+    chroma_blur: int = 0
+    luma_smoothing: float = 0.0
+    chroma_gain: float = 1.0
+    sharpening: Sharpening | None = None
+
+    def applied(self, planes: Planes) -> Planes:
+        """Return the finished picture, which may leave [0, 1]."""
+        if self == Finish():
+            return planes
+        red, green, blue = planes
+        luma = np.float32(LUMA[0]) * red + np.float32(LUMA[1]) * green + np.float32(LUMA[2]) * blue
+        chroma = [red - luma, blue - luma]
+        if self.chroma_blur > 1:
+            chroma = [box_blurred(box_blurred(plane, self.chroma_blur), self.chroma_blur) for plane in chroma]
+        if self.luma_smoothing:
+            luma = smoothed(luma, self.luma_smoothing)
+        if self.chroma_gain != 1:
+            chroma = [plane * np.float32(self.chroma_gain) for plane in chroma]
+        if self.sharpening is not None:
+            luma = luma + self.sharpening.added(luma)
+        of_red, of_blue = chroma
+        green = luma - np.float32(LUMA[0] / LUMA[1]) * of_red - np.float32(LUMA[2] / LUMA[1]) * of_blue
+        return [luma + of_red, green, luma + of_blue]
+
+
+def smoothed(luma: Float32Array, deviation: float) -> Float32Array:
+    """Return luma without detail whose standard deviation among 3 x 3 samples is below `deviation`; edges stay.
+
+    It is the local filter of Lee (1980): the more the samples around vary, the more of a sample is kept.
+    """
+    mean = box_blurred(luma, 3)
+    variance = np.maximum(box_blurred(luma * luma, 3) - mean * mean, 0)
+    return mean + variance / (variance + np.float32(deviation**2)) * (luma - mean)
+
+
+def gaussian(plane: Float32Array, sigma: float) -> Float32Array:
+    """Return planes (N, S, S) under a Gaussian of `sigma` samples."""
+    return gaussian_filter1d(gaussian_filter1d(plane, sigma, axis=1, truncate=2.5), sigma, axis=2, truncate=2.5)
+
+
+def box_blurred(plane: Float32Array, size: int) -> Float32Array:
+    """Return the means of size x size samples around each of planes (N, S, S)."""
+    return uniform_filter1d(uniform_filter1d(plane, size, axis=1), size, axis=2)
+
+
+def rounded(planes: Planes) -> Uint8Array:
+    """Return the codes of planes, clipped and rounded to 8 bits, uint8 (N, S, S, 3)."""
+    codes = np.empty((*planes[0].shape, 3), np.uint8)
+    for channel, plane in enumerate(planes):
+        scaled = plane * np.float32(255)
+        scaled += np.float32(0.5)
+        codes[..., channel] = np.clip(scaled, 0, 255.9, out=scaled)
+    return codes
+
+
+def split(codes: Uint8Array) -> Planes:
+    """Return the planes, float32 (N, S, S) in [0, 1], of codes (N, S, S, 3)."""
+    return [codes[..., channel] * np.float32(1 / 255) for channel in range(3)]
+
+
+def scaled(codes: Uint8Array, side: int, resample: Image.Resampling) -> Uint8Array:
+    """Return frames scaled to side x side samples, of the encoded values, uint8 (N, side, side, 3)."""
+    return np.stack([np.asarray(Image.fromarray(frame).resize((side, side), resample)) for frame in codes])

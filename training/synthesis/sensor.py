@@ -1,0 +1,155 @@
+"""The sensor of a camera: noise, clipping of its channels, mosaic and demosaicing, and the colour matrix.
+
+Pictures are three planes, red, green and blue, each float32 (N, S, S), of N frames.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+from functools import cache
+
+import numpy as np
+
+from crfnet_core.types import Float32Array, Float64Array
+from training.data.scenes import LUMINANCE
+
+#: Planes of red, green and blue, each float32 (N, S, S).
+Planes = list[Float32Array]
+
+#: Samples of noise that are drawn once; a photograph takes a part of them, from a random one on. To draw them anew
+#: would take longer than everything else that the sensor does.
+NOISE_SAMPLES = 1 << 22
+
+
+class Demosaicing(StrEnum):
+    """How a colour is found where the sensor did not measure it: from its neighbours, or with the other channels."""
+
+    BILINEAR = "bilinear"
+    GRADIENT_CORRECTED = "gradient-corrected"
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """A sensor and what is done to its values before the tone curve; the defaults leave every step out.
+
+    Parameters
+    ----------
+    shot_noise : float
+        Variance of the noise at irradiance 1 in a channel of gain 1; it is proportional to the irradiance.
+    read_noise : float
+        Standard deviation of the noise that does not depend on the irradiance, in a channel of gain 1.
+    gains : tuple of float
+        White balance: factors on the sensor's red, green and blue. They multiply the noise.
+    white : float
+        Irradiance at which a channel of gain 1 clips; 1 is where the response ends.
+    clips_apart : bool
+        Whether each channel clips where the sensor does, at its gain times `white`, rather than all at `white`.
+    crosstalk : float
+        Part of each of the sensor's channels, in [0, 1), that is the mean of all three; the matrix takes it out again.
+    saturation : float
+        Factor of the matrix on the distance of a colour from its luminance. Above 1 it makes saturated colours
+        negative, and these are clipped.
+    demosaicing : Demosaicing, optional
+        How the mosaic is filled; None for a sensor that measures all colours everywhere.
+    """
+
+    shot_noise: float = 0.0
+    read_noise: float = 0.0
+    gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    white: float = np.inf
+    clips_apart: bool = False
+    crosstalk: float = 0.0
+    saturation: float = 1.0
+    demosaicing: Demosaicing | None = None
+
+    def record(self, irradiance: Planes, rng: np.random.Generator) -> Planes:
+        """Return the irradiance that the tone curve gets, nowhere negative; the planes given are not changed."""
+        mixing = (1 - self.crosstalk) * np.eye(3) + self.crosstalk / 3
+        planes = mixed(irradiance, mixing)
+        if self.demosaicing is None:
+            planes = [self._read(plane, channel, rng) for channel, plane in enumerate(planes)]
+        else:
+            read = [self._read(site, channel, rng) for site, channel in zip(*_sites(planes), strict=True)]
+            planes = demosaiced(_joined(read, planes[0].shape), self.demosaicing)
+        luminance = np.broadcast_to(LUMINANCE.astype(np.float64), (3, 3))
+        matrix = (self.saturation * np.eye(3) + (1 - self.saturation) * luminance) @ np.linalg.inv(mixing)
+        return [np.maximum(plane, 0, out=plane) for plane in mixed(planes, matrix)]
+
+    def _read(self, values: Float32Array, channel: int, rng: np.random.Generator) -> Float32Array:
+        """Return one channel with noise, clipped."""
+        gain = np.float32(self.gains[channel])
+        if self.shot_noise or self.read_noise:
+            variance = values * np.float32(self.shot_noise * gain) + (self.read_noise * gain) ** 2
+            values = values + np.sqrt(variance, out=variance) * noise(values.shape, rng)
+        return np.minimum(values, self.white * (gain if self.clips_apart else 1))
+
+
+def mixed(planes: Planes, matrix: Float64Array) -> Planes:
+    """Return planes with the colours matrix @ (red, green, blue); new ones."""
+    if np.allclose(matrix, np.eye(3)):
+        return [plane.copy() for plane in planes]
+    rows = matrix.astype(np.float32)
+    return [row[0] * planes[0] + row[1] * planes[1] + row[2] * planes[2] for row in rows]
+
+
+def demosaiced(mosaic: Float32Array, method: Demosaicing) -> Planes:
+    """Return the planes of a mosaic (N, S, S) of red at even rows and columns, blue at odd ones, green elsewhere."""
+    padded = np.pad(mosaic, ((0, 0), (2, 2), (2, 2)), mode="reflect")  # keeps which rows and columns are even
+    near = (padded[:, 1:-3, 2:-2] + padded[:, 3:-1, 2:-2] + padded[:, 2:-2, 1:-3] + padded[:, 2:-2, 3:-1]) / 4
+    if method is Demosaicing.GRADIENT_CORRECTED:
+        far = (padded[:, :-4, 2:-2] + padded[:, 4:, 2:-2] + padded[:, 2:-2, :-4] + padded[:, 2:-2, 4:]) / 4
+        near += (mosaic - far) / 2
+    green = mosaic.copy()
+    for start in (0, 1):
+        green[:, start::2, start::2] = near[:, start::2, start::2]
+    if method is Demosaicing.BILINEAR:
+        return [_filled(mosaic, 0), green, _filled(mosaic, 1)]
+    difference = mosaic - green
+    return [_filled(difference, 0) + green, green, _filled(difference, 1) + green]
+
+
+def noise(shape: tuple[int, ...], rng: np.random.Generator) -> Float32Array:
+    """Return normal deviates of variance 1, float32, not to be changed: a random part of those drawn once."""
+    drawn, size = _normal_deviates(), int(np.prod(shape))
+    if size > len(drawn):
+        return rng.standard_normal(shape, dtype=np.float32)
+    start = int(rng.integers(len(drawn) - size + 1))
+    return drawn[start : start + size].reshape(shape)
+
+
+@cache
+def _normal_deviates() -> Float32Array:
+    """Return normal deviates, float32 (NOISE_SAMPLES,)."""
+    return np.random.default_rng(0).standard_normal(NOISE_SAMPLES, dtype=np.float32)
+
+
+def _sites(planes: Planes) -> tuple[Planes, list[int]]:
+    """Return what a mosaic keeps of red, green in red's rows, green in blue's rows and blue, and their channels."""
+    red, green, blue = planes
+    return [red[:, ::2, ::2], green[:, ::2, 1::2], green[:, 1::2, ::2], blue[:, 1::2, 1::2]], [0, 1, 1, 2]
+
+
+def _joined(sites: Planes, shape: tuple[int, ...]) -> Float32Array:
+    """Return the mosaic, float32 `shape`, of what `_sites` returns."""
+    mosaic = np.empty(shape, np.float32)
+    mosaic[:, ::2, ::2], mosaic[:, ::2, 1::2], mosaic[:, 1::2, ::2], mosaic[:, 1::2, 1::2] = sites
+    return mosaic
+
+
+def _filled(mosaic: Float32Array, first: int) -> Float32Array:
+    """Return a plane from its samples at rows and columns `first`, `first` + 2, ...: means of the nearest ones."""
+    rows = mosaic[:, first::2]
+    plane = np.empty_like(mosaic)
+    plane[:, first::2, first::2] = rows[:, :, first::2]
+    padded = np.pad(rows[:, :, first::2], ((0, 0), (1, 1), (1, 1)), mode="edge")
+    between_columns = (padded[:, :, :-1] + padded[:, :, 1:]) / 2
+    between_rows = (padded[:, :-1] + padded[:, 1:]) / 2
+    between_both = (between_columns[:, :-1] + between_columns[:, 1:]) / 2
+    other = 1 - first
+    # Sample k of the other rows or columns lies between samples k - first and k - first + 1 of these.
+    height, width = plane[:, other::2, other::2].shape[1:]
+    plane[:, first::2, other::2] = between_columns[:, 1:-1, 1 - first :][:, :, :width]
+    plane[:, other::2, first::2] = between_rows[:, 1 - first :, 1:-1][:, :height]
+    plane[:, other::2, other::2] = between_both[:, 1 - first :, 1 - first :][:, :height, :width]
+    return plane
