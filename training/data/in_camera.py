@@ -18,8 +18,8 @@ KINDS = ("phone", "compact", "camera")
 #: Components of the deviations; the first is mostly the headroom. With more nothing changed out of fold.
 COMPONENTS = 6
 
-#: Bodies that the mean over all kinds counts as, when the mean of a kind is taken.
-PSEUDO_BODIES = 1.0
+#: Bodies that all kinds together count as, when the mean and when the spread of one kind are taken.
+PSEUDO_BODIES, PSEUDO_BODIES_OF_SPREAD = 1.0, 4.0
 
 #: Weight of the darkest brightnesses, below code 16 of 255, in the components: noise and black level rule there.
 DARK_WEIGHT, DARKEST = 0.2, 64
@@ -43,11 +43,14 @@ class InCameraResponses:
     means : dict
         Kind -> mean log2 irradiance at 1024 uniform brightnesses, shape (1024,).
     components : ndarray, shape (6, 1024)
-        Deviations of one standard deviation each, the same for all kinds.
+        Deviations of one standard deviation each, over all kinds.
+    spreads : dict
+        Kind -> how far its bodies differ, relative to `components`.
     """
 
     means: dict[str, Float64Array]
     components: Float64Array
+    spreads: dict[str, float]
 
     @classmethod
     def of(cls, bodies: Sequence[Body]) -> InCameraResponses:
@@ -55,17 +58,19 @@ class InCameraResponses:
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         average = np.mean([rows.mean(axis=0) for rows in stacks.values()], axis=0)
         means = {kind: average + _shrunk_offset(bodies, stacks, kind, average) for kind in KINDS}
-        deviations = [
-            (row - means.get(body.kind, average)) / np.sqrt(len(stacks[body.key]))
+        deviations = {
+            body.key: (stacks[body.key] - means.get(body.kind, average)) / np.sqrt(len(stacks[body.key]))
             for body in bodies
-            for row in stacks[body.key]
-        ]
-        return cls(means, _components(np.stack(deviations), bodies=len(bodies)))
+        }
+        components = _components(np.concatenate(list(deviations.values())), bodies=len(bodies))
+        squares = {body.key: float((deviations[body.key] ** 2).sum()) for body in bodies}
+        return cls(means, components, {kind: _spread(bodies, squares, kind) for kind in KINDS})
 
     def draw(self, kind: str, count: int, rng: np.random.Generator) -> Float64Array:
         """Return responses of a kind, shape (count, 1024)."""
         scores = rng.standard_normal((count, len(self.components))) * np.exp(rng.normal(0, TAILS, (count, 1)))
-        return np.stack([response_of(row) for row in self.means[kind] + scores @ self.components])
+        deviations = self.spreads[kind] * scores @ self.components
+        return np.stack([response_of(row) for row in self.means[kind] + deviations])
 
 
 def log_irradiance(curve: ResponseCurve) -> Float64Array:
@@ -86,6 +91,14 @@ def _shrunk_offset(
     """Return how far the bodies of a kind lie from the average, shrunk by `PSEUDO_BODIES`, shape (1024,)."""
     offsets = [stacks[body.key].mean(axis=0) - average for body in bodies if body.kind == kind]
     return np.sum([*offsets, np.zeros(SAMPLES)], axis=0) / (len(offsets) + PSEUDO_BODIES)
+
+
+def _spread(bodies: Sequence[Body], squares: dict[str, float], kind: str) -> float:
+    """Return the RMS deviation of the bodies of a kind relative to that of all, shrunk towards it."""
+    average = float(np.mean(list(squares.values())))
+    own = [squares[body.key] for body in bodies if body.kind == kind]
+    count = len(own) + PSEUDO_BODIES_OF_SPREAD
+    return float(np.sqrt((sum(own) + PSEUDO_BODIES_OF_SPREAD * average) / count / average))
 
 
 def _components(deviations: Float64Array, *, bodies: int) -> Float64Array:
