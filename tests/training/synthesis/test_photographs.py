@@ -8,7 +8,8 @@ from training.data.curves import CurveSource
 from training.data.scenes import Scene
 from training.synthesis.augmentation import composited, recolor, relight
 from training.synthesis.camera import reference_luminance
-from training.synthesis.photographs import FOLDS, LEAST_FILLED, WINDOWS, PhotographSource
+from training.synthesis.camera_draws import WINDOWS
+from training.synthesis.photographs import FOLDS, LEAST_FILLED, PhotographSource
 
 UNIFORM = np.linspace(0, 1, 1024)
 
