@@ -29,17 +29,20 @@ def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4)
     return turned @ matrix.T.astype(np.float32)
 
 
-def relight(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+def relight(
+    light: Float32Array, rng: np.random.Generator, *, contrasted: float = CONTRAST, contrast: float = 0.0
+) -> Float32Array:
     """Return windows (N, S, S, 3), float32, some under a smooth illumination gradient, some with other contrast.
 
     The scenes are few, and another distribution of light makes other photographs of them. A power law on the
     irradiance changes how light mixes at edges, which is what the network measures, so the power stays near 1. A
-    change of the contrast at large scale leaves edges as they are, so it may be large.
+    change of the contrast at large scale leaves edges as they are, so it may be large: a fraction `contrasted` of the
+    windows has one, and the logarithm of the factor on the contrast is `contrast` on average.
     """
     if rng.random() < GRADIENT:
         light = light * illumination_gradient(len(light), rng, side=light.shape[1])
-    if rng.random() < CONTRAST:
-        light = light * contrast_gain(light, rng)
+    if rng.random() < contrasted:
+        light = light * contrast_gain(light, rng, mean=contrast)
     if rng.random() < POWER:
         light = np.maximum(light, 0) ** np.float32(np.exp(rng.normal(0, 0.12)))
     return np.ascontiguousarray(light, dtype=np.float32)
@@ -54,13 +57,13 @@ def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = W
     return np.exp2(stops)[..., None].astype(np.float32)
 
 
-def contrast_gain(light: Float32Array, rng: np.random.Generator) -> Float32Array:
+def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float = 0.0) -> Float32Array:
     """Return smooth gains, shape (N, S, S, 1), that raise or lower the large-scale contrast of windows."""
     log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
     radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
     coarse = gaussian_filter(log_luminance, (0, radius, radius))
     smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, light.shape[1] / coarse.shape[1])), order=1)
-    return np.exp((np.exp(rng.normal(0, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
+    return np.exp((np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
 
 
 def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:

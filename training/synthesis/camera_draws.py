@@ -76,14 +76,14 @@ def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
     """Return the development of a random camera for a kind of frame other than `PLAIN`."""
     return Development(
         lens_blur=rng.uniform(0.2, 1.1) if kind is FrameKind.NATIVE else rng.uniform(0, 0.6),
-        glare=rng.uniform(0, 0.04),
+        glare=rng.uniform(0, 0.05),
         sensor=_sensor(rng),
         tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,
         keeps_hue=bool(rng.random() < 0.3),
         finish=_finish(rng),
         jpeg=_jpeg(rng),
         export=_export(rng) if kind is FrameKind.SCALED else None,
-        scatter=int(rng.integers(4)) if kind is FrameKind.SAMPLED else 0,
+        scatter=int(rng.integers(1, 5)) if kind is FrameKind.SAMPLED else 0,
     )
 
 
@@ -97,7 +97,7 @@ def _sensor(rng: np.random.Generator) -> Sensor:
         white=rng.uniform(1, 1.3),
         clips_apart=bool(rng.random() < 0.3),
         crosstalk=rng.uniform(0, 0.4),
-        saturation=float(np.exp(rng.normal(-0.2, 0.45))),
+        saturation=float(np.exp(rng.normal(-0.1, 0.45))),
         demosaicing=rng.choice((Demosaicing.BILINEAR, Demosaicing.GRADIENT_CORRECTED), p=(0.25, 0.75)),
     )
 
@@ -111,7 +111,7 @@ def _finish(rng: np.random.Generator) -> Finish:
     """Return the steps of a camera on the encoded picture."""
     return Finish(
         chroma_blur=int(rng.choice((0, 3, 5))),
-        luma_smoothing=rng.uniform(1, 6) / 255 if rng.random() < 0.8 else 0.0,
+        luma_smoothing=rng.uniform(1, 5) / 255 if rng.random() < 0.8 else 0.0,
         chroma_gain=rng.uniform(0.9, 1.35),
         sharpening=_sharpening(rng) if rng.random() < 0.85 else None,
     )

@@ -38,6 +38,10 @@ DEFOCUSED = 0.35
 #: Standard deviation, in stops, of the gains of the illuminant: of plain captures, and of cameras that balance white.
 CASTS = (0.4, 0.12)
 
+#: Fraction with another large-scale contrast, and the mean logarithm of the factor on it: of plain captures, and of
+#: cameras that develop.
+CONTRASTS = ((0.2, 0.0), (0.5, 0.25))
+
 #: Fraction of photographs exposed by the automatic exposure; the others put a percentile of the windows at saturation.
 AUTOMATIC = 0.6
 
@@ -108,7 +112,9 @@ class PhotographSource:
         develops = kind is not FrameKind.PLAIN
         if develops and rng.random() < DEFOCUSED:
             light = defocused(light, rng)
-        light = relight(recolor(light, rng, cast=CASTS[develops]), rng)
+        contrasted, contrast = CONTRASTS[develops]
+        light = recolor(light, rng, cast=CASTS[develops])
+        light = relight(light, rng, contrasted=contrasted, contrast=contrast)
         drawn = (self._photograph(light, kind, fold, rng) for _ in range(self.cameras))
         return [photo for photo in drawn if photo.curve_set in self.unusual or _fills_codes(photo)]
 

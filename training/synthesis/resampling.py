@@ -51,8 +51,8 @@ class AffineResampling:
     @classmethod
     def draw(cls, scene: Scene, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> AffineResampling:
         """Return a window at a random position, angle, scale and stretch; a larger one shows more, in finer samples."""
-        largest = SCALES[1] * min(1.0, 1.4 * WINDOW_SIZE / side)
-        smallest = min(SCALES[0], largest / 2)
+        largest = SCALES[1] * min(1.0, 1.6 * WINDOW_SIZE / side)
+        smallest = min(SCALES[0] * np.sqrt(side / WINDOW_SIZE), largest / 2)
         scale, angle = float(np.exp(rng.uniform(*np.log((smallest, largest))))), rng.uniform(0, 2 * np.pi)
         stretch = np.exp(rng.normal(0, STRETCH))
         rotation = np.array([[np.cos(angle), -np.sin(angle)], [np.sin(angle), np.cos(angle)]])
@@ -78,7 +78,7 @@ class AffineResampling:
         first, last = np.floor(self.center - reach).astype(int), np.ceil(self.center + reach).astype(int)
         size = self.scene.pixels.shape[:2]
         rows, columns = (_mirrored(np.arange(first[k], last[k] + 1), size[k]) for k in (0, 1))
-        light = self.scene.pixels[np.ix_(rows, columns)]
+        light = self.scene.pixels.take(rows, axis=0).take(columns, axis=1)
         if step == 1 and self.scale > 1:
             for axis in (0, 1):
                 light = gaussian_filter1d(light, PREFILTER * self.scale, axis=axis, truncate=2)
