@@ -56,7 +56,7 @@ class InCameraResponses:
     def of(cls, bodies: Sequence[Body]) -> InCameraResponses:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
-        average = np.mean([rows.mean(axis=0) for rows in stacks.values()], axis=0)
+        average: Float64Array = np.mean([rows.mean(axis=0) for rows in stacks.values()], axis=0)
         means = {kind: average + _shrunk_offset(bodies, stacks, kind, average) for kind in KINDS}
         deviations = {
             body.key: (stacks[body.key] - means.get(body.kind, average)) / np.sqrt(len(stacks[body.key]))

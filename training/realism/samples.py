@@ -15,8 +15,8 @@ from crfnet_core.statistics import window_statistics
 from crfnet_core.types import Float32Array, Float64Array, IndexArray
 from crfnet_core.windows import cut_windows, select_windows
 from training.data.curves import CurveSource
-from training.data.scenes import Scene
 from training.data.real.photographs import REAL_BODIES, RealPhotograph, real_photographs
+from training.data.scenes import Scene
 from training.network.features import Features
 from training.synthesis.camera_draws import WINDOWS, CameraShares
 from training.synthesis.photographs import PhotographSource

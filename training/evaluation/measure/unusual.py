@@ -8,8 +8,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.posterior import Verdict
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import Verdict
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
 
