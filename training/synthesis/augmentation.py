@@ -13,6 +13,9 @@ from training.data.scenes import LUMINANCE
 #: with a power law on the irradiance.
 GRAY, GRADIENT, CONTRAST, POWER = 0.08, 0.3, 0.2, 0.3
 
+#: Range of the standard deviation of the logarithm of the luminance up to which texture is taken out.
+TEXTURE = (0.05, 0.7)
+
 
 def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4) -> Float32Array:
     """Return windows (N, S, S, 3) rotated and mirrored alike, under another illuminant and with other primaries.
@@ -73,6 +76,27 @@ def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
     stops = np.log2(illumination_gradient(len(light), rng, side=light.shape[1]))
     share = np.clip(0.5 + 4 * stops + np.float32(rng.uniform(-1, 1)), 0, 1)
     return light + share * (soft - light)
+
+
+def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[float, float]) -> Float32Array:
+    """Return windows (N, S, S, 3) with weaker texture, as of walls and skies, and the same edges.
+
+    The neighbourhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
+    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighbourhood is
+    below a random one (the local filter of Lee, 1980); at edges it is 1, so they mix light as before.
+    """
+    size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1
+    variance = np.float32(np.exp(rng.uniform(*np.log(TEXTURE))) ** 2)
+    logarithm = np.log(np.maximum(light @ LUMINANCE, 1e-6))  # (N, S, S)
+    mean = _box_blurred(logarithm, size)
+    local = np.maximum(_box_blurred(logarithm**2, size) - mean**2, 0)
+    gain = np.exp(variance / (variance + local) * (mean - logarithm))
+    return light * gain[..., None]
+
+
+def _box_blurred(planes: Float32Array, size: int) -> Float32Array:
+    """Return the means of size x size samples of planes (N, S, S)."""
+    return uniform_filter1d(uniform_filter1d(planes, size, axis=1), size, axis=2)
 
 
 def composited(light: Float32Array, other: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -65,10 +65,10 @@ class Frames:
     def draw(cls, kind: FrameKind, rng: np.random.Generator) -> Frames:
         """Return the frames of a kind. Where they are point-sampled, several windows come from each."""
         if kind is FrameKind.SAMPLED:
-            step = int(rng.choice((2, 3), p=(0.8, 0.2)))
+            step = int(rng.choice((2, 3), p=(0.9, 0.1)))
             return cls(2 if step == 2 else 1, WINDOW_SIZE * step)
         if kind is FrameKind.SCALED:
-            return cls(WINDOWS, round(WINDOW_SIZE * rng.choice((1.5, 2.0), p=(0.7, 0.3))))
+            return cls(WINDOWS, round(WINDOW_SIZE * rng.choice((1.5, 2.0), p=(0.9, 0.1))))
         return cls(WINDOWS, WINDOW_SIZE)
 
 
@@ -77,7 +77,7 @@ def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
     return Development(
         lens_blur=rng.uniform(0.2, 1.1) if kind is FrameKind.NATIVE else rng.uniform(0, 0.6),
         glare=rng.uniform(0, 0.05),
-        sensor=_sensor(rng),
+        sensor=_sensor(rng, noise=1.5 if kind is FrameKind.SAMPLED else 1),
         tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,
         keeps_hue=bool(rng.random() < 0.3),
         finish=_finish(rng),
@@ -87,9 +87,9 @@ def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
     )
 
 
-def _sensor(rng: np.random.Generator) -> Sensor:
-    """Return a sensor between base and high sensitivity."""
-    shot_noise = 10 ** rng.uniform(-5.2, -3.7)
+def _sensor(rng: np.random.Generator, *, noise: float) -> Sensor:
+    """Return a sensor between base and high sensitivity, with `noise` times the variance."""
+    shot_noise = noise * 10 ** rng.uniform(-5.2, -3.7)
     return Sensor(
         shot_noise=shot_noise,
         read_noise=float(np.sqrt(shot_noise)) * rng.uniform(0.01, 0.04),

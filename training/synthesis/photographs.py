@@ -10,7 +10,7 @@ from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from crfnet_core.windows import filled_bins, filled_codes
 from training.data.curves import CurveSource
 from training.data.scenes import Scene, dithered
-from training.synthesis.augmentation import composited, defocused, recolor, relight
+from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
 from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
 from training.synthesis.development import develop
@@ -29,6 +29,11 @@ FOLDS = 3
 #: Fractions of photographs: half of the windows show another scene; windows are resampled at any angle and scale; two
 #: scenes are composited in every window; only the response and 8-bit rounding lie between the light and the file.
 TWO_SCENES, RESAMPLED, COMPOSITED, CLEAN = 0.25, 0.35, 0.15, 0.15
+
+#: Fraction of the photographs in which texture is weaker, by kind, and how far it is looked for around a sample: in
+#: frames as they are, and in those that are point-sampled, which show more of the scene.
+UNTEXTURED = {FrameKind.PLAIN: 0.0, FrameKind.NATIVE: 0.3, FrameKind.SAMPLED: 0.9, FrameKind.SCALED: 0.4}
+REACH = ((2, 8), (2, 12))
 
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
 DEFOCUSED = 0.35
@@ -105,6 +110,8 @@ class PhotographSource:
         frames = Frames.draw(kind, rng)
         light = self._light(self.scenes[fold::FOLDS], frames, rng)
         develops = kind is not FrameKind.PLAIN
+        if rng.random() < UNTEXTURED[kind]:
+            light = untextured(light, rng, reach=REACH[kind is FrameKind.SAMPLED])
         if develops and rng.random() < DEFOCUSED:
             light = defocused(light, rng)
         contrasted, contrast = CONTRASTS[develops]
