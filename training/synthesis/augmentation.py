@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, uniform_filter1d, zoom
+from PIL import Image
+from scipy.ndimage import gaussian_filter, uniform_filter1d
 
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import WINDOW_SIZE
@@ -54,10 +55,10 @@ def relight(
 def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> Float32Array:
     """Return smooth gains around 1, shape (count, side, side, 1): one wave across each window, of up to 2 stops."""
     position = np.linspace(0, 1, side, dtype=np.float32)
-    angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
+    angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1)).astype(np.float32)
     across = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :]  # (count, side, side)
-    stops = rng.uniform(0.2, 2, (count, 1, 1)) * np.sin(rng.uniform(1, 5, (count, 1, 1)) * across + phase)
-    return np.exp2(stops)[..., None].astype(np.float32)
+    height, frequency = rng.uniform((0.2, 1), (2, 5), (count, 2)).astype(np.float32).T[:, :, None, None]
+    return np.exp2(height * np.sin(frequency * across + phase))[..., None]
 
 
 def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float = 0.0) -> Float32Array:
@@ -65,8 +66,10 @@ def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float 
     log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
     radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
     coarse = gaussian_filter(log_luminance, (0, radius, radius))
-    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, light.shape[1] / coarse.shape[1])), order=1)
-    return np.exp((np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
+    side = light.shape[1:3]
+    images = (Image.fromarray(one).resize(side, Image.Resampling.BILINEAR) for one in coarse - coarse.mean())
+    smooth = np.stack([np.asarray(image) for image in images])
+    return np.exp(np.float32(np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None]
 
 
 def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:

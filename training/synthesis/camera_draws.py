@@ -72,10 +72,15 @@ class Frames:
         return cls(WINDOWS, WINDOW_SIZE)
 
 
+#: Fraction of the lenses that blur, by kind of frame, and the range of the standard deviation in samples of the frame.
+BLURRED = {FrameKind.NATIVE: 0.8, FrameKind.SAMPLED: 0.3, FrameKind.SCALED: 0.4}
+LENS_BLUR = {FrameKind.NATIVE: (0.3, 1.1), FrameKind.SAMPLED: (0.4, 0.7), FrameKind.SCALED: (0.4, 0.7)}
+
+
 def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
     """Return the development of a random camera for a kind of frame other than `PLAIN`."""
     return Development(
-        lens_blur=rng.uniform(0.2, 1.1) if kind is FrameKind.NATIVE else rng.uniform(0, 0.6),
+        lens_blur=rng.uniform(*LENS_BLUR[kind]) if rng.random() < BLURRED[kind] else 0.0,
         glare=rng.uniform(0, 0.05),
         sensor=_sensor(rng, noise=1.5 if kind is FrameKind.SAMPLED else 1),
         tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,

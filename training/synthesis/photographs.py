@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
-from crfnet_core.windows import filled_bins, filled_codes
+from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
 from training.data.curves import CurveSource
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
@@ -169,7 +169,8 @@ def _scene_windows(scene: Scene, count: int, side: int, rng: np.random.Generator
         thumbnails = [crop[::THUMBNAIL_STEP, ::THUMBNAIL_STEP] for crop in crops]
         chosen = [crops[i] for i in _best_covering(thumbnails, count)]
     light = np.stack(chosen)
-    return dithered(light, rng) if scene.is_panorama else light
+    # Larger frames are interpolated, and the noise of their sensors dithers them.
+    return dithered(light, rng) if scene.is_panorama and side == WINDOW_SIZE else light
 
 
 def _crop(scene: Scene, side: int, rng: np.random.Generator) -> Float32Array:
