@@ -88,7 +88,7 @@ def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
         finish=_finish(rng),
         jpeg=_jpeg(rng),
         export=_export(rng) if kind is FrameKind.SCALED else None,
-        scatter=int(rng.integers(1, 5)) if kind is FrameKind.SAMPLED else 0,
+        scatter=int(rng.integers(2)) if kind is FrameKind.SAMPLED else 0,
     )
 
 
@@ -102,7 +102,7 @@ def _sensor(rng: np.random.Generator, *, noise: float) -> Sensor:
         white=rng.uniform(1, 1.3),
         clips_apart=bool(rng.random() < 0.3),
         crosstalk=rng.uniform(0, 0.4),
-        saturation=float(np.exp(rng.normal(-0.1, 0.45))),
+        saturation=float(np.exp(rng.normal(-0.15, 0.3))),
         demosaicing=rng.choice((Demosaicing.BILINEAR, Demosaicing.GRADIENT_CORRECTED), p=(0.25, 0.75)),
     )
 
