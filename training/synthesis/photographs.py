@@ -32,7 +32,7 @@ TWO_SCENES, RESAMPLED, COMPOSITED, CLEAN = 0.25, 0.35, 0.15, 0.15
 
 #: Fraction of the photographs in which texture is weaker, by kind, and how far it is looked for around a sample: in
 #: frames as they are, and in those that are point-sampled, which show more of the scene.
-UNTEXTURED = {FrameKind.PLAIN: 0.0, FrameKind.NATIVE: 0.3, FrameKind.SAMPLED: 0.9, FrameKind.SCALED: 0.4}
+UNTEXTURED = {FrameKind.PLAIN: 0.0, FrameKind.NATIVE: 0.0, FrameKind.SAMPLED: 0.4, FrameKind.SCALED: 0.3}
 REACH = ((2, 8), (2, 12))
 
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
