@@ -112,9 +112,9 @@ class _Classifier:
         scale = np.sqrt(weights @ (values - mean) ** 2) + 1e-6
         standard = np.clip((values - mean) / scale, -LIMIT, LIMIT)
         centered = standard - weights @ standard
-        _, _, axes = np.linalg.svd(centered * np.sqrt(weights)[:, None], full_matrices=False)
-        spread = np.sqrt(weights @ (centered @ axes[:COMPONENTS].T) ** 2) + 1e-9
-        unfitted = cls(mean, scale, axes[:COMPONENTS].T / spread, np.zeros(0))
+        axes = _principal_axes(centered * np.sqrt(weights)[:, None])
+        spread = np.sqrt(weights @ (centered @ axes) ** 2) + 1e-9
+        unfitted = cls(mean, scale, axes / spread, np.zeros(0))
         labels = np.repeat([0.0, 1.0], [len(first), len(second)])
         return replace(unfitted, coefficients=_logistic(unfitted._inputs(values), labels, weights * len(values)))
 
@@ -127,6 +127,14 @@ class _Classifier:
         """Return principal components of unit variance and a column of ones, shape (N, COMPONENTS + 1)."""
         standard = np.clip((values - self.mean) / self.scale, -LIMIT, LIMIT)
         return np.column_stack([standard @ self.axes, np.ones(len(values))])
+
+
+def _principal_axes(centered: Float64Array) -> Float64Array:
+    """Return the first principal axes, shape (F, COMPONENTS), of photographs (N, F), where N is much below F."""
+    values, vectors = np.linalg.eigh(centered @ centered.T)
+    first = np.argsort(values)[::-1][: min(COMPONENTS, len(centered) - 1)]
+    axes: Float64Array = centered.T @ vectors[:, first] / np.sqrt(np.maximum(values[first], 1e-12))
+    return axes
 
 
 def _logistic(inputs: Float64Array, labels: Float64Array, weights: Float64Array) -> Float64Array:

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import gaussian_filter, uniform_filter1d, zoom
+from PIL import Image
+from scipy.ndimage import gaussian_filter, uniform_filter1d
 
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import WINDOW_SIZE
@@ -12,6 +13,9 @@ from training.data.scenes import LUMINANCE
 #: Fractions of photographs: without colour, under an illumination gradient, with another large-scale contrast, and
 #: with a power law on the irradiance.
 GRAY, GRADIENT, CONTRAST, POWER = 0.08, 0.3, 0.2, 0.3
+
+#: Range of the standard deviation of the logarithm of the luminance up to which texture is taken out.
+TEXTURE = (0.05, 0.7)
 
 
 def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4) -> Float32Array:
@@ -51,10 +55,10 @@ def relight(
 def illumination_gradient(count: int, rng: np.random.Generator, *, side: int = WINDOW_SIZE) -> Float32Array:
     """Return smooth gains around 1, shape (count, side, side, 1): one wave across each window, of up to 2 stops."""
     position = np.linspace(0, 1, side, dtype=np.float32)
-    angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1))
+    angle, phase = rng.uniform(0, 2 * np.pi, (2, count, 1, 1)).astype(np.float32)
     across = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :]  # (count, side, side)
-    stops = rng.uniform(0.2, 2, (count, 1, 1)) * np.sin(rng.uniform(1, 5, (count, 1, 1)) * across + phase)
-    return np.exp2(stops)[..., None].astype(np.float32)
+    height, frequency = rng.uniform((0.2, 1), (2, 5), (count, 2)).astype(np.float32).T[:, :, None, None]
+    return np.exp2(height * np.sin(frequency * across + phase))[..., None]
 
 
 def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float = 0.0) -> Float32Array:
@@ -62,8 +66,10 @@ def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float 
     log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
     radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
     coarse = gaussian_filter(log_luminance, (0, radius, radius))
-    smooth = zoom(coarse - coarse.mean(), (1, *np.full(2, light.shape[1] / coarse.shape[1])), order=1)
-    return np.exp((np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None].astype(np.float32)
+    side = light.shape[1:3]
+    images = (Image.fromarray(one).resize(side, Image.Resampling.BILINEAR) for one in coarse - coarse.mean())
+    smooth = np.stack([np.asarray(image) for image in images])
+    return np.exp(np.float32(np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None]
 
 
 def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -73,6 +79,27 @@ def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
     stops = np.log2(illumination_gradient(len(light), rng, side=light.shape[1]))
     share = np.clip(0.5 + 4 * stops + np.float32(rng.uniform(-1, 1)), 0, 1)
     return light + share * (soft - light)
+
+
+def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[float, float]) -> Float32Array:
+    """Return windows (N, S, S, 3) with weaker texture, as of walls and skies, and the same edges.
+
+    The neighbourhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
+    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighbourhood is
+    below a random one (the local filter of Lee, 1980); at edges it is 1, so they mix light as before.
+    """
+    size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1
+    variance = np.float32(np.exp(rng.uniform(*np.log(TEXTURE))) ** 2)
+    logarithm = np.log(np.maximum(light @ LUMINANCE, 1e-6))  # (N, S, S)
+    mean = _box_blurred(logarithm, size)
+    local = np.maximum(_box_blurred(logarithm**2, size) - mean**2, 0)
+    gain = np.exp(variance / (variance + local) * (mean - logarithm))
+    return light * gain[..., None]
+
+
+def _box_blurred(planes: Float32Array, size: int) -> Float32Array:
+    """Return the means of size x size samples of planes (N, S, S)."""
+    return uniform_filter1d(uniform_filter1d(planes, size, axis=1), size, axis=2)
 
 
 def composited(light: Float32Array, other: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -34,10 +34,10 @@ class FrameKind(StrEnum):
 class CameraShares:
     """Fractions of the training photographs of each `FrameKind`; their sum is 1."""
 
-    plain: float = 0.25
-    native: float = 0.15
-    sampled: float = 0.35
-    scaled: float = 0.25
+    plain: float = 0.3
+    native: float = 0.3
+    sampled: float = 0.1
+    scaled: float = 0.3
 
     @classmethod
     def only(cls, kind: FrameKind) -> CameraShares:
@@ -65,31 +65,36 @@ class Frames:
     def draw(cls, kind: FrameKind, rng: np.random.Generator) -> Frames:
         """Return the frames of a kind. Where they are point-sampled, several windows come from each."""
         if kind is FrameKind.SAMPLED:
-            step = int(rng.choice((2, 3), p=(0.8, 0.2)))
+            step = int(rng.choice((2, 3), p=(0.9, 0.1)))
             return cls(2 if step == 2 else 1, WINDOW_SIZE * step)
         if kind is FrameKind.SCALED:
-            return cls(WINDOWS, round(WINDOW_SIZE * rng.choice((1.5, 2.0), p=(0.7, 0.3))))
+            return cls(WINDOWS, round(WINDOW_SIZE * rng.choice((1.5, 2.0), p=(0.9, 0.1))))
         return cls(WINDOWS, WINDOW_SIZE)
+
+
+#: Fraction of the lenses that blur, by kind of frame, and the range of the standard deviation in samples of the frame.
+BLURRED = {FrameKind.NATIVE: 0.8, FrameKind.SAMPLED: 0.3, FrameKind.SCALED: 0.4}
+LENS_BLUR = {FrameKind.NATIVE: (0.3, 1.1), FrameKind.SAMPLED: (0.4, 0.7), FrameKind.SCALED: (0.4, 0.7)}
 
 
 def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
     """Return the development of a random camera for a kind of frame other than `PLAIN`."""
     return Development(
-        lens_blur=rng.uniform(0.2, 1.1) if kind is FrameKind.NATIVE else rng.uniform(0, 0.6),
+        lens_blur=rng.uniform(*LENS_BLUR[kind]) if rng.random() < BLURRED[kind] else 0.0,
         glare=rng.uniform(0, 0.05),
-        sensor=_sensor(rng),
+        sensor=_sensor(rng, noise=1.5 if kind is FrameKind.SAMPLED else 1),
         tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,
         keeps_hue=bool(rng.random() < 0.3),
         finish=_finish(rng),
         jpeg=_jpeg(rng),
         export=_export(rng) if kind is FrameKind.SCALED else None,
-        scatter=int(rng.integers(1, 5)) if kind is FrameKind.SAMPLED else 0,
+        scatter=int(rng.integers(2)) if kind is FrameKind.SAMPLED else 0,
     )
 
 
-def _sensor(rng: np.random.Generator) -> Sensor:
-    """Return a sensor between base and high sensitivity."""
-    shot_noise = 10 ** rng.uniform(-5.2, -3.7)
+def _sensor(rng: np.random.Generator, *, noise: float) -> Sensor:
+    """Return a sensor between base and high sensitivity, with `noise` times the variance."""
+    shot_noise = noise * 10 ** rng.uniform(-5.2, -3.7)
     return Sensor(
         shot_noise=shot_noise,
         read_noise=float(np.sqrt(shot_noise)) * rng.uniform(0.01, 0.04),
@@ -97,7 +102,7 @@ def _sensor(rng: np.random.Generator) -> Sensor:
         white=rng.uniform(1, 1.3),
         clips_apart=bool(rng.random() < 0.3),
         crosstalk=rng.uniform(0, 0.4),
-        saturation=float(np.exp(rng.normal(-0.1, 0.45))),
+        saturation=float(np.exp(rng.normal(-0.15, 0.3))),
         demosaicing=rng.choice((Demosaicing.BILINEAR, Demosaicing.GRADIENT_CORRECTED), p=(0.25, 0.75)),
     )
 

@@ -200,7 +200,9 @@ def point_sampled(codes: Uint8Array, each: int, scatter: int, rng: np.random.Gen
     for y, x in starts:
         if scatter:
             rows, columns = rng.integers(scatter + 1, size=(2, count, WINDOW_SIZE, WINDOW_SIZE))
-            rows, columns = (first[:, None] + y + rows) % side, (first + x + columns) % side
+            rows += (first + y)[:, None]
+            columns += first + x
+            rows, columns = np.minimum(rows, side - 1), np.minimum(columns, side - 1)
             parts.append(codes[np.arange(count)[:, None, None], rows, columns])
         else:
             parts.append(codes[:, y::step, x::step][:, :WINDOW_SIZE, :WINDOW_SIZE])

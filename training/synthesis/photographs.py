@@ -9,9 +9,13 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
+<<<<<<< HEAD
 from training.data.curves import IRRADIANCE, DrawsResponses
+=======
+from training.data.curves import CurveSource
+>>>>>>> camera
 from training.data.scenes import Scene, dithered
-from training.synthesis.augmentation import composited, defocused, recolor, relight
+from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
 from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
 from training.synthesis.development import develop
@@ -31,6 +35,11 @@ FOLDS = 3
 #: Fractions of photographs: half of the windows show another scene; windows are resampled at any angle and scale; two
 #: scenes are composited in every window; only the response and 8-bit rounding lie between the light and the file.
 TWO_SCENES, RESAMPLED, COMPOSITED, CLEAN = 0.25, 0.35, 0.15, 0.15
+
+#: Fraction of the photographs in which texture is weaker, by kind, and how far it is looked for around a sample: in
+#: frames as they are, and in those that are point-sampled, which show more of the scene.
+UNTEXTURED = {FrameKind.PLAIN: 0.0, FrameKind.NATIVE: 0.0, FrameKind.SAMPLED: 0.4, FrameKind.SCALED: 0.3}
+REACH = ((2, 8), (2, 12))
 
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
 DEFOCUSED = 0.35
@@ -110,6 +119,8 @@ class PhotographSource:
         frames = Frames.draw(kind, rng)
         light = self._light(self.scenes[fold::FOLDS], frames, rng)
         develops = kind is not FrameKind.PLAIN
+        if rng.random() < UNTEXTURED[kind]:
+            light = untextured(light, rng, reach=REACH[kind is FrameKind.SAMPLED])
         if develops and rng.random() < DEFOCUSED:
             light = defocused(light, rng)
         contrasted, contrast = CONTRASTS[develops]
@@ -195,7 +206,8 @@ def _scene_windows(scene: Scene, count: int, side: int, rng: np.random.Generator
         thumbnails = [crop[::THUMBNAIL_STEP, ::THUMBNAIL_STEP] for crop in crops]
         chosen = [crops[i] for i in _best_covering(thumbnails, count)]
     light = np.stack(chosen)
-    return dithered(light, rng) if scene.is_panorama else light
+    # Larger frames are interpolated, and the noise of their sensors dithers them.
+    return dithered(light, rng) if scene.is_panorama and side == WINDOW_SIZE else light
 
 
 def _crop(scene: Scene, side: int, rng: np.random.Generator) -> Float32Array:
