@@ -9,11 +9,7 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
-<<<<<<< HEAD
 from training.data.curves import IRRADIANCE, DrawsResponses
-=======
-from training.data.curves import CurveSource
->>>>>>> camera
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
