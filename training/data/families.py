@@ -37,6 +37,8 @@ def _edited(response: Float64Array, rng: np.random.Generator) -> Float64Array:
     brightness = brightness ** np.exp(amount * rng.normal(0, 0.2))
     contrast, pivot = amount * rng.normal(0, 0.3), rng.uniform(0.35, 0.65)
     bent = _s_curve(brightness, np.exp(contrast), pivot)
+    saturation = IRRADIANCE[np.argmax(bent >= bent[-1])]
+    bent = np.interp(IRRADIANCE * saturation, IRRADIANCE, bent)  # irradiance 1 is where white is reached
     return (bent - bent[0]) / (bent[-1] - bent[0])
 
 

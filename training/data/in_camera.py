@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.ndimage import gaussian_filter1d
 
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
@@ -29,6 +30,10 @@ TAILS = 0.25
 
 #: Brightnesses at which inverse responses are compared.
 BRIGHTNESS = np.linspace(0, 1, SAMPLES)
+
+#: Standard deviation of the Gaussian that smooths measured responses, in samples (3 codes of 255), and how far a
+#: response is continued beyond its ends, mirrored in the end point, so that the end point stays.
+SMOOTHING, REACH = 12.0, 48
 
 #: Irradiance at which logarithms are cut off.
 LEAST_IRRADIANCE = 2.0**-16
@@ -74,8 +79,15 @@ class InCameraResponses:
 
 
 def log_irradiance(curve: ResponseCurve) -> Float64Array:
-    """Return log2 of the inverse response at `BRIGHTNESS`, shape (1024,)."""
-    return np.log2(np.maximum(curve.inverse(BRIGHTNESS), LEAST_IRRADIANCE))
+    """Return log2 of the inverse response at `BRIGHTNESS`, shape (1024,), smooth from `DARKEST` on.
+
+    Measured responses have kinks where one method of measuring hands over to another, near white above all.
+    """
+    logarithms = np.log2(np.maximum(curve.inverse(BRIGHTNESS), LEAST_IRRADIANCE))
+    bright = logarithms[DARKEST:]
+    before, after = 2 * bright[0] - bright[REACH:0:-1], 2 * bright[-1] - bright[-2 : -REACH - 2 : -1]
+    smooth = gaussian_filter1d(np.concatenate([before, bright, after]), SMOOTHING)
+    return np.concatenate([logarithms[:DARKEST], smooth[REACH:-REACH]])
 
 
 def response_of(logarithms: Float64Array) -> Float64Array:
