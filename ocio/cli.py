@@ -13,7 +13,7 @@ from typing import NoReturn, TypeAlias
 
 import shtab
 
-from ocio.defaults import DEPTHS, LUT_LENGTH, MAX_EXPOSURE, WINDOWS
+from ocio.defaults import DEPTHS, LUT_LENGTH, MAX_EXPOSURE, PRIORS, WINDOWS
 
 #: Exit codes.
 BAD_INPUT = 2
@@ -23,6 +23,7 @@ ESTIMATE_EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
   crfnet estimate day1/*.jpg --out look            several photographs of one camera, one response
   crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
+  crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
 
 For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
 plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01.json."""
@@ -165,6 +166,18 @@ def _add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
     model = parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
     model.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    prior = parser.add_argument(
+        "--prior",
+        default=PRIORS[0],
+        metavar="|".join((*PRIORS, "FILE")),
+        help=f"what to expect: today's cameras, any source (film, old video too), or as a JSON file says ({PRIORS[0]})",
+    )
+    prior.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument(
+        "--ignore-metadata",
+        action="store_true",
+        help="leave out what the files say of their camera and of programs that changed them",
+    )
     parser.add_argument(
         "--threads", type=_count, default=0, metavar="N", help="threads of the network (0: as many as cores)"
     )

@@ -37,14 +37,12 @@ def run_estimate(arguments: argparse.Namespace) -> None:
     plan = pipeline.plan_outputs(
         arguments.out, groups, _plate_options(arguments), lut_length=arguments.length, has_sheet=has_sheet
     )
-    options = EstimateOptions(
-        model=arguments.model, threads=arguments.threads, windows=arguments.windows, seed=arguments.seed
-    )
-    network = pipeline.load_network(options)
+    options = _estimate_options(arguments, windows=arguments.windows, seed=arguments.seed)
+    prior, network = pipeline.load_prior(options), pipeline.load_network(options)
     estimates = []
     for group in groups:
         with _progress_bar("windows") as progress:
-            estimates.append(pipeline.estimate_photographs(group, network, options, progress=progress))
+            estimates.append(pipeline.estimate_photographs(group, network, prior, options, progress=progress))
     documents = pipeline.write_estimates(plan, estimates)
     if arguments.json:
         _print_json({"folder": str(plan.folder), "estimates": documents})
@@ -86,6 +84,17 @@ def run_info(arguments: argparse.Namespace) -> None:
         _print_lines(lines)
 
 
+def _estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOptions:
+    """Return how responses are estimated, with the options that not every command has."""
+    return EstimateOptions(
+        model=arguments.model,
+        threads=arguments.threads,
+        prior=arguments.prior,
+        use_metadata=not arguments.ignore_metadata,
+        **more,
+    )
+
+
 def _plate_options(arguments: argparse.Namespace) -> PlateOptions:
     """Return how linear plates are written."""
     return PlateOptions(depth=arguments.depth, exposure=arguments.exposure, overwrite=arguments.overwrite)
@@ -93,10 +102,10 @@ def _plate_options(arguments: argparse.Namespace) -> PlateOptions:
 
 def _estimate_frames(sequence: FrameSequence, arguments: argparse.Namespace) -> ResponseEstimate:
     """Return the response of a sequence, with a progress bar."""
-    options = EstimateOptions(model=arguments.model, threads=arguments.threads)
-    network = pipeline.load_network(options)
+    options = _estimate_options(arguments)
+    prior, network = pipeline.load_prior(options), pipeline.load_network(options)
     with _progress_bar("windows") as progress:
-        return pipeline.estimate_frames(sequence, network, options, progress=progress)
+        return pipeline.estimate_frames(sequence, network, prior, options, progress=progress)
 
 
 def _has_matplotlib() -> bool:

@@ -9,6 +9,9 @@ LUT_LENGTH = 4081
 #: Windows cut from each photograph, as in `crfnet_core.estimate_response`.
 WINDOWS = 10
 
+#: The packaged priors, as in `crfnet_core.posterior`; the first is the default.
+PRIORS = ("camera", "any")
+
 #: Frames of a sequence from which its one response is estimated.
 FRAMES_ANALYZED = 8
 
@@ -23,3 +26,6 @@ MIDDLE_GRAY = 0.18
 
 #: Estimation error (E_est) that gamma 2.2 usually makes: 3.14 on the 201 curves of DoRF, 3.65 on 22 camera bodies (P4).
 GAMMA_ERROR = 3.3
+
+#: Shape error in stops that gamma 2.2 usually makes: 0.73 on 22 camera bodies (P4).
+GAMMA_SHAPE_ERROR = 0.73

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ocio.defaults import DEPTHS, WINDOWS
+from ocio.defaults import DEPTHS, PRIORS, WINDOWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -22,12 +22,18 @@ class EstimateOptions:
         Windows cut from each photograph.
     seed : int
         Seed of the choice of windows.
+    prior : str or Path
+        Which kinds of responses to expect: the name of a packaged prior, or a JSON file.
+    use_metadata : bool
+        Whether what the files say of their making counts.
     """
 
     model: Path | None = None
     threads: int = 0
     windows: int = WINDOWS
     seed: int = 0
+    prior: str | Path = PRIORS[0]
+    use_metadata: bool = True
 
 
 @dataclass(frozen=True, kw_only=True)

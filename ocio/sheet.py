@@ -20,24 +20,27 @@ from matplotlib.text import Annotation
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write
-from crfnet_core.network import Verdict
+from crfnet_core.posterior import Verdict
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import Window
-from ocio.report import agreeing, brightness_percent
+from ocio.report import LikelyKind, agreeing, basis, curve_error, shape_error
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
 
 #: Lower edge and height of everything below the heading, as fractions of the height of the sheet.
-BOTTOM, HEIGHT = 0.1, 0.735
+BOTTOM, HEIGHT = 0.1, 0.72
 
 INK, QUIET, GRID, CURVE = "#1b1f24", "#6a737d", "#e6e8eb", "#0b66c3"
 VERDICT_INK = {Verdict.GOOD: "#1a7f37", Verdict.USABLE: "#9a6700", Verdict.DO_NOT_TRUST: "#b42318"}
 
-#: Characters of a file name, and of all warnings together, for which there is room.
-LONGEST_NAME, LONGEST_LINE = 46, 150
+#: Characters of a file name, and of a line across the whole sheet, for which there is room.
+LONGEST_NAME, LONGEST_LINE = 46, 165
+
+#: Between the parts of a line.
+DOT = "   ·   "
 
 STYLE: dict[Any, Any] = {
     "font.family": "DejaVu Sans",
@@ -91,23 +94,23 @@ def draw_sheet(
 
 
 def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
-    """Draw the photograph's name, the verdict, the figures and the warnings."""
+    """Draw the photograph's name, the verdict with the expected errors, what it rests on, and the warnings."""
     name = _shortened(estimate.photos[0], LONGEST_NAME)
     more = f" + {len(estimate.photos) - 1}" if len(estimate.photos) > 1 else ""
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
-    percent = brightness_percent(estimate.uncertainty)
     color = VERDICT_INK[estimate.verdict]
-    verdict = figure.text(0.058, 0.896, estimate.verdict, size=11, weight="bold", va="center", color=color)
-    figures = (
-        f"expected error {estimate.uncertainty:.2f} ({percent:.1f} % of the brightness range)   ·   "
-        f"{agreeing(estimate)}   ·   {estimate.model}"
-    )
+    verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
+    shape, kind = shape_error(estimate), LikelyKind.of(estimate)
+    figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error(estimate)}"]
+    found = DOT.join(map(str, filter(None, [*figures, kind])))
     beside = Annotation(
-        figures, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=QUIET
+        found, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=INK
     )
     figure.add_artist(beside)
-    warning_line = _shortened("   ·   ".join(estimate.warnings), LONGEST_LINE)
-    figure.text(0.058, 0.026, warning_line, size=9, va="center", color=VERDICT_INK[Verdict.USABLE])
+    figure.text(0.058, 0.872, _shortened(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
+    figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
+    warning_line = _shortened(DOT.join(estimate.warnings), LONGEST_LINE)
+    figure.text(0.058, 0.026, warning_line, va="center", color=VERDICT_INK[Verdict.USABLE])
 
 
 def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
@@ -115,7 +118,7 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     irradiance = np.linspace(0, 1, SAMPLES)
     lower, upper = estimate.band
     gamma = ResponseCurve.gamma().brightness
-    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % band")
+    axes.fill_between(irradiance, lower, upper, color=CURVE, alpha=0.18, linewidth=0, label="90 % credible band")
     axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
     axes.plot(irradiance, estimate.curve.brightness, color=CURVE, linewidth=2.2, label="estimate")
     axes.set(
@@ -143,7 +146,7 @@ def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
 
 def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
     """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
-    _show(axes, preview, stride, "Photograph and its windows (dashed: far from the others)")
+    _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed")
     for found in estimate.windows:
         if found.photo == 0:
             axes.add_patch(_outline(found.window, kept=found.kept, width=1.8, color="#000000"))

@@ -68,7 +68,7 @@ def true_response(root) -> "ResponseCurve":
 
 @pytest.fixture(scope="session")
 def fixed_model(root) -> Path:
-    """A model folder whose network always answers the bundled photograph's true response."""
+    """A model folder whose network always states evidence for the bundled photograph's true response."""
     return root / "tests" / "data" / "fixed_model"
 
 
@@ -115,8 +115,8 @@ def plate_file(tmp_path, codes) -> Path:
 
 @pytest.fixture
 def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
-    """Estimate the response of files with the fixed model: estimate(path, ...)."""
+    """Estimate the response of files with the fixed model: estimate(path, ..., use_metadata=True)."""
     from crfnet_core import ResponseNetwork, estimate_response, read_photo
 
     network = ResponseNetwork.load(fixed_model)
-    return lambda *paths: estimate_response([read_photo(path) for path in paths], network=network)
+    return lambda *paths, **options: estimate_response(map(read_photo, paths), network=network, **options)

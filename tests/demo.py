@@ -35,7 +35,8 @@ def main(folder: Path) -> None:
     for name, curve in (("this estimate", estimated), ("gamma 2.2", ResponseCurve.gamma())):
         plate = 100 * linearization_error(pixels, true, curve)
         print(f"  {name:<22}{estimation_error(true, curve):>18.2f}{plate:>22.2f}{shape_error(true, curve):>16.2f}")
-    print(f"  {'expected beforehand':<22}{report['uncertainty']:>18.2f}")
+    curve, shape = report["uncertainty"], report["shape_uncertainty_stops"]
+    print(f"  {'expected beforehand':<22}{curve:>18.2f}{'':>22}{shape:>16.2f}")
     print(EXPLANATION)
     for path in sorted(folder.iterdir()):
         print(f"  {path.stat().st_size / 1024:>8.0f} KB  {path}")

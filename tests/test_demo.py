@@ -1,6 +1,7 @@
 """What `make demo` does, with the fixed model."""
 
 import importlib.util
+import json
 
 import pytest
 
@@ -17,7 +18,10 @@ def test_prints_the_true_error_and_the_files(crfnet, demo, plate, fixed_model, t
     crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model, "--no-sheet")
     demo.main(tmp_path)
     out = capsys.readouterr().out
-    assert "gamma 2.2                           3.72" in out
-    assert "this estimate                       0.01" in out
-    assert "0.38" in next(line for line in out.splitlines() if "gamma 2.2" in line and "3.72" in line)
+    rows = {line[:24].strip(): line[24:].split() for line in out.splitlines() if line.startswith("  ")}
+    assert rows["gamma 2.2"][::2] == ["3.72", "0.38"]
+    assert all(float(own) < float(gamma) for own, gamma in zip(rows["this estimate"], rows["gamma 2.2"], strict=True))
+    report = json.loads((tmp_path / "plate.json").read_text(encoding="utf-8"))
+    expected = (report["uncertainty"], report["shape_uncertainty_stops"])
+    assert rows["expected beforehand"] == [f"{error:.2f}" for error in expected]
     assert "plate_linear.exr" in out

@@ -3,6 +3,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import bpy
 
 from ocio.configs.installed import Installed
@@ -50,6 +52,11 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
     settings.gray = job.exposure.gray
     settings.exposure = job.exposure.stops
     settings.depth = job.output.depth
+    options = job.estimation.options
+    settings.ignore_metadata = not options.use_metadata
+    settings.prior = "file" if isinstance(options.prior, Path) else options.prior
+    if settings.prior == "file" and Path(bpy.path.abspath(settings.prior_file)) != options.prior:
+        settings.prior_file = str(options.prior)
 
 
 def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:

@@ -108,7 +108,8 @@ def plate_of(datablock: Datablock) -> Plate:
     if problem := obstacle(datablock):
         raise AddonError(problem)
     if isinstance(datablock, bpy.types.Image) and (datablock.packed_file or datablock.source == "GENERATED"):
-        return _plate(datablock, lazy_import.load(".scene.packed_images").write_temporary_file(datablock), folder=None)
+        path = lazy_import.load(".scene.packed_images").write_temporary_file(datablock)
+        return _plate(datablock, path, folder=None, has_metadata=bool(datablock.packed_file))
     path = Path(bpy.path.abspath(datablock.filepath, library=datablock.library))
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
         raise AddonError(
@@ -117,7 +118,7 @@ def plate_of(datablock: Datablock) -> Plate:
     return _plate(datablock, path, folder=path.parent)
 
 
-def _plate(datablock: Datablock, path: Path, *, folder: Path | None) -> Plate:
+def _plate(datablock: Datablock, path: Path, *, folder: Path | None, has_metadata: bool = True) -> Plate:
     """Return the plate of an image or clip whose code values, or first frame, are in a file."""
     return Plate.of_file(
         path,
@@ -126,4 +127,5 @@ def _plate(datablock: Datablock, path: Path, *, folder: Path | None) -> Plate:
         uid=datablock.session_uid,
         color_space=datablock.colorspace_settings.name,
         folder=folder,
+        has_metadata=has_metadata,
     )

@@ -22,8 +22,8 @@ if TYPE_CHECKING:
 #: The name of the custom property.
 KEY = "camera_response"
 
-#: The version of its entries.
-LAYOUT = 1
+#: The version of its entries, and those that are read.
+LAYOUT, READABLE_LAYOUTS = 2, (1, 2)
 
 #: Entries that are set later: the exposure that was applied, in stops, and the colour space that the plate gets once
 #: Blender has been started with the new config.
@@ -47,9 +47,9 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
 
 
 def is_stored(datablock: Datablock | None) -> bool:
-    """Return whether an image or clip has a stored estimate of this layout."""
+    """Return whether an image or clip has a stored estimate of a layout that is read."""
     entries: Any = datablock.get(KEY) if datablock is not None else None
-    return hasattr(entries, "get") and entries.get("layout") == LAYOUT
+    return hasattr(entries, "get") and entries.get("layout") in READABLE_LAYOUTS
 
 
 def lines(datablock: Datablock) -> list[str]:

@@ -11,6 +11,7 @@ from ocio.options import EstimateOptions
 
 from ..scene import color_management, plates
 from ..scene.stored_estimate import restored
+from ..work.errors import AddonError
 from ..work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
 from .plate_settings import CHOICES
 from .preferences import absolute, preferences
@@ -31,14 +32,19 @@ def gather_job(datablock: plates.Datablock, *, is_estimated: bool, arguments: Ma
     Raises
     ------
     AddonError
-        If no response can be estimated from the plate, or its file is not found.
+        If no response can be estimated from the plate, its file is not found, or no file of the prior is chosen.
     """
     settings, plate = datablock.camera_response_settings, plates.plate_of(datablock)
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
     return Job(
         plate=plate,
         estimation=Estimation(
-            options=EstimateOptions(model=absolute(preferences().model), threads=preferences().threads),
+            options=EstimateOptions(
+                model=absolute(preferences().model),
+                threads=preferences().threads,
+                prior=_prior(chosen, is_needed=not is_estimated),
+                use_metadata=not chosen["ignore_metadata"],
+            ),
             is_forced=chosen["force"],
             stored=restored(datablock) if is_estimated else None,
         ),
@@ -48,6 +54,15 @@ def gather_job(datablock: plates.Datablock, *, is_estimated: bool, arguments: Ma
             path=color_management.running_config(), is_demanded=bool(color_management.environment_config())
         ),
     )
+
+
+def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:
+    """Return the name or the file of the prior; a stored estimate needs no file."""
+    if chosen["prior"] != "file":
+        return str(chosen["prior"])
+    if is_needed and not chosen["prior_file"]:
+        raise AddonError("Expect is set to File: choose a Prior File, or expect Camera")
+    return absolute(chosen["prior_file"]) or "file"
 
 
 def _output(plate: Plate, chosen: Mapping[str, Any]) -> Output:

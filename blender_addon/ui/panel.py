@@ -16,6 +16,9 @@ from .operators import CRF_OT_apply_response, CRF_OT_estimate_response
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
 
+#: How lines begin that get an icon.
+ALARMING = ("Warning", "The estimate is not to be trusted")
+
 #: The mean width of a letter of the interface, in pixels at a scale of 1.
 _LETTER = 7
 
@@ -86,15 +89,31 @@ def _draw_settings(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup
     if settings.apply in ("BAKE", "EXPORT"):
         column.prop(settings, "overwrite")
     column.prop(settings, "force")
+    _draw_advanced(layout, settings)
+
+
+def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
+    """Draw what few plates need, closed at first: which responses to expect, and whether metadata counts."""
+    header, body = layout.panel("CRF_advanced", default_closed=True)
+    header.label(text="Advanced")
+    if body is None:
+        return
+    column = body.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    column.prop(settings, "prior")
+    if settings.prior == "file":
+        column.prop(settings, "prior_file")
+    column.prop(settings, "ignore_metadata")
 
 
 def _draw_estimate(layout: bpy.types.UILayout, datablock: plates.Datablock, *, letters: int) -> None:
     """Draw the response, and the verdict and warnings wrapped to a number of letters."""
     box = layout.box()
     box.template_icon(icon_value=curve_icon(datablock), scale=9)
-    box.label(text="Response, its 90 % band, gamma 2.2 dashed")
+    box.label(text="Response, 90 % credible band; gamma 2.2 dashed")
     for line in stored_estimate.lines(datablock):
-        first, others = ("ERROR", "BLANK1") if line.startswith("Warning") else ("NONE", "NONE")
+        first, others = ("ERROR", "BLANK1") if line.startswith(ALARMING) else ("NONE", "NONE")
         for number, part in enumerate(textwrap.wrap(line, letters)):
             box.label(text=part, icon=others if number else first)
 

@@ -17,6 +17,13 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
+#: What kinds of responses to expect: `ocio.defaults.PRIORS`, or as a file says.
+PRIORS = (
+    ("camera", "Camera", "Today's phones, compact cameras and cameras with interchangeable lenses, mostly unedited"),
+    ("any", "Any Source", "Also film scans, old video cameras and heavily edited pictures, as likely as cameras"),
+    ("file", "File", "As a JSON file says"),
+)
+
 #: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a
 #: wheel, and the add-on has to start without it.
 MAX_EXPOSURE = 15
@@ -59,6 +66,16 @@ class PlateChoices:
     overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files of an earlier run")
     force: bpy.props.BoolProperty(
         name="Estimate Anyway", description="Estimate even if the color space or the metadata says log or linear"
+    )
+    prior: bpy.props.EnumProperty(
+        name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS
+    )
+    prior_file: bpy.props.StringProperty(
+        name="Prior File", description="JSON file with the share of each kind of response", subtype="FILE_PATH"
+    )
+    ignore_metadata: bpy.props.BoolProperty(
+        name="Ignore Metadata",
+        description="Leave out what the file says of its camera and of programs that changed it",
     )
 
 

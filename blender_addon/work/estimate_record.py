@@ -2,18 +2,26 @@
 """An estimate as the entries that a .blend file keeps, and back.
 
 The entries are texts, numbers and flat lists of numbers in double precision, because a custom property holds nothing
-else; several texts are one, with a line each. Files saved with these names must stay readable: a change of them needs
-a new `scene.stored_estimate.LAYOUT`.
+else; several texts are one, with a line each; families and what the metadata says are texts in JSON. Files saved with
+these names must stay readable: a change of them needs a new `scene.stored_estimate.LAYOUT`. Layout 1 knew neither the
+expected shape error nor families, prior and metadata.
 """
 
 from __future__ import annotations
 
+import dataclasses
+import json
+import math
 from collections.abc import Iterator, Mapping
 from typing import Any
 
 import numpy as np
 
 from crfnet_core import ResponseCurve, ResponseEstimate, Window, WindowEstimate
+from crfnet_core.metadata import FileOrigin
+from crfnet_core.metadata.devices import Device
+from crfnet_core.metadata.origin import Encoding
+from crfnet_core.posterior import Family, Verdict
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -24,7 +32,10 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "photos": "\n".join(estimate.photos),
         "verdict": estimate.verdict.value,
         "uncertainty": estimate.uncertainty,
-        "spread": estimate.spread,
+        "shape_uncertainty": estimate.shape_uncertainty,
+        "families": json.dumps(dict(estimate.families)),
+        "prior": estimate.prior,
+        "metadata": json.dumps([dataclasses.asdict(origin) for origin in estimate.origins], ensure_ascii=False),
         "warnings": "\n".join(estimate.warnings),
         "weights": estimate.weights.tolist(),
         "brightness": estimate.curve.brightness.tolist(),
@@ -41,6 +52,8 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
 def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
     """Return the estimate of which `entries_of` made these entries.
 
+    Of an estimate of layout 1, the expected shape error is NaN, and there are no families, no prior and no metadata.
+
     Raises
     ------
     CurveError
@@ -50,9 +63,13 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         curve=ResponseCurve(np.array(entries["brightness"])),
         weights=np.array(entries["weights"]),
         windows=tuple(_windows(entries)),
-        spread=entries["spread"],
         uncertainty=entries["uncertainty"],
+        shape_uncertainty=entries.get("shape_uncertainty", math.nan),
         band=np.array([entries["lower"], entries["upper"]]),
+        families={Family(name): share for name, share in json.loads(entries.get("families", "{}")).items()},
+        verdict=Verdict(entries["verdict"]),
+        prior=entries.get("prior", ""),
+        origins=tuple(_origins(entries)),
         warnings=_lines(entries["warnings"]),
         model=entries["model"],
         photos=_lines(entries["photos"]),
@@ -72,6 +89,13 @@ def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),
         )
+
+
+def _origins(entries: Mapping[str, Any]) -> Iterator[FileOrigin]:
+    """Yield what the metadata of each photograph says; of layout 1 nothing."""
+    for origin in json.loads(entries.get("metadata", "[]")):
+        kinds = {"device": Device(origin["device"]), "encoding": Encoding(origin["encoding"])}
+        yield FileOrigin(**{**origin, **kinds, "words": tuple(origin["words"])})
 
 
 def _lines(text: str) -> tuple[str, ...]:

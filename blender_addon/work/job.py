@@ -56,6 +56,8 @@ class Plate:
         The colour space that Blender takes the file for.
     folder : Path or None
         The folder for new files unless the user chooses one; None for a plate without a file of its own.
+    has_metadata : bool
+        Whether the file may say how it was made; not if it was written from pixels in Blender.
     """
 
     name: str
@@ -65,6 +67,7 @@ class Plate:
     is_sequence: bool
     color_space: str
     folder: Path | None
+    has_metadata: bool = True
 
     @classmethod
     def of_file(
@@ -76,6 +79,7 @@ class Plate:
         uid: int,
         color_space: str,
         folder: Path | None,
+        has_metadata: bool = True,
     ) -> Plate:
         """Return the plate of a file, or of the sequence that the file belongs to.
 
@@ -97,6 +101,7 @@ class Plate:
             is_sequence=number is not None,
             color_space=color_space,
             folder=folder,
+            has_metadata=has_metadata,
         )
 
 

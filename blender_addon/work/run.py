@@ -3,13 +3,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 
 from crfnet_core import ResponseEstimate
-from crfnet_core.network import Verdict
+from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress
-from ocio.pipeline import anchored_exposure, estimate_frames, load_network, response_lut
+from ocio.pipeline import anchored_exposure, estimate_frames, load_network, load_prior, response_lut
 from ocio.plates.frames import FrameSequence, find_frames, sample_frames
 from ocio.report import verdict_lines
 
@@ -94,11 +94,13 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     AddonError
         If the plate is logarithmic or linear and the job does not force the estimate.
     CRFNetError
-        If a file or the model cannot be read.
+        If a file, the model or the prior cannot be read.
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
     if not job.estimation.is_forced:
         check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
     options = job.estimation.options
-    return estimate_frames(sequence, _load_network(options), options, progress=progress)
+    prior, network = load_prior(options), _load_network(options)
+    options = replace(options, use_metadata=options.use_metadata and job.plate.has_metadata)
+    return estimate_frames(sequence, network, prior, options, progress=progress)

@@ -16,6 +16,7 @@ from ocio.pipeline.estimates import (
     estimate_frames,
     estimate_photographs,
     load_network,
+    load_prior,
     response_lut,
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_estimates
@@ -29,6 +30,7 @@ __all__ = [
     "estimate_photographs",
     "export_luts",
     "load_network",
+    "load_prior",
     "plan_outputs",
     "response_lut",
     "write_estimates",

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,6 +13,7 @@ from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import Prior
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float32Array, Progress
 from ocio.defaults import LUT_LENGTH, MIDDLE_GRAY
@@ -61,9 +62,21 @@ def load_network(options: EstimateOptions) -> ResponseNetwork:
     return ResponseNetwork.load(options.model, threads=options.threads)
 
 
+def load_prior(options: EstimateOptions) -> Prior:
+    """Return the prior that the options name; a caller with several estimates loads it once.
+
+    Raises
+    ------
+    PriorError
+        If there is no such prior, or the file is none.
+    """
+    return Prior.load(options.prior)
+
+
 def estimate_photographs(
     paths: Sequence[Path],
     network: ResponseNetwork,
+    prior: Prior,
     options: EstimateOptions,
     *,
     progress: Progress | None = None,
@@ -80,8 +93,10 @@ def estimate_photographs(
         Photographs of one camera with the same settings; at least one.
     network : ResponseNetwork
         See `load_network`.
+    prior : Prior
+        See `load_prior`.
     options : EstimateOptions
-        Windows and seed.
+        Windows, seed, and whether metadata counts.
     progress : callable or None
         Called with (done, total) after every window.
 
@@ -102,15 +117,14 @@ def estimate_photographs(
                 previews.append(photo.pixels[::stride, ::stride].copy())
             yield photo
 
-    estimate = estimate_response(
-        photos(), network=network, windows=options.windows, seed=options.seed, progress=progress
-    )
+    estimate = _estimate(photos(), network, prior, options, progress)
     return PhotographEstimate(tuple(paths), tuple(facts), previews[0], _stride(facts[0]), estimate)
 
 
 def estimate_frames(
     sequence: FrameSequence,
     network: ResponseNetwork,
+    prior: Prior,
     options: EstimateOptions,
     *,
     progress: Progress | None = None,
@@ -125,8 +139,10 @@ def estimate_frames(
         The frames, or a single file, as `find_frames` returns them.
     network : ResponseNetwork
         See `load_network`.
+    prior : Prior
+        See `load_prior`.
     options : EstimateOptions
-        Windows of each frame, and seed.
+        Windows of each frame, seed, and whether metadata counts.
     progress : callable or None
         Called with (done, total) after every window.
 
@@ -135,8 +151,7 @@ def estimate_frames(
     PhotoError
         If a frame cannot be read or is smaller than a window.
     """
-    frames = map(read_photo, sample_frames(sequence))
-    return estimate_response(frames, network=network, windows=options.windows, seed=options.seed, progress=progress)
+    return _estimate(map(read_photo, sample_frames(sequence)), network, prior, options, progress)
 
 
 def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
@@ -174,6 +189,25 @@ def anchored_exposure(curve: ResponseCurve, *, gray: float | None = None, stops:
     if irradiance <= 0:
         raise CRFNetError(f"a brightness of {gray:g} is black in this response; anchor a brighter gray")
     return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
+
+
+def _estimate(
+    photos: Iterable[Photo],
+    network: ResponseNetwork,
+    prior: Prior,
+    options: EstimateOptions,
+    progress: Progress | None,
+) -> ResponseEstimate:
+    """Return the response that photographs have in common, by the options."""
+    return estimate_response(
+        photos,
+        network=network,
+        prior=prior,
+        use_metadata=options.use_metadata,
+        windows=options.windows,
+        seed=options.seed,
+        progress=progress,
+    )
 
 
 def _stride(facts: PhotoFacts) -> int:

@@ -6,8 +6,18 @@ documents  the same for machines, ready for JSON
 """
 
 from ocio.report.documents import estimate_document, json_text, lut_document, model_document, plate_document
-from ocio.report.facts import PhotoFacts, agreeing, brightness_percent, provenance
+from ocio.report.facts import (
+    LikelyKind,
+    PhotoFacts,
+    agreeing,
+    basis,
+    brightness_percent,
+    curve_error,
+    provenance,
+    shape_error,
+)
 from ocio.report.words import (
+    REMEDIES,
     VERDICTS,
     file_lines,
     lut_lines,
@@ -20,10 +30,14 @@ from ocio.report.words import (
 )
 
 __all__ = [
+    "REMEDIES",
     "VERDICTS",
+    "LikelyKind",
     "PhotoFacts",
     "agreeing",
+    "basis",
     "brightness_percent",
+    "curve_error",
     "estimate_document",
     "file_lines",
     "json_text",
@@ -36,6 +50,7 @@ __all__ = [
     "plate_lines",
     "provenance",
     "result_line",
+    "shape_error",
     "source_line",
     "verdict_lines",
 ]

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+import dataclasses
 import json
 import re
 from collections.abc import Mapping, Sequence
-from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +17,7 @@ from crfnet_core.network import ModelConfig
 from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles
 from ocio.plates.linear import PlateReport
-from ocio.report.facts import PhotoFacts, brightness_percent
+from ocio.report.facts import LikelyKind, PhotoFacts, brightness_percent
 
 #: Decimals kept in documents.
 DECIMALS = 6
@@ -75,16 +75,21 @@ def lut_document(path: Path, lut: Lut1D) -> dict[str, Any]:
 
 def model_document(config: ModelConfig) -> dict[str, Any]:
     """Return what a model's configuration says, ready for JSON."""
-    return {"kind": "model", **asdict(config)}
+    return {"kind": "model", **dataclasses.asdict(config)}
 
 
 def _trust(estimate: ResponseEstimate) -> dict[str, Any]:
     """Return the verdict, the uncertainty and their reasons, ready for JSON."""
+    kind = LikelyKind.of(estimate)
     return {
         "verdict": estimate.verdict,
         "uncertainty": _rounded(estimate.uncertainty),
         "uncertainty_percent": _rounded(brightness_percent(estimate.uncertainty)),
-        "spread": _rounded(estimate.spread),
+        "shape_uncertainty_stops": _rounded(estimate.shape_uncertainty),
+        "family": {"words": kind.words, "probability": _rounded(kind.probability)} if kind else None,
+        "families": {family: _rounded(probability) for family, probability in estimate.families.items()},
+        "prior": estimate.prior,
+        "metadata": [dataclasses.asdict(origin) for origin in estimate.origins],
         "warnings": list(estimate.warnings),
         "model": estimate.model,
     }

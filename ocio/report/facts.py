@@ -8,6 +8,7 @@ import numpy as np
 
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import FAMILY_WORDS, Family
 from crfnet_core.response import SAMPLES
 
 
@@ -31,6 +32,41 @@ class PhotoFacts:
         return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits"
 
 
+@dataclass(frozen=True)
+class LikelyKind:
+    """The most probable kind of response.
+
+    Parameters
+    ----------
+    families : tuple of Family
+        The families that make up the kind.
+    words : str
+        The kind in words.
+    probability : float
+        That the response is of this kind.
+    """
+
+    families: tuple[Family, ...]
+    words: str
+    probability: float
+
+    @classmethod
+    def of(cls, estimate: ResponseEstimate) -> LikelyKind | None:
+        """Return the most probable kind, the first of equals; None if the estimate knows no families."""
+        if not estimate.families:
+            return None
+        kinds = [
+            cls(families, words, sum(estimate.families[family] for family in families))
+            for families, words in FAMILY_WORDS.items()
+        ]
+        return max(kinds, key=lambda kind: kind.probability)
+
+    def __str__(self) -> str:
+        """Return the words with the probability in percent; never 100, because nothing is as certain."""
+        percent = "over 99" if self.probability > 0.99 else f"{100 * self.probability:.0f}"
+        return f"{self.words}, {percent} %"
+
+
 def brightness_percent(error: float) -> float:
     """Return an estimation error as a root mean square in percent of the brightness range.
 
@@ -40,6 +76,32 @@ def brightness_percent(error: float) -> float:
     return float(100 * error / np.sqrt(SAMPLES))
 
 
+def curve_error(estimate: ResponseEstimate) -> str:
+    """Return in words how far the curve is expected to be off."""
+    percent = brightness_percent(estimate.uncertainty)
+    return f"{percent:.1f} % of the brightness range (E_est {estimate.uncertainty:.2f})"
+
+
+def shape_error(estimate: ResponseEstimate) -> str:
+    """Return in words how far the shape of the linear light is expected to be off; empty if that is not known.
+
+    It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
+    """
+    return f"{estimate.shape_uncertainty:.2f} stop" if np.isfinite(estimate.shape_uncertainty) else ""
+
+
+def expected_errors(estimate: ResponseEstimate) -> str:
+    """Return both expected errors in a few words, stops first."""
+    return ", ".join(filter(None, [shape_error(estimate), curve_error(estimate)]))
+
+
+def basis(estimate: ResponseEstimate) -> str:
+    """Return the prior, and what the files say of their making if that was used; empty if it is not known."""
+    if not estimate.prior:
+        return ""
+    return f"prior: {estimate.prior}; {_metadata_words(estimate)}"
+
+
 def agreeing(estimate: ResponseEstimate) -> str:
     """Return in words how many windows agree with the others."""
     return f"{sum(window.kept for window in estimate.windows)} of {len(estimate.windows)} windows agree"
@@ -47,10 +109,22 @@ def agreeing(estimate: ResponseEstimate) -> str:
 
 def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     """Return the comment lines of LUT files: what the LUT is, its photographs, its model, and how far to trust it."""
-    return (
+    kind = LikelyKind.of(estimate)
+    lines = (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
         f"Photographs: {', '.join(estimate.photos)}",
         f"Model: {estimate.model}",
-        f"Verdict: {estimate.verdict}, expected estimation error {estimate.uncertainty:.2f}"
-        f" ({brightness_percent(estimate.uncertainty):.1f} % of the brightness range)",
+        f"Verdict: {estimate.verdict}, expected error {expected_errors(estimate)}",
+        "; ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
     )
+    return tuple(filter(None, lines))
+
+
+def _metadata_words(estimate: ResponseEstimate) -> str:
+    """Return what the metadata of the photographs says; of several that differ, that of the first."""
+    first, *others = [", ".join(origin.words) for origin in estimate.origins] or [""]
+    if not first:
+        return "no file metadata used"
+    differing = sum(words != first for words in others)
+    more = f" (the first of {1 + len(others)}; {differing} differ)" if differing else ""
+    return f"file metadata used: {first}{more}"

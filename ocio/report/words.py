@@ -8,19 +8,35 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.network import Verdict
-from ocio.defaults import GAMMA_ERROR
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.posterior import Family, Verdict
+from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR
 from ocio.output_files import OutputFiles
 from ocio.plates.frames import format_frames
 from ocio.plates.linear import PlateReport
 from ocio.report.documents import QUARTERS
-from ocio.report.facts import agreeing, brightness_percent
+from ocio.report.facts import (
+    LikelyKind,
+    agreeing,
+    basis,
+    brightness_percent,
+    curve_error,
+    expected_errors,
+    shape_error,
+)
 
 #: The verdicts in words for people.
 VERDICTS = {
     Verdict.GOOD: "good",
     Verdict.USABLE: "usable: look at the plate before you rely on it",
     Verdict.DO_NOT_TRUST: "not to be trusted: take another photograph of this camera, or several together",
+}
+
+#: What to do if a picture is not to be trusted and of such a family.
+REMEDIES = {
+    Family.LINEAR: "it seems to be linear already, so give it a linear colour space",
+    Family.LOG: "it seems to be log footage, so give it the colour space of its log curve",
+    Family.UNEXPLAINED: "no camera response explains this picture, so take a photograph as the camera wrote it",
 }
 
 
@@ -31,23 +47,23 @@ def source_line(estimate: ResponseEstimate) -> str:
 
 
 def verdict_lines(estimate: ResponseEstimate) -> list[str]:
-    """Return the agreement of the windows, the verdict, the uncertainty and the warnings, one line each."""
-    error, gamma_error = brightness_percent(estimate.uncertainty), brightness_percent(GAMMA_ERROR)
+    """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
+    kind, rests_on = LikelyKind.of(estimate), basis(estimate)
     return [
+        f"The estimate is {_verdict_words(estimate.verdict, kind)}.",
+        _expectation(estimate),
+        *([f"Most likely {kind}."] if kind else []),
+        *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
         f"{agreeing(estimate)}.",
-        f"The estimate is {VERDICTS[estimate.verdict]}.",
-        f"Expect it to be off by {error:.1f} % of the brightness range (E_est {estimate.uncertainty:.2f});"
-        f" gamma 2.2 is usually off by {gamma_error:.0f} %.",
         *(f"Warning: {warning}." for warning in estimate.warnings),
     ]
 
 
 def result_line(estimate: ResponseEstimate) -> str:
-    """Return the photograph, the verdict and the uncertainty on one line, for lists of estimates."""
-    percent = brightness_percent(estimate.uncertainty)
-    warnings = "".join(f"; {warning}" for warning in estimate.warnings)
-    error = f"expected error {estimate.uncertainty:.2f} ({percent:.1f} %)"
-    return f"{estimate.photos[0]}: {estimate.verdict}, {error}{warnings}"
+    """Return the photograph, the verdict, the uncertainty and the kind on one line, for lists of estimates."""
+    notes = [*filter(None, [LikelyKind.of(estimate)]), *estimate.warnings]
+    more = "".join(f"; {note}" for note in notes)
+    return f"{estimate.photos[0]}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
 
 
 def file_lines(files: OutputFiles) -> list[str]:
@@ -100,7 +116,7 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
 
 def model_lines(document: Mapping[str, Any]) -> list[str]:
     """Return what a model's configuration says, from its `model_document`."""
-    left_out = ("kind", "name", "uncertainty_model", "accuracy")
+    left_out = ("kind", "name", "accuracy")
     return [
         f"{document['name']}: model",
         *(f"  {key}: {_listed(value)}" for key, value in document.items() if key not in left_out),
@@ -110,6 +126,26 @@ def model_lines(document: Mapping[str, Any]) -> list[str]:
             for figure, value in figures.items()
         ),
     ]
+
+
+def _verdict_words(verdict: Verdict, kind: LikelyKind | None) -> str:
+    """Return the verdict with what to do about it, which of some kinds of pictures is something of its own."""
+    remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
+    if verdict is Verdict.DO_NOT_TRUST and remedies:
+        return f"not to be trusted: {remedies[0]}"
+    return VERDICTS[verdict]
+
+
+def _expectation(estimate: ResponseEstimate) -> str:
+    """Return how far the answer is expected to be off, beside gamma 2.2; without stops if they are not known."""
+    shape, curve, gamma = shape_error(estimate), curve_error(estimate), f"{brightness_percent(GAMMA_ERROR):.0f} %"
+    if not shape:
+        return f"Expect the curve to be off by {curve}; gamma 2.2 is usually off by {gamma}."
+    return (
+        f"Expect the shape of the linear light to be off by {shape} (RMS between codes {FIRST_SHAPE_CODE} and"
+        f" {LAST_SHAPE_CODE}) and the curve by {curve}; gamma 2.2 is usually off by {GAMMA_SHAPE_ERROR:.1f} stop"
+        f" and {gamma}."
+    )
 
 
 def _first_and_last(paths: Sequence[Path]) -> str:

@@ -38,6 +38,8 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
         stops=0.0,
         is_forced=False,
         stored=None,
+        prior="camera",
+        use_metadata=True,
     ):
         return Job(
             plate=Plate.of_file(
@@ -48,7 +50,11 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
                 color_space=color_space,
                 folder=path.parent,
             ),
-            estimation=Estimation(options=EstimateOptions(model=fixed_model), is_forced=is_forced, stored=stored),
+            estimation=Estimation(
+                options=EstimateOptions(model=fixed_model, prior=prior, use_metadata=use_metadata),
+                is_forced=is_forced,
+                stored=stored,
+            ),
             exposure=Exposure(anchor=anchor, gray=gray, stops=stops),
             output=Output(mode=mode, folder=folder, depth=depth, lut_length=4081, overwrite=overwrite),
             config=RunningConfig(path=str(running_config), is_demanded=False),

@@ -1,20 +1,28 @@
 """An estimate as the entries of a .blend file, and back."""
 
 import dataclasses
+import json
 
 import numpy as np
 import pytest
 
 from blender_addon.work.estimate_record import entries_of, estimate_of
 from crfnet_core.errors import CurveError
+from crfnet_core.metadata.devices import Device
+from crfnet_core.posterior import Family, Verdict
+from ocio.pipeline import response_lut
+from ocio.report import verdict_lines
 
-#: The entries that version 0.1.0 of the add-on saved, with their types.
+#: The entries of layout 2, with their types.
 SAVED = {
     "model": str,
     "photos": str,
     "verdict": str,
     "uncertainty": float,
-    "spread": float,
+    "shape_uncertainty": float,
+    "families": str,
+    "prior": str,
+    "metadata": str,
     "warnings": str,
     "weights": list,
     "brightness": list,
@@ -26,6 +34,9 @@ SAVED = {
     "window_errors": list,
     "window_kept": list,
 }
+
+#: Entries that layout 1 lacked; it had "spread" instead.
+NEW = ("shape_uncertainty", "families", "prior", "metadata")
 
 
 @pytest.fixture(scope="module")
@@ -41,10 +52,34 @@ def test_an_estimate_comes_back_the_same(found):
     again = estimate_of(entries_of(found))
     np.testing.assert_equal(dataclasses.asdict(again), dataclasses.asdict(found))
     assert again.verdict is found.verdict
+    assert {type(family) for family in again.families} == {Family}
+    assert [type(origin.device) for origin in again.origins] == [Device, Device]
 
 
 def test_an_estimate_without_warnings_has_none_afterwards(found):
     assert estimate_of(entries_of(dataclasses.replace(found, warnings=()))).warnings == ()
+
+
+def test_an_estimate_without_metadata_has_none_afterwards(found):
+    assert estimate_of(entries_of(dataclasses.replace(found, origins=()))).origins == ()
+
+
+def test_what_the_metadata_says_may_hold_any_character(found):
+    odd = dataclasses.replace(found.origins[0], editor='a "写真" \\ editor', words=("saved by 写真", "scaled"))
+    again = estimate_of(entries_of(dataclasses.replace(found, origins=(odd,))))
+    assert again.origins == (odd,)
+
+
+@pytest.mark.parametrize("verdict", ["good", "usable", "do not trust"])
+def test_an_estimate_of_an_earlier_version_comes_back_with_what_it_knows(found, verdict):
+    """What it does not know is left out of what is said of it."""
+    entries = {name: entry for name, entry in entries_of(found).items() if name not in NEW}
+    old = estimate_of(entries | {"spread": 0.1, "verdict": verdict})
+    np.testing.assert_array_equal(old.curve.brightness, found.curve.brightness)
+    assert np.isnan(old.shape_uncertainty)
+    assert (old.verdict, old.families, old.prior, old.origins) == (Verdict(verdict), {}, "", ())
+    assert verdict_lines(old)[0].startswith("The estimate is ")
+    assert "nan" not in " ".join([*verdict_lines(old), *response_lut(old).comments])
 
 
 def test_the_entries_are_those_of_earlier_versions(found):
@@ -52,7 +87,9 @@ def test_the_entries_are_those_of_earlier_versions(found):
     entries = entries_of(found)
     assert {name: type(entry) for name, entry in entries.items()} == SAVED
     assert {type(number) for entry in entries.values() if isinstance(entry, list) for number in entry} == {int, float}
-    assert entries["verdict"] == "good"
+    assert entries["verdict"] == found.verdict.value
+    assert json.loads(entries["families"]) == found.families
+    assert entries["prior"] == "camera"
     assert entries["photos"] == "plate.jpg\nplate.jpg"
     count = len(found.windows)
     assert [len(entries[f"window_{name}"]) for name in ("places", "weights")] == [4 * count, 11 * count]

@@ -1,5 +1,6 @@
 """A job from its plate to what was found, with the fixed model: the API's estimate, and no step done twice."""
 
+import dataclasses
 import shutil
 
 import numpy as np
@@ -10,7 +11,7 @@ from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
-from crfnet_core.errors import CRFNetError, ModelError, PlateError
+from crfnet_core.errors import CRFNetError, ModelError, PlateError, PriorError
 from crfnet_core.network import ResponseNetwork
 from tests.helpers.images import write_image
 
@@ -35,7 +36,30 @@ def test_the_estimate_is_the_apis(make_job, plate_file, estimate):
     completed = run(make_job(mode=ApplyMode.NODES))
     np.testing.assert_array_equal(completed.estimate.weights, estimate(plate_file).weights)
     assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
-    assert completed.lines[0].endswith("of 10 windows agree.")
+    assert completed.lines[0].startswith("The estimate is ")
+    assert " stop (RMS between codes 16 and 240)" in completed.lines[1]
+    assert completed.lines[2].startswith("Most likely a camera's own rendering, ")
+
+
+def test_the_prior_and_the_metadata_follow_the_job(make_job):
+    completed = run(make_job(mode=ApplyMode.NODES, prior="any", use_metadata=False))
+    assert (completed.estimate.prior, completed.estimate.origins) == ("any", ())
+    assert "Prior: any; no file metadata used." in completed.lines
+
+
+def test_pixels_from_blender_have_no_metadata(make_job):
+    """Their file is ours: its size and format say nothing of a camera."""
+    job = make_job(mode=ApplyMode.NODES)
+    assert len(run(job).estimate.origins) == 1
+    painted = dataclasses.replace(job, plate=dataclasses.replace(job.plate, has_metadata=False))
+    assert run(painted).estimate.origins == ()
+
+
+def test_a_prior_that_is_absent_is_told_before_the_network_is_loaded(make_job, calls, tmp_path):
+    loads = calls(run_module, "_load_network")
+    with pytest.raises(PriorError, match="no prior"):
+        run(make_job(prior=tmp_path / "none.json"))
+    assert loads == []
 
 
 def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):

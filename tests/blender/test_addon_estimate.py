@@ -143,14 +143,14 @@ def test_a_packed_image(image, plate_file, estimate):
 
 @pytest.mark.parametrize("color_space", ["sRGB", "Non-Color"])
 def test_a_generated_image(addon, codes, estimate, tmp_path, color_space):
-    """Its pixels are code values, whatever its colour space."""
+    """Its pixels are code values, whatever its colour space, and it has no metadata."""
     image = bpy.data.images.new("painted", 256, 256)
     image.colorspace_settings.name = color_space
     pixels = np.ones((256, 256, 4), np.float32)
     pixels[..., :3] = codes[::-1] / 255
     image.pixels.foreach_set(pixels.ravel())
     bpy.ops.crf.estimate_response(image=image.name)
-    assert_equal(stored(image), estimate(write_image(tmp_path / "painted.png", codes)))
+    assert_equal(stored(image), estimate(write_image(tmp_path / "painted.png", codes), use_metadata=False))
 
 
 def test_gray_anchor(image, plate_file, codes, estimate):
@@ -277,6 +277,8 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["apply"].enum_items.keys() == list(ApplyMode)
     assert settings["anchor"].enum_items.keys() == list(Anchor)
     assert settings["depth"].enum_items.keys() == list(defaults.DEPTHS)
+    assert settings["prior"].enum_items.keys() == [*defaults.PRIORS, "file"]
+    assert settings["prior"].default == defaults.PRIORS[0]
     assert (settings["exposure"].hard_min, settings["exposure"].hard_max) == (
         -defaults.MAX_EXPOSURE,
         defaults.MAX_EXPOSURE,

@@ -19,6 +19,10 @@ class Layout:
     def __init__(self):
         self.drawn = []
 
+    def panel(self, name, **options):
+        """An open panel: its header and its body."""
+        return self, self
+
     def __getattr__(self, name):
         def draw(*arguments, **options):
             self.drawn.append((name, *arguments, *options.values()))
@@ -45,6 +49,10 @@ def test_it_draws_every_mode(image, in_editor, mode):
     words = " ".join(entry[1] for entry in panel.layout.drawn if entry[0] == "label")
     assert "windows agree" in words
     assert "E_est" in words
+    assert "The estimate is" in words
+    assert "Most likely" in words
+    assert " stop " in words
+    assert "ignore_metadata" in texts
     assert "crf.apply_response" in texts
     assert ("overwrite" in texts) == (mode in ("BAKE", "EXPORT"))
 
@@ -59,6 +67,19 @@ def test_every_property_that_it_draws_exists(image, in_editor):
     for kind, *arguments in panel.layout.drawn:
         if kind == "prop":
             assert arguments[1] in arguments[0].bl_rna.properties
+
+
+def test_the_file_of_the_prior_is_asked_for_when_it_is_needed(image, in_editor):
+    from blender_addon.ui.panel import ResponsePanel
+
+    for prior in ("camera", "any", "file"):
+        image.camera_response_settings.prior = prior
+        panel = Panel()
+        with in_editor("IMAGE_EDITOR") as space:
+            space.image = image
+            ResponsePanel.draw(panel, bpy.context)
+        drawn = [entry[2] for entry in panel.layout.drawn if entry[0] == "prop"]
+        assert ("prior_file" in drawn) == (prior == "file")
 
 
 @pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])

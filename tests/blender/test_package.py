@@ -169,7 +169,7 @@ def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
         inside = archive.namelist()
     tops = {name.partition("/")[0] for name in inside}
     assert tops == {"crfnet_core", "ocio", f"crfnet-{manifest['version']}.dist-info"}
-    assert "crfnet_core/data/emor.npz" in inside
+    assert {"crfnet_core/data/emor.npz", "crfnet_core/data/priors/camera.json"} <= set(inside)
     assert [name for name in inside if re.fullmatch("crfnet_core/models/[^/]+/model.(onnx|json)", name)]
 
 

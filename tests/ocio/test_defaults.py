@@ -5,7 +5,7 @@ import inspect
 import numpy as np
 
 from crfnet_core import estimate_response
-from crfnet_core.network import Verdict
+from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Verdict, packaged_priors, verdict
 from ocio import defaults, report
 from ocio.plates.exr import SAMPLE_TYPES
 
@@ -28,3 +28,16 @@ def test_every_depth_has_a_sample_type():
 
 def test_every_verdict_has_words():
     assert set(report.VERDICTS) == set(Verdict)
+    assert set(report.REMEDIES) == set(UNUSUAL)
+
+
+def test_the_priors_are_the_packaged_ones():
+    assert defaults.PRIORS[0] == DEFAULT_PRIOR
+    assert sorted(defaults.PRIORS) == packaged_priors()
+
+
+def test_the_usage_states_the_limits_of_the_verdicts(root):
+    usage = (root / "docs" / "USAGE.md").read_text(encoding="utf-8")
+    percent = report.brightness_percent(verdict.GOOD_ERROR)
+    assert f"| good | {verdict.GOOD_STOPS:.2f} stop | {verdict.GOOD_ERROR:g} ({percent:.1f} %" in usage
+    assert f"| usable | {verdict.USABLE_STOPS:.2f} stop |" in usage

@@ -1,12 +1,14 @@
 """The steps that command and add-on share: estimates, exposure, and files that are written together or not at all."""
 
+import dataclasses
 import shutil
 
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import CRFNetError, PhotoError, PlateError
+from crfnet_core.errors import CRFNetError, PhotoError, PlateError, PriorError
+from crfnet_core.posterior import Family
 from crfnet_core.response import ResponseCurve
 from ocio import pipeline
 from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
@@ -45,6 +47,11 @@ def network(options):
     return pipeline.load_network(options)
 
 
+@pytest.fixture(scope="module")
+def prior(options):
+    return pipeline.load_prior(options)
+
+
 @pytest.fixture
 def sequence(plate, tmp_path):
     """Twelve frames of a plate."""
@@ -54,38 +61,76 @@ def sequence(plate, tmp_path):
 
 
 class TestEstimates:
-    def test_several_frames_stand_for_a_sequence(self, sequence, network, options):
+    def test_several_frames_stand_for_a_sequence(self, sequence, network, prior, options):
         calls = []
-        estimate = pipeline.estimate_frames(sequence, network, options, progress=lambda *call: calls.append(call))
+        estimate = pipeline.estimate_frames(
+            sequence, network, prior, options, progress=lambda *call: calls.append(call)
+        )
         assert len(estimate.photos) == FRAMES_ANALYZED
         assert (estimate.photos[0], estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
         assert len(estimate.windows) == 2 * FRAMES_ANALYZED
         assert calls[-1][0] == calls[-1][1]
 
-    def test_a_single_file_stands_for_itself(self, plate, network, options):
-        estimate = pipeline.estimate_frames(FrameSequence((plate,)), network, options)
+    def test_a_single_file_stands_for_itself(self, plate, network, prior, options):
+        estimate = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
         assert estimate.photos == ("plate.jpg",)
 
-    def test_a_file_and_its_photograph_give_the_same_response(self, plate, network, options):
-        frame = pipeline.estimate_frames(FrameSequence((plate,)), network, options)
-        photograph = pipeline.estimate_photographs([plate], network, options)
+    def test_a_file_and_its_photograph_give_the_same_response(self, plate, network, prior, options):
+        frame = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
+        photograph = pipeline.estimate_photographs([plate], network, prior, options)
         np.testing.assert_array_equal(photograph.estimate.curve.brightness, frame.curve.brightness)
         assert [str(facts) for facts in photograph.facts] == ["plate.jpg: 672 x 378, 8 bits"]
         assert (photograph.preview.shape, photograph.stride) == ((378, 672, 3), 1)
 
-    def test_what_the_callback_raises_ends_the_estimate(self, plate, network, options):
+    def test_what_the_callback_raises_ends_the_estimate(self, plate, network, prior, options):
         with pytest.raises(CancelledError):
-            pipeline.estimate_frames(FrameSequence((plate,)), network, options, progress=cancel_after(1))
+            pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options, progress=cancel_after(1))
 
-    def test_a_frame_that_has_gone_is_named(self, tmp_path, network, options):
+    def test_a_frame_that_has_gone_is_named(self, tmp_path, network, prior, options):
         with pytest.raises(PhotoError, match=r"gone\.jpg: there is no such file"):
-            pipeline.estimate_frames(FrameSequence((tmp_path / "gone.jpg",)), network, options)
+            pipeline.estimate_frames(FrameSequence((tmp_path / "gone.jpg",)), network, prior, options)
 
-    def test_the_lut_carries_its_provenance(self, plate, network, options, true_response):
-        lut = pipeline.response_lut(pipeline.estimate_frames(FrameSequence((plate,)), network, options))
+    def test_the_prior_and_the_metadata_follow_the_options(self, plate, network, options, tmp_path):
+        (tmp_path / "film only.json").write_text('{"shares": {"film": 1}, "evidence": 0.5}')
+        asked = dataclasses.replace(options, prior=tmp_path / "film only.json", use_metadata=False)
+        film = pipeline.load_prior(asked)
+        for found in (
+            pipeline.estimate_frames(FrameSequence((plate,)), network, film, asked),
+            pipeline.estimate_photographs([plate], network, film, asked).estimate,
+        ):
+            assert (found.prior, found.origins) == ("film only", ())
+            assert found.families[Family.FILM] == pytest.approx(1)
+
+    def test_metadata_counts_by_default(self, plate, network, prior, options):
+        found = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
+        assert found.prior == "camera"
+        assert [origin.jpeg_quality for origin in found.origins] == [95]
+
+    @pytest.mark.parametrize(
+        ("text", "message"),
+        [
+            (None, r"no prior \(.*\); give any, camera or a JSON file"),
+            ("no JSON", "is not JSON"),
+            ("{}", 'needs {"shares"'),
+            ('{"shares": {"fim": 1}, "evidence": 1}', "shares are of phone, compact"),
+        ],
+    )
+    def test_a_bad_prior_is_told_in_one_line(self, tmp_path, text, message):
+        path = tmp_path / "prior.json"
+        if text is not None:
+            path.write_text(text)
+        with pytest.raises(PriorError, match=message) as told:
+            pipeline.load_prior(EstimateOptions(prior=path))
+        assert "\n" not in str(told.value)
+
+    def test_the_lut_carries_its_provenance(self, plate, network, prior, options, true_response):
+        found = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
+        lut = pipeline.response_lut(found)
         assert len(lut.values) == LUT_LENGTH
         assert "Photographs: plate.jpg" in lut.comments
-        np.testing.assert_allclose(lut.values, true_response.inverse(np.linspace(0, 1, LUT_LENGTH)), atol=5e-3)
+        codes = np.linspace(0, 1, LUT_LENGTH)
+        np.testing.assert_allclose(lut.values, found.curve.inverse(codes), atol=1e-6)
+        np.testing.assert_allclose(lut.values, true_response.inverse(codes), atol=0.1)
 
 
 class TestExposure:

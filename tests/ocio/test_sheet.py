@@ -10,6 +10,7 @@ from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
+from crfnet_core.posterior import Family, Verdict
 from tests.helpers.images import read_image
 
 sheet = pytest.importorskip("ocio.sheet", reason="needs matplotlib, of the plot extra")
@@ -65,13 +66,39 @@ def test_any_shape_of_photograph_can_be_drawn(estimate, tmp_path, shape):
     assert (tmp_path / "a.png").stat().st_size > 10_000
 
 
-@pytest.mark.parametrize("uncertainty", [0.3, 1.5, 9.0])
+@pytest.mark.parametrize("verdict", Verdict)
 @pytest.mark.parametrize("name", ["plain.jpg", "long name " * 20 + ".jpg", "写真 $x_1$ \\frac 🎬.jpg"])
-def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, uncertainty, name):
-    warnings = () if uncertainty < 1 else ("a warning that is long enough to go on and on " * 6,)
-    other = dataclasses.replace(estimate, uncertainty=uncertainty, photos=(name, "b.jpg"), warnings=warnings)
+def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, verdict, name):
+    warnings = () if verdict is Verdict.GOOD else ("a warning that is long enough to go on and on " * 6,)
+    origin = dataclasses.replace(estimate.origins[0], words=(f"taken by {name}", f"saved by {name}"))
+    other = dataclasses.replace(
+        estimate, verdict=verdict, photos=(name, "b.jpg"), warnings=warnings, origins=(origin, estimate.origins[0])
+    )
     sheet.draw_sheet(tmp_path / "a.png", photo.pixels, other)
     assert not recwarn.list
+
+
+def test_what_an_earlier_version_did_not_store_is_left_out(photo, estimate, tmp_path):
+    old = dataclasses.replace(estimate, shape_uncertainty=np.nan, families={}, prior="", origins=())
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, old)
+    assert (tmp_path / "a.png").stat().st_size > 10_000
+
+
+def test_no_line_leaves_the_sheet(photo, estimate, tmp_path):
+    """The widest that is usual: the right margin stays white."""
+    families = dict.fromkeys(Family, 0.0) | {Family.UNEXPLAINED: 0.62, Family.CAMERA: 0.38}
+    origin = dataclasses.replace(estimate.origins[0], words=("taken by a camera with a long name",) * 9)
+    wide = dataclasses.replace(
+        estimate,
+        verdict=Verdict.DO_NOT_TRUST,
+        uncertainty=4.32,
+        families=families,
+        origins=(origin,),
+        photos=("a long name of a photograph " * 3,) * 12,
+        warnings=("a warning",) * 30,
+    )
+    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, wide)
+    assert (read_codes(tmp_path / "a.png")[:, -20:] == 255).all()
 
 
 def test_matplotlibs_settings_are_left_alone(photo, estimate, tmp_path):

@@ -8,6 +8,7 @@ import sys
 
 import pytest
 
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from ocio import commands
 
 COMMANDS = ("estimate", "linearize", "info", "completion")
@@ -49,17 +50,19 @@ class TestInfo:
     def test_of_a_lut_as_json(self, crfnet, look):
         document = json.loads(crfnet("info", look / "plate.spi1d", "--json").out)
         assert (document["kind"], document["length"], document["domain"]) == ("lut", 4081, [0, 1])
-        assert len(document["provenance"]) == 4
+        assert len(document["provenance"]) == 5
+        assert "prior: camera; file metadata used: " in document["provenance"][-1]
 
     @pytest.mark.parametrize("part", ["", "model.json", "model.onnx"])
     def test_of_a_model(self, crfnet, fixed_model, part):
         out = crfnet("info", fixed_model / part).out
         assert "fixed: model" in out
         assert "sha256: " in out
+        assert "uncertainty" not in out
 
     def test_of_a_model_as_json(self, crfnet, fixed_model):
         document = json.loads(crfnet("info", fixed_model, "--json").out)
-        assert (document["kind"], document["name"], document["components"]) == ("model", "fixed", 11)
+        assert (document["kind"], document["name"], document["components"]) == ("model", "fixed", EVIDENCE_WEIGHTS)
 
 
 class TestProgressBar:

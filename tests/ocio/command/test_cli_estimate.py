@@ -7,11 +7,13 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 import pytest
 
+from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
+from crfnet_core.response import ResponseCurve
 from ocio import commands
 from ocio.cli import BAD_INPUT
 from ocio.luts.spi1d import read_spi1d
 from tests.helpers.folders import listed, tree
-from tests.helpers.images import read_image
+from tests.helpers.images import read_image, write_image
 
 FILES = {
     "plate.spi1d",
@@ -31,8 +33,11 @@ def test_writes_what_it_says(look):
 def test_says_what_it_read_found_and_wrote(crfnet, plate, fixed_model, tmp_path):
     out = crfnet("estimate", plate, "--out", tmp_path / "look", "--model", fixed_model).out
     assert "plate.jpg: 672 x 378, 8 bits" in out
-    assert "The estimate is good." in out
-    assert "% of the brightness range" in out
+    assert "The estimate is " in out
+    assert " stop (RMS between codes 16 and 240) and the curve by " in out
+    assert "Most likely a camera's own rendering, " in out
+    assert "\nPrior: camera; file metadata used: the file names no camera" in out
+    assert " of 10 windows agree." in out
     assert "--ociofiletransform" in out
     assert all(name in out for name in FILES)
 
@@ -43,8 +48,16 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
     assert document["folder"] == str(tmp_path / "out")
     assert found == json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))
     assert set(found) == {
-        *("photographs", "verdict", "uncertainty", "uncertainty_percent", "spread", "warnings", "model", "weights"),
-        *("windows", "response", "color_space", "files"),
+        *(
+            "photographs",
+            "verdict",
+            "uncertainty",
+            "uncertainty_percent",
+            "shape_uncertainty_stops",
+            "family",
+            "families",
+        ),
+        *("prior", "metadata", "warnings", "model", "weights", "windows", "response", "color_space", "files"),
     }
     assert found["photographs"] == [{"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8}]
     assert len(found["response"]["brightness"]) == 1024
@@ -53,9 +66,54 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
     assert found["color_space"] == "CRF plate"
 
 
+def test_the_json_says_what_the_estimate_rests_on(estimate, plate):
+    found = json.loads(estimate(plate, "--json").out)["estimates"][0]
+    assert found["verdict"] in [*Verdict]
+    assert found["shape_uncertainty_stops"] > 0
+    assert list(found["families"]) == [*Family]
+    assert sum(found["families"].values()) == pytest.approx(1, abs=1e-5)
+    assert found["family"]["words"] == FAMILY_WORDS[IN_CAMERA]
+    assert found["family"]["probability"] == pytest.approx(sum(found["families"][f] for f in IN_CAMERA), abs=1e-5)
+    assert found["prior"] == "camera"
+    (metadata,) = found["metadata"]
+    assert metadata["words"][0] == "the file names no camera"
+    assert (metadata["device"], metadata["editor"], metadata["is_scaled"], metadata["jpeg_quality"]) == (
+        "",
+        "",
+        True,
+        95,
+    )
+
+
+def test_metadata_is_ignored_when_asked(estimate, plate):
+    found = json.loads(estimate(plate, "--ignore-metadata", "--json").out)["estimates"][0]
+    assert found["metadata"] == []
+
+
+@pytest.mark.parametrize("name", ["any", "mine.json"])
+def test_the_prior_can_be_chosen(estimate, plate, tmp_path, name):
+    own = tmp_path / "mine.json"
+    own.write_text('{"shares": {"phone": 2e-1, "film": 1}, "evidence": 0.5}')
+    done = estimate(plate, "--prior", own if name == own.name else name)
+    assert (done.code, done.err) == (0, "")
+    assert f"\nPrior: {Path(name).stem}; " in done.out
+    found = json.loads((tmp_path / "out" / "plate.json").read_text(encoding="utf-8"))
+    assert (found["families"]["camera"] == 0) == (name == own.name)
+
+
+def test_an_editor_is_warned_of(estimate, codes, tmp_path):
+    photo = write_image(tmp_path / "edited.jpg", codes, Software="GIMP 2.10", Make="Canon", Model="Canon EOS 20D")
+    out = estimate(photo).out
+    assert "taken by Canon EOS 20D, a camera with interchangeable lenses, saved by GIMP 2.10" in out
+    assert "\nWarning: saved by GIMP 2.10, which may have changed the tones" in out
+
+
 def test_the_luts_hold_the_inverse_of_the_response(look, true_response):
     lut = read_spi1d(look / "plate.spi1d")
-    np.testing.assert_allclose(lut.values, true_response.inverse(np.linspace(0, 1, 4081)), atol=5e-3)
+    found = json.loads((look / "plate.json").read_text(encoding="utf-8"))["response"]["brightness"]
+    expected = ResponseCurve.from_samples(np.array(found))
+    np.testing.assert_allclose(lut.values, expected.inverse(np.linspace(0, 1, 4081)), atol=1e-3)
+    np.testing.assert_allclose(lut.values, true_response.inverse(np.linspace(0, 1, 4081)), atol=0.1)
     assert any("plate.jpg" in comment for comment in lut.comments)
     assert any("fixed" in comment for comment in lut.comments)
 
@@ -81,14 +139,14 @@ def test_several_photographs_make_one_response(estimate, plate, tmp_path):
     out = estimate(plate, other).out
     names = set(listed(tmp_path / "out"))
     assert names == FILES - {"plate_sheet.png"} | {"other_linear.exr"}
-    assert "20 windows agree" in out
+    assert " of 20 windows agree" in out
 
 
 def test_each_photograph_makes_its_own(estimate, plate, tmp_path):
     other = shutil.copy(plate, tmp_path / "other.jpg")
     done = estimate(plate, other, "--each")
     assert done.code == 0
-    lines = [line for line in done.out.splitlines() if ": good, expected error 0." in line]
+    lines = [line for line in done.out.splitlines() if ", expected error 0." in line]
     assert [line.partition(":")[0] for line in lines] == ["plate.jpg", other.name]
     names = set(listed(tmp_path / "out"))
     own = FILES - {"plate_sheet.png"}

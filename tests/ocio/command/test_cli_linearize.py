@@ -23,8 +23,15 @@ def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
     done = crfnet(*arguments)
     assert done.code == 0
     assert "Response estimated from shot.0001.jpg and 3 more frames." in done.out
+    assert "\nPrior: camera; file metadata used: " in done.out
     pixels = [read_image(frames / f"l.{number:04d}.exr") for number in (1, 5)]
     np.testing.assert_array_equal(*pixels)
+
+
+def test_the_prior_and_the_metadata_count_here_too(crfnet, fixed_model, plate, tmp_path):
+    arguments = ("linearize", plate, "--out", tmp_path / "a.exr", "--model", fixed_model, "--json")
+    found = json.loads(crfnet(*arguments, "--prior", "any", "--ignore-metadata").out)["estimate"]
+    assert (found["prior"], found["metadata"]) == ("any", [])
 
 
 def test_goes_on_where_it_stopped(crfnet, look, frames):

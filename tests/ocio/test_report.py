@@ -1,0 +1,149 @@
+"""What is said of an estimate: stops first, the kind of response, what it rests on; figures made by hand."""
+
+import dataclasses
+import json
+import math
+
+import pytest
+
+from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.network import ModelConfig, ResponseNetwork
+from crfnet_core.posterior import Family, Verdict
+from ocio import report
+from ocio.plates.linear import PlateReport
+
+CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D", file_format="TIFF")
+
+
+@pytest.fixture(scope="module")
+def found(plate, fixed_model):
+    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), windows=2)
+
+
+@pytest.fixture
+def estimate(found):
+    """An estimate with given fields: by default a good one of a camera's photograph."""
+
+    def make(*, families=None, **fields):
+        shares = dict.fromkeys(Family, 0.0) | (families or {Family.PHONE: 0.03, Family.CAMERA: 0.9, Family.FILM: 0.07})
+        usual = {
+            "verdict": Verdict.GOOD,
+            "uncertainty": 1.25,
+            "shape_uncertainty": 0.1,
+            "families": shares,
+            "prior": "camera",
+            "origins": (file_origin(CANON),),
+            "warnings": (),
+        }
+        return dataclasses.replace(found, **(usual | fields))
+
+    return make
+
+
+@pytest.fixture
+def stored(estimate):
+    """An estimate that the first version of the add-on stored: no stops, families, prior or metadata."""
+    return dataclasses.replace(estimate(), shape_uncertainty=math.nan, families={}, prior="", origins=())
+
+
+def test_the_lines_of_an_estimate(estimate):
+    *lines, windows = report.verdict_lines(estimate())
+    assert lines == [
+        "The estimate is good.",
+        "Expect the shape of the linear light to be off by 0.10 stop (RMS between codes 16 and 240) and the curve by"
+        " 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 0.7 stop and 10 %.",
+        "Most likely a camera's own rendering, 93 %.",
+        "Prior: camera; file metadata used: taken by Canon EOS 20D, a camera with interchangeable lenses.",
+    ]
+    assert windows.endswith(" of 2 windows agree.")
+
+
+def test_warnings_come_last(estimate):
+    assert report.verdict_lines(estimate(warnings=("dark", "gray")))[-2:] == ["Warning: dark.", "Warning: gray."]
+
+
+def test_one_line_for_lists(estimate):
+    line = report.result_line(estimate(warnings=("dark",)))
+    assert line == (
+        "plate.jpg: good, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25);"
+        " a camera's own rendering, 93 %; dark"
+    )
+
+
+def test_luts_say_how_far_to_trust_them(estimate):
+    assert report.provenance(estimate())[-2:] == (
+        "Verdict: good, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25)",
+        "Most likely a camera's own rendering, 93 %; prior: camera; file metadata used: taken by Canon EOS 20D,"
+        " a camera with interchangeable lenses",
+    )
+
+
+@pytest.mark.parametrize(
+    ("families", "words"),
+    [
+        (
+            {Family.PHONE: 0.3, Family.COMPACT: 0.2, Family.CAMERA: 0.1, Family.FILM: 0.4},
+            "a camera's own rendering, 60 %",
+        ),
+        ({Family.EDITED: 0.35, Family.FILM: 0.2, Family.CAMERA: 0.45}, "edited or unusual, 55 %"),
+        ({Family.LINEAR: 0.8, Family.CAMERA: 0.2}, "nearly linear: do not trust, 80 %"),
+        ({Family.LOG: 1.0}, "log-like: do not trust, over 99 %"),
+        ({Family.CAMERA: 0.5, Family.LOG: 0.5}, "a camera's own rendering, 50 %"),
+    ],
+)
+def test_the_likely_kind(estimate, families, words):
+    assert str(report.LikelyKind.of(estimate(families=families))) == words
+
+
+@pytest.mark.parametrize("family", report.REMEDIES)
+def test_the_remedy_follows_the_kind(estimate, family):
+    first = report.verdict_lines(estimate(families={family: 1.0}, verdict=Verdict.DO_NOT_TRUST))[0]
+    assert first == f"The estimate is not to be trusted: {report.REMEDIES[family]}."
+
+
+def test_of_a_cameras_photograph_another_may_help(estimate):
+    first = report.verdict_lines(estimate(verdict=Verdict.DO_NOT_TRUST))[0]
+    assert first == "The estimate is not to be trusted: take another photograph of this camera, or several together."
+
+
+def test_several_photographs_are_told_by_the_first(estimate):
+    camera, scan = file_origin(CANON), file_origin(dataclasses.replace(CANON, make="", model=""))
+    assert report.basis(estimate(origins=(camera, camera))) == report.basis(estimate())
+    assert report.basis(estimate(origins=(camera, scan, camera))).endswith("lenses (the first of 3; 1 differ)")
+
+
+def test_ignored_metadata_is_told(estimate):
+    assert report.basis(estimate(origins=())) == "prior: camera; no file metadata used"
+
+
+def test_what_an_earlier_version_did_not_store_is_left_out(stored):
+    *lines, _ = report.verdict_lines(stored)
+    assert lines == [
+        "The estimate is good.",
+        "Expect the curve to be off by 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 10 %.",
+    ]
+    assert report.provenance(stored)[-1] == "Verdict: good, expected error 3.9 % of the brightness range (E_est 1.25)"
+    assert report.result_line(stored).endswith("(E_est 1.25)")
+
+
+def test_the_document_is_json(estimate):
+    """With the names of enumerations as texts, and figures rounded."""
+    plates = PlateReport(written=(), skipped=(), missing=())
+    document = json.loads(report.json_text(report.plate_document(plates, estimate())))["estimate"]
+    assert document["family"] == {"words": "a camera's own rendering", "probability": 0.93}
+    assert document["families"] == dict.fromkeys(Family, 0) | {"phone": 0.03, "camera": 0.9, "film": 0.07}
+    assert (document["uncertainty_percent"], document["shape_uncertainty_stops"]) == (3.90625, 0.1)
+    (metadata,) = document["metadata"]
+    assert (metadata["device"], metadata["camera"], metadata["editor"]) == ("camera", "Canon EOS 20D", "")
+    assert metadata["words"] == list(file_origin(CANON).words)
+
+
+def test_a_model_is_told_by_every_figure(fixed_model):
+    config = ModelConfig.read(fixed_model / "model.json")
+    document = report.model_document(dataclasses.replace(config, accuracy={"P0": {"mean": 1.2, "median": 1.1}}))
+    lines = report.model_lines(document)
+    assert lines[0] == "fixed: model"
+    assert lines[-2:] == ["  accuracy, P0, mean: 1.2", "  accuracy, P0, median: 1.1"]
+    assert "  output_names: locations, factors, log_odds" in lines
