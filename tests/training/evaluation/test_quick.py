@@ -104,7 +104,7 @@ def test_the_report_shows_the_paper_beside_ours(stressed):
     assert "| noise variance 4 | 6.069 / 48.200 | 3.78 / 23.07 |" in text
     assert "this is not the strict protocol" in text
     assert "there are no such scenes here" in text
-    assert {path.name for path in stressed[0].glob("*.png")} == {"p0.png", "p3.png", "p5.png"}
+    assert {path.name for path in stressed[0].glob("*.png")} == {"p0.png", "p3.png", "p5.png", "p5-shape.png"}
 
 
 def test_an_interrupted_evaluation_goes_on_and_ends_the_same(stressed, fixed_model, tmp_path, monkeypatch):
@@ -177,4 +177,4 @@ def test_the_command_line_says_what_is_measured(fixed_model, tmp_path):
     quick = parsed(["--quick", "--out", str(tmp_path), "--model", str(fixed_model), "crfnet2017"]).settings
     assert quick.protocols == ("p0", "p3")
     assert (quick.photographs, quick.stress_photographs, quick.workers, quick.seed) == (40, 5, 2, 2017)
-    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-1.0"]
+    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-1.1"]
