@@ -36,7 +36,7 @@ LEAST_IRRADIANCE = 2.0**-16
 
 @dataclass(frozen=True)
 class InCameraResponses:
-    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance.
+    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance: docs/METHOD.md, Eq. 21.
 
     Parameters
     ----------
