@@ -246,7 +246,8 @@ class Evaluation:
 
     def _p5(self) -> dict[str, dict[str, dict[str, Reliability]]]:
         """Compare uncertainties with errors."""
-        measured, report = self._with_uncertainty, {}
+        measured = self._with_uncertainty
+        report: dict[str, dict[str, dict[str, Reliability]]] = {}
         for error, file in RELIABILITY_FILES.items():
             report[error] = {
                 protocol: {
