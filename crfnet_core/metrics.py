@@ -12,14 +12,14 @@ FIRST_SHAPE_CODE, LAST_SHAPE_CODE = 16, 240
 
 
 def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
-    """Return E_est = ||f - f_hat||_2 over the responses at 1024 uniform irradiances (RMSE times 32): Eq. 26."""
+    """Return E_est = ||f - f_hat||_2 over the responses at 1024 uniform irradiances (RMSE times 32): Eq. 32."""
     return float(np.linalg.norm(true.brightness - estimated.brightness))
 
 
 def linearization_error(
     brightness: ArrayLike, true: ResponseCurve, estimated: ResponseCurve, *, counts: ArrayLike | None = None
 ) -> float:
-    """Return E_lin, the RMSE between a photograph linearised by the true and by the estimated inverse response: Eq. 27.
+    """Return E_lin, the RMSE between a photograph linearised by the true and by the estimated inverse response: Eq. 33.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def linearization_error(
 
 
 def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
-    """Return how far the estimated linear light is off, in stops (RMS), once the exposure has been matched: Eq. 28.
+    """Return how far the estimated linear light is off, in stops (RMS), once the exposure has been matched: Eq. 34.
 
     The error is log2(g_hat(B) / g(B)) at the 8-bit codes B from 16 to 240, less its mean over them: a linear plate has
     no absolute scale, so a constant factor is a gain and no error. This is the error that a compositor sees.

@@ -49,7 +49,7 @@ class ResponseCurve:
 
     @classmethod
     def from_samples(cls, samples: ArrayLike) -> ResponseCurve:
-        """Return the strictly monotone, normalised response nearest to `samples` (Eq. 20 and 21 of docs/METHOD.md).
+        """Return the strictly monotone, normalised response nearest to `samples` (Eq. 26 and 27 of docs/METHOD.md).
 
         The samples are scaled to run from 0 to 1 and projected on the increasing sequences (`nearest_increasing`):
         a projection on a convex set brings a curve no farther from any member of the set, so this never raises the
@@ -100,7 +100,7 @@ class ResponseCurve:
 
 
 def nearest_increasing(samples: ArrayLike) -> Float64Array:
-    """Return the non-decreasing sequence nearest to `samples` in L2, shape (N,): pool adjacent violators (Eq. 20).
+    """Return the non-decreasing sequence nearest to `samples` in L2, shape (N,): pool adjacent violators (Eq. 26).
 
     Source: Ayer et al., "An empirical distribution function for sampling with incomplete information", 1955.
     """

@@ -28,7 +28,7 @@ class Tolerance:
     lut: float = 1e-6  # OCIO, colour-science and numpy on one LUT, in float32
     plate: float = 1e-5  # float EXR: oiiotool, Blender and `crfnet linearize`
     half: float = 2**-11  # half EXR, relative to the value
-    parity: float = 1e-4  # torch and onnxruntime, EMoR weights
+    parity: float = 1e-3  # torch and onnxruntime, evidence: EMoR weights, log-odds; factors relative to the largest
 
 
 @dataclass(frozen=True)

@@ -40,7 +40,7 @@ class Evidence:
     log_odds: Float64Array
 
     def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
-        """Return the log likelihood of every response of a bank, shape (N,): Eq. 22 of docs/METHOD.md."""
+        """Return the log likelihood of every response of a bank, shape (N,): Eq. 18 of docs/METHOD.md."""
         offsets = (bank.weights[:, :EVIDENCE_WEIGHTS] - self.location) @ self.factor
         squares = np.sum(offsets**2, axis=1)
         exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2

@@ -83,7 +83,7 @@ class Posterior:
 
     @cached_property
     def expected_error(self) -> float:
-        """The expected E_est of the answer."""
+        """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         return float(self.weights @ np.linalg.norm(self.bank.brightness - self.curve.brightness, axis=1))
 
     @cached_property
@@ -104,7 +104,7 @@ class Posterior:
         return float(self.weights @ np.linalg.norm(self.bank.weights - self.mean_weights, axis=1))
 
     def band(self) -> Float64Array:
-        """Return the lower and upper end, shape (2, 1024), of the band that holds `BAND` at every irradiance."""
+        """Return the band that holds `BAND` at every irradiance, lower and upper end, shape (2, 1024): Eq. 29."""
         knots = np.linspace(0, SAMPLES - 1, BAND_KNOTS).round().astype(int)
         values = self.bank.brightness[:, knots].astype(np.float64)
         order = np.argsort(values, axis=0)

@@ -1,3 +1,4 @@
+from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -8,35 +9,37 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata, family_factors, file_origin
 from crfnet_core.metrics import estimation_error
-from crfnet_core.network import Answer, Predictions, ResponseNetwork, UncertaintyModel
-from crfnet_core.network.pooling import inliers
+from crfnet_core.network import Predictions, ResponseNetwork
+from crfnet_core.network.pooling import inliers, robust_mean
 from crfnet_core.photo import Photo
-from crfnet_core.response import ResponseCurve
+from crfnet_core.posterior import DEFAULT_PRIOR, Evidence, Family, Posterior, Prior, ResponseBank, Verdict
+from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
-UNCERTAINTY_MODEL = UncertaintyModel(base=0.1, of_predicted=0.5, of_spread=2.0, band_profile=(0.0, 0.1, 0.0))
+#: A file as the camera wrote it, and one that an editor saved.
+CAMERA = FileMetadata(width=6000, height=4000, make="NIKON CORPORATION", model="NIKON D90", file_format="JPEG")
+EDITED = replace(CAMERA, software="Adobe Photoshop 23.1 (Macintosh)")
 
 
 class FakeNetwork:
-    """Answers with given rows, whatever the windows."""
+    """States given evidence, whatever the windows."""
 
-    def __init__(self, rows, errors=None, pooled=None):
-        self.pooled = pooled
-        self.rows = np.asarray(rows, dtype=np.float64)
-        self.errors = np.ones(len(self.rows)) if errors is None else np.asarray(errors, dtype=np.float64)
-        self.config = SimpleNamespace(uncertainty_model=UNCERTAINTY_MODEL, label="fake 000000000000")
+    def __init__(self, windows, pooled=None):
+        self.windows, self.pooled = tuple(windows), pooled
+        self.config = SimpleNamespace(label="fake 000000000000")
 
     def inputs(self, windows, *, progress=None):
         return windows
 
     def predict(self, windows, *, progress=None):
-        assert windows.shape == (len(self.rows), 227, 227, 3)
-        return Predictions(self.rows, self.errors, self.pooled)
+        assert windows.shape == (len(self.windows), 227, 227, 3)
+        return Predictions(self.windows, self.pooled)
 
 
-def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg"):
+def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg", metadata=None):
     pixels = np.random.default_rng(seed).integers(*codes, (*shape, 3)).astype(np.float32) / np.float32(255)
-    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path("shots") / name)
+    return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path("shots") / name, metadata=metadata)
 
 
 def rows_around(centre, offsets):
@@ -45,7 +48,18 @@ def rows_around(centre, offsets):
     return rows
 
 
-CENTRE = np.array([1.0, -0.5] + [0.0] * 9)
+def asked(made, network, **options):
+    """The estimate with the small bank and an even prior, of one window for each that the network knows."""
+    defaults = {"bank": small_bank(), "prior": even_prior(), "windows": len(network.windows)}
+    return estimate_response(made, network=network, **defaults | options)
+
+
+CENTRE = np.array([1.0, -0.5, 0.0, 0.0, 0.0])
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return small_bank()
 
 
 def test_outliers_are_those_beyond_twice_the_median_distance():
@@ -57,73 +71,130 @@ def test_equal_estimates_are_all_kept():
     assert inliers(rows_around(CENTRE, [0.0] * 5)).all()
 
 
-def test_the_average_leaves_outliers_out():
+def test_the_mean_evidence_leaves_outliers_out():
     rows = rows_around(CENTRE, [-0.1, -0.1, 0.0, 0.1, 0.1, 5.0])
-    estimate = estimate_response(photo(), network=FakeNetwork(rows), windows=6)
-    assert [window.kept for window in estimate.windows] == [True] * 5 + [False]
-    np.testing.assert_allclose(estimate.weights, CENTRE, atol=1e-12)
-    expected = ResponseCurve.from_samples(EmorBasis.load().reconstruct(CENTRE))
-    assert estimation_error(expected, estimate.curve) < 1e-9
-    assert estimate.spread == pytest.approx(np.sqrt(0.04 / 5))
+    odds = [np.full(3, float(k)) for k in (1, 1, 1, 1, 1, 90)]
+    mean = robust_mean([Evidence(row, 2 * np.eye(5), each) for row, each in zip(rows, odds, strict=True)])
+    np.testing.assert_allclose(mean.location, CENTRE, atol=1e-12)
+    np.testing.assert_array_equal(mean.factor, 2 * np.eye(5))
+    np.testing.assert_array_equal(mean.log_odds, [1, 1, 1])
 
 
-def test_a_network_that_pools_has_the_last_word():
-    """Its windows only tell the spread; its own expected error enters the uncertainty."""
-    pooled = Answer(CENTRE + 1, 0.3)
-    rows = rows_around(CENTRE, [-0.1, 0.1, 7.0, -0.1, 0.1])
-    estimate = estimate_response(photo(), network=FakeNetwork(rows, pooled=pooled), windows=5)
-    np.testing.assert_array_equal(estimate.weights, CENTRE + 1)
+def test_a_network_without_pooling_is_pooled_by_the_rule(bank):
+    windows = [evidence_for(row) for row in rows_around(bank.weights[3], [-0.1, 0.0, 0.1])]
+    estimate = asked(photo(), FakeNetwork(windows))
+    expected = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3])])
+    np.testing.assert_allclose(estimate.curve.brightness, expected.curve.brightness, atol=1e-9)
+    assert estimate.uncertainty == pytest.approx(expected.expected_error)
+
+
+def test_a_network_that_pools_has_the_last_word(bank):
+    """Its windows only tell which of them agree."""
+    windows = [evidence_for(row) for row in bank.weights[[5, 5, 1, 5, 5]]]
+    estimate = asked(photo(), FakeNetwork(windows, pooled=evidence_for(bank.weights[2], precision=300)))
+    true = bank.brightness[2]
+    assert np.linalg.norm(estimate.curve.brightness - true) < 0.1
     assert [window.kept for window in estimate.windows] == [True, True, False, True, True]
-    assert estimate.uncertainty == pytest.approx(0.1 + 0.5 * 0.3 + 2.0 * 0.1)
+
+
+def test_the_estimate_says_what_the_posterior_says(bank):
+    evidence = evidence_for(bank.weights[4])
+    estimate = asked(photo(), FakeNetwork([evidence] * 2, pooled=evidence))
+    expected = Posterior.of(bank, even_prior(), [evidence])
+    assert (estimate.uncertainty, estimate.shape_uncertainty) == (
+        expected.expected_error,
+        expected.expected_shape_error,
+    )
+    assert estimate.families == expected.families
+    assert estimate.verdict is Verdict.of(expected)
+    np.testing.assert_array_equal(estimate.band, expected.band())
+    np.testing.assert_array_equal(estimate.weights, expected.mean_weights)
+    assert (estimate.prior, estimate.model) == ("even", "fake 000000000000")
+
+
+def test_each_window_has_the_answer_of_its_own_evidence(bank):
+    windows = [evidence_for(bank.weights[number], precision=300) for number in (1, 4)]
+    first, second = asked(photo(), FakeNetwork(windows, pooled=windows[0])).windows
+    np.testing.assert_allclose(first.weights, bank.weights[1], atol=0.1)
+    np.testing.assert_allclose(second.weights, bank.weights[4], atol=0.1)
+    assert second.expected_error < 0.2
+
+
+def test_the_default_is_the_prior_of_cameras_over_the_packaged_bank():
+    evidence = evidence_for(np.zeros(5), precision=0.5)
+    estimate = estimate_response(photo(), network=FakeNetwork([evidence]), windows=1)
+    expected = Posterior.of(ResponseBank.load(), Prior.load(DEFAULT_PRIOR), [evidence])
+    assert estimate.prior == DEFAULT_PRIOR
+    assert estimate.families == pytest.approx(expected.families)
 
 
 def test_the_coverage_asked_for_reaches_the_choice_of_windows():
     dull = np.full((300, 900, 3), 0.5, np.float32)
     dull[:, 600:] = photo(shape=(300, 300)).pixels
     dull = Photo(pixels=dull, bit_depth=8, is_gray=False, path=Path("dull.jpg"))
-    network = FakeNetwork(rows_around(CENTRE, [0.0] * 6))
-    asked, any_window = (estimate_response(dull, network=network, windows=6, coverage=c).windows for c in (220, 0))
-    assert all(found.window.covers_range for found in asked)
+    network = FakeNetwork([evidence_for(CENTRE)] * 6)
+    full, any_window = (asked(dull, network, coverage=coverage).windows for coverage in (220, 0))
+    assert all(found.window.covers_range for found in full)
     assert not all(found.window.covers_range for found in any_window)
 
 
-def test_uncertainty_is_the_calibrated_sum():
-    rows = rows_around(CENTRE, [-0.1, 0.1, -0.1, 0.1])
-    estimate = estimate_response(photo(), network=FakeNetwork(rows, [0.5, 1.5, 1.0, 1.0]), windows=4)
-    assert estimate.spread == pytest.approx(0.1)
-    assert estimate.uncertainty == pytest.approx(0.1 + 0.5 * 1.0 + 2.0 * 0.1)
-
-
-@pytest.mark.parametrize(("error", "verdict"), [(1.0, "good"), (2.0, "usable"), (5.0, "do not trust")])
-def test_the_verdict_follows_the_uncertainty(error, verdict):
-    network = FakeNetwork(rows_around(CENTRE, [0.0] * 3), [error] * 3)
-    assert estimate_response(photo(), network=network, windows=3).verdict == verdict
-
-
-def test_the_band_has_the_calibrated_width():
-    curve = ResponseCurve.from_samples([0.0, 1.0])
-    lower, upper = UNCERTAINTY_MODEL.band(curve, 2.0)
-    assert (lower[0], upper[0], lower[-1], upper[-1]) == (0, 0, 1, 1)
-    np.testing.assert_allclose((upper - lower)[[256, 512, 768]], [0.2, 0.4, 0.2], atol=1e-3)
-    assert (lower >= 0).all()
-    assert (upper <= 1).all()
-
-
-def test_photographs_of_one_camera_are_pooled():
-    rows = rows_around(CENTRE, [0.1] * 4 + [-0.1] * 4)
+def test_photographs_of_one_camera_are_pooled(bank):
+    network = FakeNetwork([evidence_for(bank.weights[3], precision=0.7)] * 2)
     photos = [photo(seed=1, name="a.jpg"), photo(seed=2, name="b.jpg", shape=(500, 300))]
-    estimate = estimate_response(photos, network=FakeNetwork(rows), windows=4)
-    assert [window.photo for window in estimate.windows] == [0] * 4 + [1] * 4
-    np.testing.assert_allclose(estimate.weights, CENTRE, atol=1e-12)
-    assert estimate.photos == ("a.jpg", "b.jpg")
+    alone, together = asked(photos[0], network), asked(photos, network)
+    assert [window.photo for window in together.windows] == [0, 0, 1, 1]
+    assert together.photos == ("a.jpg", "b.jpg")
+    assert together.uncertainty < alone.uncertainty
+
+
+def test_the_same_photograph_twice_says_no_more_than_once(bank):
+    network = FakeNetwork([evidence_for(bank.weights[3], precision=0.7)] * 2)
+    dark = photo()
+    dark = replace(dark, pixels=dark.pixels * np.float32(0.5))
+    once, twice = asked(photo(), network), asked([photo(), dark], network)
+    assert twice.uncertainty == pytest.approx(once.uncertainty)
+    assert twice.families == pytest.approx(once.families)
+
+
+def shares(made, *, use_metadata=True, network=None):
+    """The families of an estimate in which the photograph says nothing."""
+    nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
+    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata).families
+
+
+def test_metadata_shifts_the_prior():
+    factors = family_factors(file_origin(CAMERA))
+    prior = even_prior().shares
+    weighed = {family: share * factors[family] for family, share in prior.items()}
+    expected = {family: weighed.get(family, 0) / sum(weighed.values()) for family in Family}
+    assert shares(photo(metadata=CAMERA)) == pytest.approx(expected)
+    assert expected[Family.CAMERA] > 2 * prior[Family.CAMERA]
+
+
+def test_metadata_can_be_ignored():
+    ignored = asked(photo(metadata=EDITED), FakeNetwork([evidence_for(CENTRE)]), use_metadata=False)
+    bare = asked(photo(), FakeNetwork([evidence_for(CENTRE)]))
+    assert (ignored.origins, ignored.warnings) == ((), ())
+    assert ignored.families == bare.families
+
+
+def test_equal_files_shift_the_prior_once():
+    one, two = (shares([photo(metadata=CAMERA)] * count) for count in (1, 2))
+    assert two == pytest.approx(one)
 
 
 def warnings_of(made):
-    return estimate_response(made, network=FakeNetwork(rows_around(CENTRE, [0.0] * 2)), windows=2).warnings
+    return asked(made, FakeNetwork([evidence_for(CENTRE)] * 2)).warnings
 
 
 def test_a_good_photograph_gives_no_warning():
-    assert warnings_of(photo()) == ()
+    assert warnings_of(photo()) == warnings_of(photo(metadata=CAMERA)) == ()
+
+
+def test_an_editor_is_warned_of_once():
+    (warning,) = warnings_of([photo(metadata=EDITED), photo(seed=1, metadata=EDITED)])
+    assert warning.startswith("saved by Adobe Photoshop")
+    assert "give the camera's own file" in warning
 
 
 def test_a_photograph_without_the_range_is_warned_of():
@@ -151,18 +222,27 @@ def test_no_photograph_is_refused():
 
 
 @pytest.fixture(scope="module")
-def bundled(plate):
-    return estimate_response(read_photo(plate), network=ResponseNetwork.load())
+def bundled(plate, fixed_model):
+    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model))
 
 
-def test_the_bundled_plate_is_estimated_better_than_gamma(bundled, root):
-    samples = np.loadtxt(root / "tests" / "data" / "plate_response.csv", delimiter=",", skiprows=1)
-    true = ResponseCurve.from_samples(samples[:, 1])
-    assert estimation_error(true, bundled.curve) < 0.75 * estimation_error(true, ResponseCurve.gamma())
-    assert bundled.warnings == ()
+def test_evidence_for_the_true_response_brings_the_answer_near_it(bundled, true_response):
+    """The fixed model knows the bundled photograph's response, but not which response of the bank it is."""
+    assert estimation_error(true_response, bundled.curve) < 1
+    project = EmorBasis.load().project
+    assert np.linalg.norm((bundled.weights - project(true_response.brightness))[:5]) < 1
+    lower, upper = bundled.band
+    assert ((lower <= bundled.curve.brightness + 0.02) & (bundled.curve.brightness <= upper + 0.02)).mean() > 0.95
 
 
-def test_the_same_photograph_gives_the_same_estimate(bundled, plate):
-    again = estimate_response(read_photo(plate), network=ResponseNetwork.load(threads=1))
+def test_the_same_photograph_gives_the_same_estimate(bundled, plate, fixed_model):
+    again = estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model, threads=1))
     np.testing.assert_array_equal(again.curve.brightness, bundled.curve.brightness)
     assert again.uncertainty == bundled.uncertainty
+
+
+def test_the_packaged_model_answers_the_bundled_photograph(plate):
+    estimate = estimate_response(read_photo(plate), network=ResponseNetwork.load())
+    assert np.isfinite([estimate.uncertainty, estimate.shape_uncertainty]).all()
+    assert sum(estimate.families.values()) == pytest.approx(1)
+    assert len(estimate.windows) == 10

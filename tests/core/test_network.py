@@ -5,8 +5,11 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, UncertaintyModel, model_folder
+from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, model_folder
 from crfnet_core.statistics import window_statistics
+
+#: The evidence of all windows together in the golden predictions.
+POOLED = ("pooled_location", "pooled_factor", "pooled_log_odds")
 
 
 @pytest.fixture(scope="module")
@@ -39,48 +42,61 @@ def predictions(network, windows, *, progress=None):
     return network.predict(network.inputs(windows, progress=progress), progress=progress)
 
 
+def locations(found):
+    return np.stack([evidence.location for evidence in found.windows])
+
+
+def assert_near(evidence, expected, tolerance):
+    """Evidence equals (location, factor, log-odds); the factor relative to its largest entry."""
+    location, factor, log_odds = expected
+    np.testing.assert_allclose(evidence.location, location, atol=tolerance)
+    np.testing.assert_allclose(evidence.factor, factor, atol=tolerance * max(1, np.abs(factor).max()))
+    np.testing.assert_allclose(evidence.log_odds, log_odds, atol=tolerance)
+
+
 def edit(folder, **entries):
     path = folder / "model.json"
     path.write_text(json.dumps(json.loads(path.read_text()) | entries))
 
 
 def test_onnxruntime_says_what_torch_said(network, golden, tolerance):
+    """Factors are compared relative to the largest."""
     found = network.predict(golden["statistics"])
-    np.testing.assert_allclose(found.weights, golden["weights"], atol=tolerance.parity)
-    np.testing.assert_allclose(np.log(found.expected_errors), golden["log_errors"], atol=tolerance.parity)
-    np.testing.assert_allclose(found.pooled.weights, golden["pooled_weights"][0], atol=tolerance.parity)
-    assert np.log(found.pooled.expected_error) == pytest.approx(golden["pooled_log_error"][0], abs=tolerance.parity)
-    assert np.abs(golden["weights"]).max() > 0.1
+    for row, evidence in enumerate(found.windows):
+        assert_near(evidence, [golden[name][row] for name in ("locations", "factors", "log_odds")], tolerance.parity)
+    assert_near(found.pooled, [golden[name][0] for name in POOLED], tolerance.parity)
+    assert np.abs(golden["locations"]).max() > 0.1
 
 
 def test_threads_do_not_change_the_result(windows, fixed_model):
     """The packaged network reads statistics, the fixed one windows."""
     for model in (DEFAULT_MODEL, fixed_model):
         first, second = (predictions(ResponseNetwork.load(model, threads=threads), windows) for threads in (1, 3))
-        np.testing.assert_array_equal(first.weights, second.weights)
+        np.testing.assert_array_equal(locations(first), locations(second))
 
 
 def test_windows_are_independent_of_each_other(network, windows, tolerance):
-    together = predictions(network, windows).weights
-    np.testing.assert_allclose(predictions(network, windows[1:2]).weights, together[1:2], atol=tolerance.parity)
+    together = locations(predictions(network, windows))
+    np.testing.assert_allclose(locations(predictions(network, windows[1:2])), together[1:2], atol=tolerance.parity)
 
 
 def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, windows, tolerance):
-    pooled = predictions(network, windows).pooled.weights
-    np.testing.assert_allclose(predictions(network, windows[::-1]).pooled.weights, pooled, atol=tolerance.parity)
-    assert np.linalg.norm(predictions(network, windows[:2]).pooled.weights - pooled) > 1e-3
+    pooled = predictions(network, windows).pooled
+    turned = predictions(network, windows[::-1]).pooled
+    assert_near(turned, [pooled.location, pooled.factor, pooled.log_odds], tolerance.parity)
+    assert np.linalg.norm(predictions(network, windows[:2]).pooled.location - pooled.location) > 1e-3
 
 
 @pytest.mark.parametrize("level", [0.0, 0.5, 1.0])
 def test_a_flat_window_has_a_finite_answer(network, level):
     found = predictions(network, np.full((2, 227, 227, 3), level, np.float32))
-    assert np.isfinite(found.pooled.weights).all()
-    assert np.isfinite(found.weights).all()
+    for evidence in (found.pooled, *found.windows):
+        assert all(np.isfinite(part).all() for part in (evidence.location, evidence.factor, evidence.log_odds))
 
 
 def test_a_model_is_found_by_its_name_or_its_folder(copied):
     assert model_folder() == DEFAULT_MODEL
-    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.0") == MODELS / "crfnet2017-1.0"
+    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.1") == MODELS / "crfnet2017-1.1"
     assert model_folder(copied) == copied
     assert model_folder("nonesuch").name == "nonesuch"
 
@@ -88,10 +104,12 @@ def test_a_model_is_found_by_its_name_or_its_folder(copied):
 def test_the_paper_s_network_runs_by_name(windows):
     network = ResponseNetwork.load("crfnet2017")
     found = predictions(network, windows)
-    assert network.config.name == "crfnet2017-1.0"
-    assert found.weights.shape == (3, 11)
+    assert network.config.name == "crfnet2017-1.1"
+    assert locations(found).shape == (3, 5)
     assert found.pooled is None
-    assert len(set(found.expected_errors)) == 1
+    for evidence in found.windows:
+        np.testing.assert_array_equal(evidence.factor, found.windows[0].factor)
+        np.testing.assert_array_equal(evidence.log_odds, found.windows[0].log_odds)
 
 
 def test_progress_counts_the_windows(network, windows):
@@ -123,17 +141,16 @@ def test_the_windows_are_not_changed(network, windows):
 def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, windows):
     """Another curve on the same windows gives another estimate: the network looks at its input."""
     bent = np.rint(windows**0.6 * 255) / np.float32(255)
-    assert np.linalg.norm(predictions(network, bent).weights - predictions(network, windows).weights) > 0.5
+    moved = locations(predictions(network, bent)) - locations(predictions(network, windows))
+    assert np.linalg.norm(moved) > 0.5
 
 
 def test_config_is_complete():
     config = ModelConfig.read(DEFAULT_MODEL / "model.json")
     assert config.name == DEFAULT_MODEL.name
-    assert (config.basis, config.components, config.window_size, config.opset) == ("emor", 11, 227, 18)
-    assert len(config.training_commit) == 40
-    assert isinstance(config.uncertainty_model, UncertaintyModel)
-    assert len(config.uncertainty_model.band_profile) == 33
-    assert config.accuracy["P0"]["E_est mean"] < config.accuracy["P0"]["E_est gamma 2.2"]
+    assert (config.basis, config.components, config.window_size, config.opset) == ("emor", 5, 227, 18)
+    assert len(config.training_commit.removesuffix("-dirty")) == 40
+    assert len(config.output_names) == 6
     assert config.label == f"{config.name} {config.sha256[:12]}"
 
 
@@ -170,14 +187,20 @@ def test_a_spoiled_config_is_refused(copied, text, said):
     ("entries", "said"),
     [
         ({"components": 25}, "25 weights of emor"),
-        ({"basis": "pca"}, "11 weights of pca"),
-        ({"uncertainty_model": {"base": 1}}, "uncertainty_model"),
-        ({"uncertainty_model": None}, "uncertainty_model"),
+        ({"components": 11}, "11 weights of emor"),
+        ({"basis": "pca"}, "5 weights of pca"),
     ],
 )
 def test_a_model_of_another_kind_is_refused(copied, entries, said):
     edit(copied, **entries)
     with pytest.raises(ModelError, match=said):
+        ResponseNetwork.load(copied)
+
+
+def test_a_graph_without_an_output_is_refused(copied):
+    """As of a model of an earlier version, whose network answers with weights."""
+    edit(copied, output_names=["weights", "log_errors"])
+    with pytest.raises(ModelError, match=r"model\.onnx has no log_errors, weights; export the model again"):
         ResponseNetwork.load(copied)
 
 

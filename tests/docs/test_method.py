@@ -8,7 +8,8 @@ from inspect import signature
 import pytest
 
 from crfnet_core import emor, response, windows
-from crfnet_core.network import pooling, uncertainty
+from crfnet_core.network import pooling
+from crfnet_core.posterior import Family, ResponseBank, evidence, posterior, verdict
 from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
 from ocio.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
 
@@ -142,7 +143,15 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"s = {shading.OTHER_CHANGE} ",
         f"The factor {pooling.OUTLIER_FACTOR:g} is ours",
         f"\\varepsilon = 10^{{{math.log10(response.LEAST_SLOPE):.0f}}}",
-        f"$u < {uncertainty.GOOD:g}$, *usable* below {uncertainty.USABLE:g}",
+        f"Student's t with {evidence.DEGREES_OF_FREEDOM:g} degrees of freedom",
+        f"first {evidence.EVIDENCE_WEIGHTS} EMoR weights",
+        f"\\frac{{{evidence.DEGREES_OF_FREEDOM:g} + {evidence.EVIDENCE_WEIGHTS}}}{{2}}",
+        f"holds {len(ResponseBank.load().families)} responses in seven families",
+        f"| film | {ResponseBank.load().families.count(Family.FILM)} |",
+        f"with a probability of {posterior.BAND:.0%}".replace("%", " %"),
+        f"at {posterior.BAND_KNOTS} irradiances",
+        f"or $u_{{stops}}$ is above {verdict.USABLE_STOPS:g}",
+        f"$u_{{stops}}$ is at most {verdict.GOOD_STOPS:g} and $u$ at most {verdict.GOOD_ERROR:g}",
         f"at {signature(inverse_response_lut).parameters['length'].default} uniform brightnesses",
         f"at most {MAX_END_SLOPE:g}",
     ],
@@ -160,6 +169,11 @@ def test_the_numbers_of_the_method_are_those_of_the_code(root, sentence):
         ("features", "CURVATURE_PSEUDO_EVIDENCE", "$\\mu = {0:g}$ squared codes"),
         ("features", "CURVATURE_UNIT", "divided by {0:g} and limited to -{1:g} to {1:g}"),
         ("model", "LARGEST_FEATURE", "limited to {0:g} standard deviations"),
+        ("train", "COMPETITORS", "$M = {0:g}$ training photographs"),
+        ("loss", "WINDOW_WEIGHT", "plus {0:g} times the same for each window by itself"),
+        ("loss", "WINDOW_WEIGHT", "+ {1:g} \\left\\| w^* - \\bar{{w}} \\right\\|"),
+        ("../data/in_camera", "COMPONENTS", "\\sum_{{j=1}}^{{{0:g}}} s_j"),
+        ("../data/in_camera", "TAILS", "\\mathcal{{N}}(0, {0:g}^2)"),
     ],
 )
 def test_the_numbers_of_the_network_are_those_of_the_code(root, module, constant, sentence):

@@ -12,7 +12,6 @@ from crfnet_core.network import ModelConfig, ResponseNetwork
 from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import load_network, write_config
 from training.export.onnx_graph import POOLING, export_onnx
-from training.export.uncertainty import BAND_KNOTS, NOT_FITTED, fit
 from training.network.model import NetworkConfig, PhotographNet
 
 CONFIG = NetworkConfig(width=64)
@@ -30,7 +29,7 @@ def exported(tmp_path_factory):
     (folder / "run" / "run.json").write_text(json.dumps(record))
     network = load_network(folder / "run")
     export_onnx(network, POOLING, folder / "model" / "model.onnx")
-    write_config(folder / "model", POOLING, NOT_FITTED, record)
+    write_config(folder / "model", POOLING, record)
     write_golden(network, POOLING, folder / "golden.npz")
     return folder
 
@@ -40,9 +39,10 @@ def test_onnxruntime_agrees_with_torch(exported, tolerance):
     assert assert_parity(exported / "model", exported / "golden.npz") < PARITY
 
 
-def test_a_disagreement_stops_the_export(exported, tmp_path):
+@pytest.mark.parametrize("name", POOLING.output_names)
+def test_a_disagreement_stops_the_export(exported, tmp_path, name):
     with np.load(exported / "golden.npz") as arrays:
-        spoiled = dict(arrays) | {"weights": arrays["weights"] + 0.01}
+        spoiled = dict(arrays) | {name: arrays[name] + 0.01 * np.abs(arrays[name]).max()}
     np.savez(tmp_path / "golden.npz", **spoiled)
     with pytest.raises(SystemExit, match="differs from torch"):
         assert_parity(exported / "model", tmp_path / "golden.npz")
@@ -52,35 +52,26 @@ def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
     found = network.predict(network.inputs(np.zeros((2, 227, 227, 3), np.float32)))
-    assert np.isfinite(found.weights).all()
-    assert np.isfinite(found.pooled.weights).all()
-    assert found.weights.shape == (2, 11)
-    assert found.pooled.weights.shape == (11,)
+    for evidence in (found.pooled, *found.windows):
+        assert all(np.isfinite(part).all() for part in (evidence.location, evidence.factor, evidence.log_odds))
+        assert (evidence.location.shape, evidence.factor.shape, evidence.log_odds.shape) == ((5,), (5, 5), (3,))
+    assert len(found.windows) == 2
+    assert network.config.components == 5
     assert network.config.training["held_out_curves"] == []
     assert network.config.training_commit == "0" * 40 + "-dirty"
 
 
 def test_held_out_curves_stand_in_the_configuration(exported):
     record = {"commit": None, "recipe": {"training": {"without_held_out": True}}}
-    write_config(exported / "model", POOLING, NOT_FITTED, record)
+    write_config(exported / "model", POOLING, record)
     config = ModelConfig.read(exported / "model" / "model.json")
     assert len(config.training["held_out_curves"]) == 40
     assert config.training_commit == "unknown"
 
 
-def test_the_uncertainty_is_fitted_to_the_errors():
-    rng = np.random.default_rng(0)
-    expected, spread = rng.uniform(0.5, 2, (2, 400))
-    error = 0.3 + 0.8 * expected
-    residuals = error[:, None] * np.linspace(0, 1, 1024) * rng.uniform(0, 1, (400, 1))
-    model = fit(error=error, expected=expected, spread=spread, residuals=residuals)
-    assert (model.base, model.of_predicted, model.of_spread) == pytest.approx((0.3, 0.8, 0), abs=1e-3)
-    assert len(model.band_profile) == BAND_KNOTS
-    assert model.band_profile[-1] == pytest.approx(0.9, abs=0.05)
-
-
 def test_matrices_are_kept_in_half_precision(exported):
     graph = onnx.load(exported / "model" / "model.onnx").graph
-    kept = {tuple(tensor.dims): tensor.data_type for tensor in graph.initializer if len(tensor.dims) > 1}
+    matrices = [tensor for tensor in graph.initializer if len(tensor.dims) > 1 and max(tensor.dims) >= CONFIG.width]
+    kept = {tuple(tensor.dims): tensor.data_type for tensor in matrices}
     assert len(kept) > 5
     assert set(kept.values()) == {onnx.TensorProto.FLOAT16}

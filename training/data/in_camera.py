@@ -41,7 +41,7 @@ LEAST_IRRADIANCE = 2.0**-16
 
 @dataclass(frozen=True)
 class InCameraResponses:
-    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance.
+    """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance: docs/METHOD.md, Eq. 21.
 
     Parameters
     ----------
@@ -117,5 +117,5 @@ def _components(deviations: Float64Array, *, bodies: int) -> Float64Array:
     """Return the principal components of deviations (N, 1024), each one standard deviation long, shape (6, 1024)."""
     weights = np.where(np.arange(SAMPLES) < DARKEST, DARK_WEIGHT, 1.0)
     _, lengths, directions = np.linalg.svd(deviations * weights, full_matrices=False)
-    deviation = lengths[:COMPONENTS] / np.sqrt(bodies - len(KINDS) - 1)
+    deviation = lengths[:COMPONENTS] / np.sqrt(max(bodies - len(KINDS) - 1, 1))
     return deviation[:, None] * directions[:COMPONENTS] / weights

@@ -6,7 +6,7 @@
 writes FOLDER/report.json, report.md and PNGs. What was measured is kept in FOLDER/cases: an interrupted evaluation goes
 on, and a finished one only writes its report anew. With --quick the repository's own lights and formulas take the place
 of the data. P4 measures DATA/real and, where it is there, DATA/real_bodies. P5, the reliability of the uncertainty,
-comes with P0, P2 and P4.
+comes with P0, P2 and P4. P6 counts the pictures that must be refused and are not.
 """
 
 from __future__ import annotations

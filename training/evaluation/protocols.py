@@ -16,8 +16,11 @@ from training.data.real.photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
 from training.evaluation.baselines import BASELINES
 from training.evaluation.measure.case_files import CaseFile, code_digest
-from training.evaluation.measure.real import measure_real, ways_of
+from training.evaluation.measure.pooled import measure_pooled
+from training.evaluation.measure.real import measure_real
 from training.evaluation.measure.simulated import measure_simulated
+from training.evaluation.measure.unusual import measure_unusual, unusual_report
+from training.evaluation.measure.verdict_files import VerdictFile
 from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
 from training.evaluation.report.content import (
     CleanReport,
@@ -30,8 +33,9 @@ from training.evaluation.report.content import (
 from training.evaluation.report.document import read_report, write_report
 from training.evaluation.report.markdown import report_text
 from training.evaluation.report.plots import draw_distributions, draw_reliability, draw_stress
-from training.evaluation.report.real.content import BOTH, RealReport
+from training.evaluation.report.real.content import BOTH, RealReport, ways_of
 from training.evaluation.report.real.plots import draw_real
+from training.evaluation.report.unusual import UnusualReport
 from training.evaluation.settings import Settings
 from training.evaluation.summaries.bodies import RealTable, real_report
 from training.evaluation.summaries.clean import clean_report, other_kind_report
@@ -39,6 +43,9 @@ from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
 from training.evaluation.summaries.reliability import reliability
 from training.evaluation.summaries.stress import stress_report
 from training.evaluation.test_sets import TestSet
+
+#: Error -> the file of its plot in P5.
+RELIABILITY_FILES = {"E_est": "p5.png", "shape": "p5-shape.png"}
 
 QUICK_NOTE = (
     "photographs of the bundled lights through formulas, to see that all works and that nothing got worse: not to"
@@ -73,7 +80,7 @@ class Evaluation:
         """
         self._check()
         self.settings.out.mkdir(parents=True, exist_ok=True)
-        steps = {"p0": self._p0, "p1": self._p1, "p2": self._p2, "p3": self._p3, "p4": self._p4}
+        steps = {"p0": self._p0, "p1": self._p1, "p2": self._p2, "p3": self._p3, "p4": self._p4, "p6": self._p6}
         parts: dict[str, Any] = {name: step() for name, step in steps.items() if name in self.settings.protocols}
         if self._with_uncertainty:
             parts["p5"] = self._p5()
@@ -210,11 +217,14 @@ class Evaluation:
         names = [name for model in self.settings.names for name in ways_of(model)]
         sets = real_photographs(self.test_set.data)
         tables = {name: self._real_table(name, photographs) for name, photographs in sets.items()}
+        pooled = {name: self._pooled_table(name, table) for name, table in tables.items()}
         if len(tables) > 1:
-            tables[BOTH] = RealTable.joined(list(tables.values()))
+            tables[BOTH], pooled[BOTH] = (RealTable.joined(list(parts.values())) for parts in (tables, pooled))
         for name, table in tables.items():
             self._with_uncertainty[f"P4 {name}"] = {model: table.trusted.columns(model) for model in names}
-        return {name: real_report(table, names, seed=self.settings.seed) for name, table in tables.items()}
+        return {
+            name: real_report(table, pooled[name], names, seed=self.settings.seed) for name, table in tables.items()
+        }
 
     def _real_table(self, name: str, photographs: Sequence[RealPhotograph]) -> RealTable:
         """Measure the real photographs of one folder, and draw them."""
@@ -226,14 +236,37 @@ class Evaluation:
             draw_real(self._path(f"p4-{name}-{model}.png"), table, model, f"P4, data/{name}: {model}")
         return table
 
-    def _p5(self) -> dict[str, dict[str, Reliability]]:
+    def _pooled_table(self, name: str, table: RealTable) -> RealTable:
+        """Measure several photographs of each body of one folder, given together."""
+        files = self._files(f"p4-{name}-pooled", {"photographs": [photograph.name for photograph in table.photographs]})
+        del files[BASELINES]
+        assert self.test_set.data is not None
+        measure_pooled(table.photographs, self._folders, files, self.test_set.data, title=f"P4 {name}, pooled")
+        return table.with_pooled(files)
+
+    def _p5(self) -> dict[str, dict[str, dict[str, Reliability]]]:
         """Compare uncertainties with errors."""
-        report = {
-            protocol: {
-                name: reliability(columns.errors.estimation, columns.uncertainty, columns.coverage)
-                for name, columns in models.items()
+        measured = self._with_uncertainty
+        report: dict[str, dict[str, dict[str, Reliability]]] = {}
+        for error, file in RELIABILITY_FILES.items():
+            report[error] = {
+                protocol: {
+                    name: reliability(columns.errors[error], columns.expected(error), columns.coverage)
+                    for name, columns in models.items()
+                }
+                for protocol, models in measured.items()
             }
-            for protocol, models in self._with_uncertainty.items()
-        }
-        draw_reliability(self._path("p5.png"), self._with_uncertainty, report)
+            draw_reliability(self._path(file), measured, report[error], error=error)
         return report
+
+    def _p6(self) -> dict[str, UnusualReport]:
+        """Ask about pictures that no response explains."""
+        scenes, settings = self.test_set.scenes, {"test_set": self.test_set.digest, "code": self._code}
+        files = {
+            model.name: VerdictFile.opened(
+                self._path(f"cases/{model.name}/p6.json"), settings | {"sha256": model.measured.sha256}
+            )
+            for model in self.settings.models
+        }
+        measure_unusual(scenes, self._folders, files)
+        return {name: unusual_report(scenes, file) for name, file in files.items()}

@@ -12,7 +12,7 @@ from training.evaluation.plan import CONDITIONS, QUERIES, STRESS_PHOTOGRAPHS, Co
 from training.evaluation.report.content import MeasuredModel
 
 #: P5, the reliability of the uncertainty, comes with P0, P2 and P4.
-PROTOCOLS = ("p0", "p1", "p2", "p3", "p4")
+PROTOCOLS = ("p0", "p1", "p2", "p3", "p4", "p6")
 
 #: Photographs of P0: every response with every test scene.
 ALL_PHOTOGRAPHS = 4020

@@ -14,7 +14,8 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 from crfnet_core.emor import EmorBasis
 from crfnet_core.network import MODELS, ResponseNetwork
 from training.crfnet2017.checkpoints import TrainingState, fold_normalization, start_from
-from training.crfnet2017.export import load_network
+from training.crfnet2017.export import ShippedCRFNet, load_network
+from training.crfnet2017.likelihood import Likelihood
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
 from training.crfnet2017.stages import StageTask
@@ -24,10 +25,13 @@ from training.crfnet2017.windows import WindowStream, draw_windows, render_windo
 from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import write_config
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded
-from training.export.uncertainty import NOT_FITTED
 from training.provenance import read_run
 
 CPU = torch.device("cpu")
+
+#: What an answer may be worth.
+LIKELIHOOD = Likelihood(np.linspace(0.2, 0.9, 5), np.linspace(-1, 1, 5), np.tril(np.full((5, 5), 0.5)), -2.0)
+
 EXACT = Recipe(batch=2, mixed=False, channels_last=False)
 PLAIN = Recipe("sgd", 0.01, batch=2, mixed=False, channels_last=False, clip=0.0)
 REGRESSION = RunConfig("regress", EXACT, steps=2, validate_every=2)
@@ -57,12 +61,12 @@ def run(work_folder):
 
 @pytest.fixture(scope="module")
 def model(work_folder, run):
-    """The model folder of the run, its uncertainty not fitted, with its golden file beside it."""
+    """The model folder of the run, with a likelihood by hand and its golden file beside it."""
     model = work_folder / "crfnet2017"
     model.mkdir()
-    network = rounded(load_network(run))
+    network = ShippedCRFNet(rounded(load_network(run)), LIKELIHOOD).eval()
     export_onnx(network, WINDOWED, model / "model.onnx")
-    write_config(model, WINDOWED, NOT_FITTED, read_run(run))
+    write_config(model, WINDOWED, read_run(run))
     write_golden(network, WINDOWED, work_folder / "golden.npz")
     return model
 
@@ -184,9 +188,19 @@ def test_the_model_folder_says_what_torch_says(model, work_folder):
     assert assert_parity(model, work_folder / "golden.npz") < PARITY
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
     found = ResponseNetwork.load(model).predict(np.random.default_rng(0).random((3, 227, 227, 3), np.float32))
-    assert found.weights.shape == (3, 11)
-    assert found.weights.std() > 0
-    assert np.ptp(found.expected_errors) == 0
+    assert found.pooled is None
+    assert np.stack([evidence.location for evidence in found.windows]).std(axis=0).min() > 0
+    for evidence in found.windows:
+        np.testing.assert_allclose(evidence.factor, LIKELIHOOD.factor, rtol=1e-6)
+        np.testing.assert_allclose(evidence.log_odds, LIKELIHOOD.log_odds)
+
+
+def test_locations_are_the_answers_without_slope_and_offset(model, run):
+    windows = np.random.default_rng(0).random((2, 227, 227, 3), np.float32)
+    with torch.inference_mode():
+        answers = rounded(load_network(run))(torch.from_numpy(windows)).numpy()[:, :5]
+    found = np.stack([evidence.location for evidence in ResponseNetwork.load(model).predict(windows).windows])
+    np.testing.assert_allclose(found, (answers - LIKELIHOOD.intercepts) / LIKELIHOOD.slopes, atol=1e-3)
 
 
 def test_training_goes_on_from_a_model_folder(model, run):
@@ -195,7 +209,7 @@ def test_training_goes_on_from_a_model_folder(model, run):
     network, exported = CRFNet(), load_network(run)
     assert start_from(network, model, windows)
     with torch.inference_mode():
-        expected = rounded(exported)(windows.permute(0, 2, 3, 1))[0]
+        expected = rounded(exported)(windows.permute(0, 2, 3, 1))
         assert torch.allclose(network.eval()(windows), expected, atol=1e-4)
         normal = network.train().body[:2](windows * 2 - 1)
     assert normal.mean(dim=(0, 2, 3)).tolist() == pytest.approx(network.body[1].bias.tolist(), abs=1e-4)
@@ -206,9 +220,12 @@ def test_training_goes_on_from_the_packaged_model():
     network, windows = CRFNet(), torch.rand(2, 3, 227, 227, generator=torch.Generator().manual_seed(0))
     assert start_from(network, folder, windows)
     with torch.inference_mode():
-        weights = network.eval()(windows).numpy()
-    predictions = ResponseNetwork.load(folder).predict(windows.permute(0, 2, 3, 1).contiguous().numpy())
-    np.testing.assert_allclose(weights, predictions.weights, atol=1e-3)
+        weights = network.eval()(windows).double().numpy()[:, :5]
+    found = ResponseNetwork.load(folder).predict(windows.permute(0, 2, 3, 1).contiguous().numpy()).windows
+    locations = np.stack([evidence.location for evidence in found])
+    slopes = (weights[0] - weights[1]) / (locations[0] - locations[1])
+    np.testing.assert_allclose(weights, locations * slopes + (weights[0] - locations[0] * slopes), atol=1e-2)
+    assert (slopes > 0).all()
 
 
 def test_folding_changes_nothing():

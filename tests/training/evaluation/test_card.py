@@ -41,7 +41,9 @@ def test_model_json_and_readme_get_the_figures(measured, monkeypatch):
     assert figures["E_est gamma 2.2"] == gamma.estimation.mean.value
     assert figures["shape gamma 2.2"] == gamma.shape.mean.value
     assert figures["photographs"] == 5
-    assert figures["band coverage"] == report.p5["P0"]["fixed"].band_coverage
+    assert figures["band coverage"] == report.p5["shape"]["P0"]["fixed"].band_coverage
+    assert figures["expected E_est rank correlation"] == report.p5["E_est"]["P0"]["fixed"].rank_correlation
+    assert figures["expected shape mean"] == report.p5["shape"]["P0"]["fixed"].mean_uncertainty
     text = (folder / "README.md").read_text()
     assert text.startswith("# fixed\n")
     assert f"| E_est mean | {figures['E_est mean']:g} |" in text

@@ -10,10 +10,10 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.response import ResponseCurve
-from training.evaluation.baselines import nearest_of, with_best_headroom
-from training.evaluation.measure.figures import PhotographFigures
 from training.data.real.file_origin import Editing, editing, is_scaled
 from training.data.real.photographs import RealPhotograph
+from training.evaluation.baselines import nearest_of, with_best_headroom
+from training.evaluation.measure.figures import PhotographFigures
 from training.evaluation.report.real.content import TrustedWrongly
 from training.evaluation.summaries.emor_weights import fitted_weights, weight_correlations
 from training.evaluation.summaries.trust import trusted_wrongly
@@ -47,11 +47,11 @@ def test_a_photograph_without_1600_pixels_is_scaled():
 
 def test_answers_that_are_far_off_and_called_usable_are_counted():
     figures = [
-        PhotographFigures(3.5, 0.1, 0.5, 3, uncertainty=1.5),
-        PhotographFigures(3.5, 0.1, 0.1, 3, uncertainty=0.5),
-        PhotographFigures(1.0, 0.1, 0.5, 1, uncertainty=1.9),
-        PhotographFigures(1.0, 0.1, 0.1, 1, uncertainty=1.9),
-        PhotographFigures(9.0, 0.9, 0.9, 9, uncertainty=2.1),
+        PhotographFigures(3.5, 0.1, 0.5, 3, verdict="usable"),
+        PhotographFigures(3.5, 0.1, 0.1, 3, verdict="good"),
+        PhotographFigures(1.0, 0.1, 0.5, 1, verdict="usable"),
+        PhotographFigures(1.0, 0.1, 0.1, 1, verdict="usable"),
+        PhotographFigures(9.0, 0.9, 0.9, 9, verdict="do not trust"),
     ]
     assert trusted_wrongly(figures) == TrustedWrongly(photographs=4, estimation=2, shape=2, either=3)
 

@@ -1,19 +1,33 @@
+from pathlib import Path
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from crfnet_core.network import Verdict
-from training.evaluation.measure.unusual import Accepted, accepted_by_kind, accepted_overall, unusual_photographs
+pytest.importorskip("matplotlib", reason="training needs the train extra")
+
+from crfnet_core.posterior import Verdict
+from training.evaluation.measure.unusual import (
+    accepted_by_kind,
+    accepted_overall,
+    measure_unusual,
+    unusual_photographs,
+    unusual_report,
+)
+from training.evaluation.measure.verdict_files import VerdictFile
+from training.evaluation.report.real.content import BodySummary, RealReport, TrustedWrongly
+from training.evaluation.report.unusual import Accepted, unusual_section
 from training.synthesis.unusual import UnusualKind
 
 
 class File:
     """A scene file that counts how often it is read."""
 
-    def __init__(self, scene):
-        self.scene, self.read_count = scene, 0
+    def __init__(self, scene, name="made"):
+        self.scene, self.name, self.read_count = scene, name, 0
 
     def read(self):
         self.read_count += 1
@@ -44,3 +58,51 @@ def test_good_and_usable_are_accepted():
     assert by_kind[log].share == pytest.approx(2 / 3)
     assert accepted_overall(by_kind) == Accepted(4, 2)
     assert accepted_overall({}).share == 0
+
+
+def test_p6_asks_once_with_the_prior_of_cameras_and_without_metadata(scene, fixed_model, tmp_path, monkeypatch):
+    asked = []
+
+    def estimate(photo, *, network, **options):
+        asked.append(options)
+        return SimpleNamespace(verdict=Verdict.GOOD if "solarised" in str(photo.path) else Verdict.DO_NOT_TRUST)
+
+    monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
+    kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.PALETTE), [File(scene, "a"), File(scene, "b")]
+    file = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
+    measure_unusual(scenes, {"m": fixed_model}, {"m": file}, kinds=kinds)
+    assert asked == [{"use_metadata": False}] * 4
+    again = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
+    assert again.verdicts == file.verdicts
+    assert list(again.verdicts) == ["a, solarised or inverted", "a, palette", "b, solarised or inverted", "b, palette"]
+    measure_unusual(scenes, {"m": fixed_model}, {"m": again}, kinds=kinds)
+    assert len(asked) == 4
+    assert unusual_report(scenes, again, kinds).overall.photographs == 4
+    assert VerdictFile.opened(tmp_path / "p6.json", {"seed": 2}).verdicts == {}
+
+
+def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
+    kind = UnusualKind.AGX
+    file = VerdictFile(
+        Path("p6.json"), {}, {"a, rendering, AgX": Verdict.GOOD, "b, rendering, AgX": Verdict.DO_NOT_TRUST}
+    )
+    report = {"m": unusual_report([File(scene, "a"), File(scene, "b")], file, (kind,))}
+    summary = BodySummary(3, 8, {}, ())
+    trusted = {name: TrustedWrongly(count, 0, 0, 0) for name, count in (("m", 8), ("m, metadata ignored", 6))}
+    empty = ("kinds", "origins", "origins_of_everything", "weights", "weights_of_everything", "pooled")
+    parts = {name: {} for name in empty}
+    real = RealReport(
+        trusted=summary,
+        everything=None,
+        trusted_wrongly=trusted,
+        trusted_wrongly_of_everything=trusted,
+        bodies=(),
+        photographs=(),
+        **parts,
+    )
+    text = "\n".join(unusual_section(report, {"both": real}))
+    assert "| rendering, AgX | 50 % (1 of 2) |" in text
+    assert "| **all kinds** | 50 % (1 of 2) |" in text
+    assert "| m | 0 % (0 of 8) | 0 % (0 of 8) |" in text
+    assert "| m, metadata ignored | 25 % (2 of 8) | 25 % (2 of 8) |" in text
+    assert "refused" not in "\n".join(unusual_section(report, None))

@@ -12,7 +12,15 @@ from training.network.features import (
     LEVEL_FEATURES,
     Features,
 )
-from training.network.model import KindLayer, NetworkConfig, PhotographNet, ShippedNetwork
+from training.network.model import (
+    LARGEST_RAW,
+    WEIGHT_UNITS,
+    Head,
+    KindLayer,
+    NetworkConfig,
+    PhotographNet,
+    ShippedNetwork,
+)
 
 CONFIG = NetworkConfig(width=32)
 
@@ -71,8 +79,10 @@ def test_windows_that_are_not_present_change_nothing(network, statistics):
     with torch.inference_mode():
         found = network(statistics[None], present)
         alone = network(statistics[None, :2], present[:, :2])
-    np.testing.assert_allclose(found[2], alone[2], atol=1e-5)
-    np.testing.assert_allclose(found[0][0, :2], alone[0][0], atol=1e-5)
+    for part, own in zip(found[1], alone[1], strict=True):
+        np.testing.assert_allclose(part, own, atol=1e-5)
+    for part, own in zip(found[0], alone[0], strict=True):
+        np.testing.assert_allclose(part[0, :2], own[0], atol=1e-5)
 
 
 def test_the_order_of_windows_and_of_channels_does_not_matter(network, statistics):
@@ -80,10 +90,11 @@ def test_the_order_of_windows_and_of_channels_does_not_matter(network, statistic
     with torch.inference_mode():
         expected = shipped(statistics)
         turned = shipped(statistics[[2, 0, 1]])
-    np.testing.assert_allclose(turned[2], expected[2], atol=1e-5)
-    np.testing.assert_allclose(turned[0], expected[0][[2, 0, 1]], atol=1e-5)
-    assert expected[2].shape == (1, 11)
-    assert expected[3].shape == (1,)
+    for windows, turned_windows in zip(expected[:3], turned[:3], strict=True):
+        np.testing.assert_allclose(turned_windows, windows[[2, 0, 1]], atol=1e-5)
+    for pooled, turned_pooled in zip(expected[3:], turned[3:], strict=True):
+        np.testing.assert_allclose(turned_pooled, pooled, atol=1e-5)
+    assert [tuple(part.shape) for part in expected] == [(3, 5), (3, 5, 5), (3, 3), (1, 5), (1, 5, 5), (1, 3)]
     levels = Features()(statistics)[0]
     assert not torch.allclose(levels[:, 0], levels[:, 1])
 
@@ -91,8 +102,20 @@ def test_the_order_of_windows_and_of_channels_does_not_matter(network, statistic
 def test_pooling_weighs_windows_by_their_score(network, statistics):
     present = torch.ones(1, 3, dtype=torch.bool)
     with torch.inference_mode():
-        before = network(statistics[None], present)[2]
+        before = network(statistics[None], present)[1][0]
         network.score.weight.mul_(200)
-        after = network(statistics[None], present)[2]
+        after = network(statistics[None], present)[1][0]
         network.score.weight.div_(200)
     assert (before - after).abs().max() > 1e-4
+
+
+def test_factors_are_triangular_with_a_bounded_positive_diagonal():
+    torch.manual_seed(2)
+    head = Head(8, CONFIG).eval()
+    with torch.inference_mode():
+        _, factors, _ = head(1000 * torch.randn(50, 8))
+    in_units = factors * torch.tensor(WEIGHT_UNITS)[:, None]
+    assert not torch.triu(factors, 1).any()
+    diagonal = in_units.diagonal(dim1=1, dim2=2).log()
+    assert diagonal.abs().max() == pytest.approx(LARGEST_RAW, rel=1e-4)
+    assert in_units.abs().max() <= np.exp(LARGEST_RAW) * 1.001

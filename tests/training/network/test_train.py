@@ -6,13 +6,11 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.statistics import LENGTH, unpack
 from crfnet_core.statistics.gradients import LEVELS
 from training.network import train as training_run
-from training.network.loss import CurveLoss
 from training.network.model import NetworkConfig
-from training.network.shards import TARGET_STRIDE, CurveSet, read_shards
+from training.network.shards import CurveSet, read_shards
 from training.network.train import TrainingConfig, train
 from training.synthesis.photographs import FOLDS
 
@@ -24,7 +22,7 @@ RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3)
 def shards(tmp_path_factory):
     """Photographs whose histograms shift in proportion to the first EMoR weight."""
     folder = tmp_path_factory.mktemp("shards")
-    rng, basis = np.random.default_rng(0), EmorBasis.load()
+    rng = np.random.default_rng(0)
     for split, number in (("train", 0), ("train", 1), ("validation", 0)):
         weights = np.zeros((256, 11))
         weights[:, 0] = rng.normal(0, 2, 256)
@@ -33,10 +31,10 @@ def shards(tmp_path_factory):
         parts["channel_equations"][:] = 0  # gray: random numbers would be no normal equations
         parts["histogram"][:] = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
         assert (statistics[0, 0, : 3 * LEVELS] == parts["histogram"][0, 0].ravel()).all()
-        curves = basis.reconstruct(weights)[:, ::TARGET_STRIDE].astype(np.float32)
         sets = (np.arange(256) % 3).astype(np.int8)
         path, folds = folder / f"{split}_{number:04d}.npz", (np.arange(256) % FOLDS).astype(np.int8)
-        np.savez(path, statistics=statistics, curves=curves, curve_sets=sets, folds=folds)
+        rows = {"statistics": statistics, "weights": weights.astype(np.float32)}
+        np.savez(path, **rows, curve_sets=sets, folds=folds)
     return folder
 
 
@@ -73,16 +71,6 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(shards, tmp_path, monkey
     assert all(torch.equal(first[name], second[name]) for name in first)
 
 
-def test_the_loss_is_the_estimation_error():
-    weights = torch.zeros(1, 11)
-    moved = weights.clone()
-    moved[0, 0] = 1.0
-    curve = torch.from_numpy(EmorBasis.load().reconstruct(moved.numpy())[:, ::TARGET_STRIDE]).float()
-    loss = CurveLoss()
-    assert float(loss.errors(moved, curve)) == pytest.approx(0, abs=2e-3)
-    assert float(loss.errors(weights, curve)) == pytest.approx(1, abs=0.02)
-
-
 def test_held_out_curves_can_be_left_out(shards, tmp_path):
     train(shards, tmp_path / "p2", replace(RECIPE, epochs=1, without_held_out=True), SIZES)
     settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]
@@ -101,3 +89,40 @@ def test_a_fold_of_scenes_can_be_left_out_and_validated_on(shards, tmp_path):
 def test_absent_shards_are_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="no shards of the split train"):
         read_shards(tmp_path, "train")
+
+
+def test_a_run_starts_from_the_weights_of_another(shards, tmp_path):
+    first = train(shards, tmp_path / "first", replace(RECIPE, epochs=1), SIZES)
+    rested = replace(RECIPE, epochs=1, learning_rate=1e-12)
+    second = train(shards, tmp_path / "second", rested, SIZES, init=first)
+    before, after = (dict(torch.load(run, weights_only=True)["net"]) for run in (first, second))
+    for name in ("photograph.location.weight", "score.weight"):
+        torch.testing.assert_close(after[name], before[name])
+    start = json.loads((tmp_path / "second" / "run.json").read_text())["start"]
+    assert start.startswith("last.pt, SHA-256 ")
+
+
+def test_a_start_may_lack_layers(shards, tmp_path):
+    """As of a network with other heads: what it has is taken."""
+    first = train(shards, tmp_path / "first", replace(RECIPE, epochs=1), SIZES)
+    parts = torch.load(first, weights_only=True)["net"]
+    kept = {name: part for name, part in parts.items() if name.startswith("embedding.")}
+    torch.save({"net": kept}, tmp_path / "part.pt")
+    train(shards, tmp_path / "second", replace(RECIPE, epochs=1), SIZES, init=tmp_path / "part.pt")
+    assert len(read_log(tmp_path / "second")) == 1
+
+
+def test_training_in_single_precision_learns_the_same(shards, tmp_path):
+    recipe = replace(RECIPE, epochs=2)
+    train(shards, tmp_path / "mixed", recipe, SIZES)
+    train(shards, tmp_path / "float32", replace(recipe, mixed=False), SIZES)
+    mixed, single = (read_log(tmp_path / run)[-1] for run in ("mixed", "float32"))
+    assert mixed != single
+    assert single == pytest.approx(mixed, rel=0.3)
+
+
+def test_the_families_are_those_that_the_network_states(shards):
+    photographs = read_shards(shards, "train")
+    assert not photographs.families.any()
+    every = replace(photographs.only(torch.arange(512) < 7), curve_sets=torch.arange(7, dtype=torch.int8))
+    assert every.families.tolist() == [0, 0, 0, 0, 1, 2, 3]

@@ -5,5 +5,7 @@
 - `jobs`: a part of the simulated photographs, taken and measured by one process.
 - `simulated`: all simulated photographs, on several processes.
 - `real`: all real photographs.
+- `pooled`: several photographs of one body, given together.
 - `unusual`: pictures that must be refused, and how many are accepted.
+- `verdict_files`: these verdicts on disk.
 """

@@ -24,6 +24,7 @@ MEASURING_CODE = (
     "training/data/scenes.py",
     "training/data/studio_lights.py",
     "training/synthesis/camera.py",
+    "training/synthesis/unusual/*.py",
     "training/evaluation/baselines.py",
     "training/evaluation/plan.py",
     "training/evaluation/measure/*.py",

@@ -30,6 +30,7 @@ from training.evaluation.baselines import (
 )
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import all_baselines, model_figures
+from training.evaluation.report.real.content import ways_of
 from training.synthesis.camera import code_counts
 
 
@@ -68,8 +69,7 @@ def measure_real(
     truths = {photograph.measured: photograph.truth() for photograph in photographs}
     networks = {name: ResponseNetwork.load(folder) for name, folder in models.items()}
     for photograph in tqdm(wanted, desc=title, unit="photograph"):
-        photo, true = read_photo(photograph.photograph), truths[photograph.measured]
-        photo = replace(photo, metadata=photograph.metadata or photo.metadata)
+        photo, true = read_real_photo(photograph), truths[photograph.measured]
         counts = code_counts(photo)
         for name, file in files.items():
             if photograph.name in file.rows:
@@ -79,26 +79,26 @@ def measure_real(
                 curves = constants | _of_real_cameras(others, true, known)
                 file.rows[photograph.name] = all_baselines(true, counts, curves)
             else:
-                bank = _bank_without(photograph, data)
-                estimates = _estimates(photo, networks[name], bank)
+                answers = estimates([photo], networks[name], bank_without_fold(photograph, data))
                 file.rows[photograph.name] = {
-                    way: model_figures(true, estimate, counts, is_drawn=True)
-                    for way, estimate in zip(ways_of(name), estimates, strict=True)
+                    way: model_figures(true, answer, counts, is_drawn=True)
+                    for way, answer in zip(ways_of(name), answers, strict=True)
                 }
             file.save()
 
 
-def ways_of(model: str) -> list[str]:
-    """Return the names of the ways in which P4 asks a model: with the file's metadata, and without it."""
-    return [model, f"{model}, metadata ignored"]
+def read_real_photo(photograph: RealPhotograph) -> Photo:
+    """Return the photograph as the product reads it, with the metadata of its original where the file lost it."""
+    photo = read_photo(photograph.photograph)
+    return replace(photo, metadata=photograph.metadata or photo.metadata)
 
 
-def _estimates(photo: Photo, network: ResponseNetwork, bank: ResponseBank) -> list[ResponseEstimate]:
-    """Return the estimates of one photograph, in the order of `ways_of`."""
-    return [estimate_response(photo, network=network, bank=bank, use_metadata=used) for used in (True, False)]
+def estimates(photos: Sequence[Photo], network: ResponseNetwork, bank: ResponseBank) -> list[ResponseEstimate]:
+    """Return the estimates from photographs of one body, in the order of `ways_of`."""
+    return [estimate_response(photos, network=network, bank=bank, use_metadata=used) for used in (True, False)]
 
 
-def _bank_without(photograph: RealPhotograph, data: Path) -> ResponseBank:
+def bank_without_fold(photograph: RealPhotograph, data: Path) -> ResponseBank:
     """Return the bank without the bodies of the photograph's fold, made once for each fold."""
     return _bank_of_fold(photograph.photograph.parents[1], photograph.fold, data)
 

@@ -1,15 +1,20 @@
-"""Pictures that must be refused: every kind of every test scene, and how often a model accepts them."""
+"""P6: pictures that must be refused, every kind of every test scene, and how often a model accepts them."""
 
 from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from pathlib import Path
 
 import numpy as np
+from tqdm import tqdm
 
+from crfnet_core.estimate import estimate_response
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Verdict
+from training.evaluation.measure.verdict_files import VerdictFile
+from training.evaluation.report.unusual import Accepted, UnusualReport
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
 
@@ -17,25 +22,50 @@ from training.synthesis.unusual import UnusualKind, unusual_photo
 SEED = 2017
 
 
-@dataclass(frozen=True)
-class Accepted:
-    """How many pictures a model calls "good" or "usable", of how many.
+def measure_unusual(
+    scenes: Sequence[SceneFile],
+    models: dict[str, Path],
+    files: dict[str, VerdictFile],
+    *,
+    kinds: Sequence[UnusualKind] = tuple(UnusualKind),
+) -> None:
+    """Add to the verdict files what they lack, with the prior "camera" and without metadata.
 
     Parameters
     ----------
-    photographs : int
-        All pictures.
-    accepted : int
-        Those with the verdict "good" or "usable".
+    scenes : sequence of SceneFile
+        The scenes of the test set.
+    models : dict
+        Name -> folder.
+    files : dict
+        Name of a model -> its verdicts.
+    kinds : sequence of UnusualKind
+        The kinds.
     """
+    labels = [label(file, kind) for file in scenes for kind in kinds]
+    if all(one in file.verdicts for one in labels for file in files.values()):
+        return
+    networks = {name: ResponseNetwork.load(folder) for name, folder in models.items()}
+    pictures = tqdm(unusual_photographs(scenes, kinds), desc="P6", total=len(labels), unit="photograph")
+    for one, (_, photo) in zip(labels, pictures, strict=True):
+        for name, file in files.items():
+            if one not in file.verdicts:
+                estimate = estimate_response(photo, network=networks[name], use_metadata=False)
+                file.verdicts[one] = estimate.verdict
+                file.save()
 
-    photographs: int
-    accepted: int
 
-    @property
-    def share(self) -> float:
-        """The part that is accepted, in [0, 1]; 0 if there are no pictures."""
-        return self.accepted / self.photographs if self.photographs else 0.0
+def label(file: SceneFile, kind: UnusualKind) -> str:
+    """Return the label of a picture."""
+    return f"{file.name}, {kind}"
+
+
+def unusual_report(
+    scenes: Sequence[SceneFile], file: VerdictFile, kinds: Sequence[UnusualKind] = tuple(UnusualKind)
+) -> UnusualReport:
+    """Return how many pictures a model accepts, from its complete verdicts."""
+    by_kind = accepted_by_kind((kind, file.verdicts[label(scene, kind)]) for kind in kinds for scene in scenes)
+    return UnusualReport({kind.value: counts for kind, counts in by_kind.items()}, accepted_overall(by_kind))
 
 
 def unusual_photographs(

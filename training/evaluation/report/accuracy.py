@@ -15,8 +15,8 @@ def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
     """Return the figures of one model for model.json: protocol -> name of a figure -> value.
 
     The protocols are P0, P2 and, for each set of real photographs, "P4 real", "P4 real_bodies" and "P4 both", as far as
-    they were measured. P4 counts only the photographs whose response is trusted. The figures have no intervals; those
-    of a baseline end in its name, and are means.
+    they were measured, and P6. P4 counts only the photographs whose response is trusted. The figures have no intervals;
+    those of a baseline end in its name, and are means.
     """
     figures = {}
     for name, clean in (("P0", report.p0), ("P2", report.p2)):
@@ -26,12 +26,16 @@ def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
     for name, real in (report.p4 or {}).items():
         counts = {"photographs": real.trusted.photographs, "bodies": real.trusted.bodies}
         figures[f"P4 {name}"] = counts | _figures(real.trusted.estimators, model)
-    for name, models in (report.p5 or {}).items():
-        figures[name] |= {
-            "uncertainty mean": models[model].mean_uncertainty,
-            "uncertainty rank correlation": models[model].rank_correlation,
-            "band coverage": models[model].band_coverage,
-        }
+    for error, protocols in (report.p5 or {}).items():
+        for name, models in protocols.items():
+            figures[name] |= {
+                f"expected {error} mean": models[model].mean_uncertainty,
+                f"expected {error} rank correlation": models[model].rank_correlation,
+                "band coverage": models[model].band_coverage,
+            }
+    if report.p6:
+        overall = report.p6[model].overall
+        figures["P6"] = {"photographs": overall.photographs, "accepted": overall.share}
     return figures
 
 

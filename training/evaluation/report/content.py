@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from training.evaluation.report.errors import Comparison, EstimatorDifference, EstimatorSummary, Interval, PerError
 from training.evaluation.report.real.content import RealReport
+from training.evaluation.report.unusual import UnusualReport
 
 
 @dataclass(frozen=True)
@@ -115,7 +116,7 @@ class StressReport:
 
 @dataclass(frozen=True)
 class ReliabilityBin:
-    """Photographs of similar uncertainty: mean uncertainty, mean E_est, and how many they are."""
+    """Photographs of similar uncertainty: mean uncertainty, mean error, and how many they are."""
 
     uncertainty: float
     error: float
@@ -124,14 +125,14 @@ class ReliabilityBin:
 
 @dataclass(frozen=True)
 class Reliability:
-    """How well the uncertainties of one model foretell its errors (P5).
+    """How well the uncertainties of one model foretell one of its errors, E_est or the shape error in stops (P5).
 
     Parameters
     ----------
     photographs : int
         How many there are.
     mean_uncertainty, mean_error : float
-        Of the E_est expected and of the E_est found.
+        Of the error expected and of the error found.
     rank_correlation : float
         Spearman's, of uncertainty and error.
     band_coverage : float
@@ -206,7 +207,10 @@ class Report:
     p4 : dict, optional
         Name of a set of real photographs -> its report.
     p5 : dict, optional
-        Name of a protocol or of a set of real photographs -> name of a model -> reliability of its uncertainty.
+        "E_est" or "shape" -> name of a protocol or of a set of real photographs -> name of a model, or of a way of
+        asking it -> reliability of what it expected this error to be.
+    p6 : dict, optional
+        Name of a model -> how many pictures it accepts that no response explains.
     """
 
     settings: ReportSettings
@@ -217,4 +221,5 @@ class Report:
     p2: CleanReport | None = None
     p3: StressReport | None = None
     p4: dict[str, RealReport] | None = None
-    p5: dict[str, dict[str, Reliability]] | None = None
+    p5: dict[str, dict[str, dict[str, Reliability]]] | None = None
+    p6: dict[str, UnusualReport] | None = None

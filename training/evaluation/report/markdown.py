@@ -28,6 +28,7 @@ from training.evaluation.report.markdown_tables import (
     summary_cells,
 )
 from training.evaluation.report.real.markdown import real_section
+from training.evaluation.report.unusual import unusual_section
 
 INTRODUCTION = """# How accurate the models are
 
@@ -50,9 +51,10 @@ TITLES = {
 }
 
 RELIABILITY_TEXT = """\
-The band should cover 0.9 of the true response. "Rejection area" is the mean error of what is kept, averaged over all
-fractions rejected, the most uncertain first; "oracle" rejects the largest errors first; "gain" is how much of the way
-from random rejection to the oracle it goes (1 is best, 0 says nothing).
+Every estimate says how large it expects E_est and the shape error in stops to be. The band is one of the response; it
+should cover 0.9 of the true one, and stands in the rows of both errors. "Rejection area" is the mean error of what is
+kept, averaged over all fractions rejected, the most uncertain first; "oracle" rejects the largest errors first; "gain"
+is how much of the way from random rejection to the oracle it goes (1 is best, 0 says nothing).
 """
 
 
@@ -72,6 +74,8 @@ def report_text(report: Report) -> str:
         parts += real_section(report.p4, models)
     if report.p5:
         parts += _reliability(report.p5)
+    if report.p6:
+        parts += unusual_section(report.p6, report.p4)
     return "\n".join(parts).rstrip("\n") + "\n"
 
 
@@ -147,23 +151,28 @@ def _other_kind(report: dict[str, OtherKindReport]) -> list[str]:
     return ["## P1: photographs of another kind than in training\n", "\n".join(lines) + "\n", text, few]
 
 
-def _reliability(report: dict[str, dict[str, Reliability]]) -> list[str]:
+def _reliability(report: dict[str, dict[str, dict[str, Reliability]]]) -> list[str]:
     """Return the section of P5."""
-    measured = [(protocol, model, row) for protocol, models in report.items() for model, row in models.items()]
-    counts = [[protocol, model, *_reliability_cells(row)] for protocol, model, row in measured]
+    measured = [
+        (error, protocol, model, row)
+        for error, protocols in report.items()
+        for protocol, models in protocols.items()
+        for model, row in models.items()
+    ]
+    counts = [[*names, *_reliability_cells(row)] for *names, row in measured]
     header = ["mean uncertainty", "mean error", "rank correlation", "band coverage"]
     header += ["rejection area", "rejection area, oracle", "rejection area, random", "gain"]
     most = max(len(row.bins) for *_, row in measured)
     bins = []
-    for protocol, model, row in measured:
+    for *names, row in measured:
         pairs = [f"{part.uncertainty:.2f} / {part.error:.2f}" for part in row.bins]
-        bins.append([protocol, model, *pairs, *[""] * (most - len(pairs))])
+        bins.append([*names, *pairs, *[""] * (most - len(pairs))])
     return [
         "## P5: reliability of the uncertainty\n",
         RELIABILITY_TEXT,
-        rows_of(["", "model", "photographs", *header], counts),
-        "Mean uncertainty / mean E_est of groups of equal size, from the least to the most uncertain:\n",
-        rows_of(["", "model", *(str(k + 1) for k in range(most))], bins),
+        rows_of(["error", "", "model", "photographs", *header], counts),
+        "Mean uncertainty / mean error of groups of equal size, from the least to the most uncertain:\n",
+        rows_of(["error", "", "model", *(str(k + 1) for k in range(most))], bins),
     ]
 
 

@@ -120,9 +120,9 @@ def _paper_ratio(condition: str, error: str) -> float | None:
 
 
 def draw_reliability(
-    path: Path, columns: dict[str, dict[str, ErrorColumns]], report: dict[str, dict[str, Reliability]]
+    path: Path, columns: dict[str, dict[str, ErrorColumns]], report: dict[str, dict[str, Reliability]], *, error: str
 ) -> None:
-    """Draw mean error against uncertainty, and the error of what is kept, for every protocol.
+    """Draw a mean error against its uncertainty, and the error of what is kept, for every protocol.
 
     Parameters
     ----------
@@ -132,7 +132,10 @@ def draw_reliability(
         Protocol -> model -> its figures.
     report : dict
         Protocol -> model -> reliability.
+    error : str
+        "E_est" or "shape".
     """
+    unit = LABELS[error]
     figure = Figure(figsize=(4.8 * len(columns), 8.4), layout="constrained")
     grid = figure.subplots(2, len(columns), squeeze=False)
     for (above, below), (protocol, models) in zip(grid.T, columns.items(), strict=True):
@@ -142,16 +145,17 @@ def draw_reliability(
         for number, (model, part) in enumerate(models.items()):
             row = rows[model]
             _draw_bins(above, row, f"{model}, rank correlation {row.rank_correlation:.2f}", color(number))
-            _draw_rejection(below, part, f"{model}, gain {row.gain:.2f}", color(number))
+            label = f"{model}, gain {row.gain:.2f}"
+            _draw_rejection(below, part.errors[error], part.expected(error), label, color(number))
         count = next(iter(rows.values())).photographs
-        above.set(title=f"{protocol}, {count} photographs", xlabel="mean uncertainty", ylabel="mean E_est")
+        above.set(title=f"{protocol}, {count} photographs", xlabel="mean uncertainty", ylabel=f"mean {unit}")
         above.set(xlim=(0, upper), ylim=(0, upper))
-        below.set(xlabel="fraction rejected, most uncertain first", ylabel="mean E_est of the others")
+        below.set(xlabel="fraction rejected, most uncertain first", ylabel=f"mean {unit} of the others")
         below.set(xlim=(0, 1), ylim=(0, None))
         for axes in (above, below):
             axes.grid(alpha=0.3)
             axes.legend(fontsize=8)
-    figure.suptitle("P5: does the uncertainty foretell the error?")
+    figure.suptitle(f"P5: does the uncertainty foretell the error? {unit}")
     save(figure, path)
 
 
@@ -161,10 +165,9 @@ def _draw_bins(axes: Axes, row: Reliability, label: str, color: str) -> None:
     axes.plot(points[:, 0], points[:, 1], "o-", color=color, markersize=4, label=label)
 
 
-def _draw_rejection(axes: Axes, columns: ErrorColumns, label: str, color: str) -> None:
+def _draw_rejection(axes: Axes, errors: Float64Array, uncertainties: Float64Array, label: str, color: str) -> None:
     """Draw the mean error of what is kept, with that of the oracle dotted."""
-    errors = columns.errors.estimation
     fractions = np.arange(len(errors)) / len(errors)
-    axes.plot(fractions, rejection_curve(errors, columns.uncertainty), color=color, label=label)
+    axes.plot(fractions, rejection_curve(errors, uncertainties), color=color, label=label)
     axes.plot(fractions, rejection_curve(errors, errors), color=color, linestyle=":", label="oracle")
     axes.axhline(errors.mean(), color=color, linewidth=0.8, linestyle="--", label="random")

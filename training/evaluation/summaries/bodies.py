@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass
 
@@ -12,7 +13,14 @@ from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.case_files import CaseFile
 from training.evaluation.measure.figures import PhotographFigures
 from training.evaluation.report.errors import Interval, PerError
-from training.evaluation.report.real.content import BodySummary, RealFigures, RealReport, RealRow
+from training.evaluation.report.real.content import (
+    POOLED,
+    BodySummary,
+    RealFigures,
+    RealReport,
+    RealRow,
+    pooled_name,
+)
 from training.evaluation.summaries.bootstrap import Resampling
 from training.evaluation.summaries.emor_weights import weight_correlations
 from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
@@ -49,7 +57,8 @@ class RealTable:
 
     @classmethod
     def joined(cls, tables: Sequence[RealTable]) -> RealTable:
-        """Return the photographs of several tables, one after the other."""
+        """Return the photographs of several tables, one after the other; those without any count for nothing."""
+        tables = [table for table in tables if table.photographs] or list(tables[:1])
         figures = {name: [row for table in tables for row in table.figures[name]] for name in tables[0].figures}
         return cls(tuple(photograph for table in tables for photograph in table.photographs), figures)
 
@@ -75,13 +84,32 @@ class RealTable:
         keys = [photograph.body_key for photograph in self.photographs]
         return [self.subset(k for k, key in enumerate(keys) if key == body) for body in dict.fromkeys(keys)]
 
+    def with_pooled(self, files: dict[str, CaseFile]) -> RealTable:
+        """Return the photographs that were given together with others, and the figures of these answers beside."""
+        names = {name for file in files.values() for name in file.rows}
+        table = self.subset(k for k, photograph in enumerate(self.photographs) if photograph.name in names)
+        pooled = RealTable.of(table.photographs, files).figures
+        return RealTable(table.photographs, table.figures | {pooled_name(way): rows for way, rows in pooled.items()})
+
     def columns(self, name: str) -> ErrorColumns:
         """Return the figures of one estimator as columns."""
         return ErrorColumns.of(self.figures[name])
 
 
-def real_report(table: RealTable, models: Sequence[str], *, seed: int) -> RealReport:
-    """Return the report of P4 on a set of real photographs; `seed` is that of the bootstrap."""
+def real_report(table: RealTable, pooled: RealTable, models: Sequence[str], *, seed: int) -> RealReport:
+    """Return the report of P4 on a set of real photographs.
+
+    Parameters
+    ----------
+    table : RealTable
+        All photographs.
+    pooled : RealTable
+        Those that were given together: see `RealTable.with_pooled`.
+    models : sequence of str
+        The ways in which the models were asked.
+    seed : int
+        Of the bootstrap.
+    """
     trusted = table.trusted
     has_others = len(trusted.photographs) < len(table.photographs)
     singles = [table.subset([k]) for k in range(len(table.photographs))]
@@ -101,7 +129,19 @@ def real_report(table: RealTable, models: Sequence[str], *, seed: int) -> RealRe
         trusted_wrongly_of_everything={name: trusted_wrongly(table.figures[name]) for name in models},
         bodies=tuple(_row(part.photographs[0].body, part, models) for part in trusted.bodies),
         photographs=tuple(_row(part.photographs[0].name, part, models) for part in singles),
+        pooled=_pooled(pooled, models, seed),
     )
+
+
+def _pooled(table: RealTable, models: Sequence[str], seed: int) -> dict[str, BodySummary]:
+    """Return the means over the bodies of which at least so many photographs were given together."""
+    counts = Counter(photograph.body_key for photograph in table.photographs)
+    groups = {
+        name: table.subset(k for k, photograph in enumerate(table.photographs) if counts[photograph.body_key] >= least)
+        for name, least in POOLED.items()
+    }
+    names = [pooled_name(name) for name in models]
+    return {name: _summary(group, [*names, *models], seed) for name, group in groups.items() if group.photographs}
 
 
 def _weights(table: RealTable, models: Sequence[str], seed: int) -> dict[str, tuple[Interval, ...]]:

@@ -40,13 +40,15 @@ class ErrorColumns:
         In the units of the report: E_lin is x 1e-2.
     partial : ndarray, float64, shape (N,)
         E_est over the lower part of the irradiance.
-    uncertainty, coverage : ndarray, float64, shape (N,)
-        Expected E_est, and fraction of the true response inside the band; NaN for a baseline.
+    uncertainty, shape_uncertainty, coverage : ndarray, float64, shape (N,)
+        Expected E_est, expected shape error in stops, and fraction of the true response inside the band; NaN for a
+        baseline.
     """
 
     errors: PerError[Float64Array]
     partial: Float64Array
     uncertainty: Float64Array
+    shape_uncertainty: Float64Array
     coverage: Float64Array
 
     @classmethod
@@ -56,13 +58,19 @@ class ErrorColumns:
             PerError.combined(lambda *values: np.array(values), *(row.errors for row in rows)),
             partial=np.array([row.partial for row in rows]),
             uncertainty=np.array([row.uncertainty for row in rows], dtype=np.float64),
+            shape_uncertainty=np.array([row.shape_uncertainty for row in rows], dtype=np.float64),
             coverage=np.array([row.coverage for row in rows], dtype=np.float64),
         )
 
     def subset(self, chosen: BoolArray | IndexArray) -> ErrorColumns:
         """Return the columns of some photographs, from a mask (N,) or indices."""
         errors = PerError.combined(lambda values: values[chosen], self.errors)
-        return ErrorColumns(errors, self.partial[chosen], self.uncertainty[chosen], self.coverage[chosen])
+        stated = (self.uncertainty, self.shape_uncertainty, self.coverage)
+        return ErrorColumns(errors, self.partial[chosen], *(values[chosen] for values in stated))
+
+    def expected(self, error: str) -> Float64Array:
+        """Return what a model expected "E_est" or "shape" to be, shape (N,)."""
+        return {"E_est": self.uncertainty, "shape": self.shape_uncertainty}[error]
 
 
 @dataclass(frozen=True, eq=False)

@@ -18,7 +18,7 @@ def reliability(errors: Float64Array, uncertainties: Float64Array, coverage: Flo
     Parameters
     ----------
     errors, uncertainties : ndarray, shape (N,)
-        E_est of every photograph, and what the product expected it to be.
+        One of the errors of every photograph, and what the product expected it to be.
     coverage : ndarray, shape (N,)
         Fraction of the true response inside the 90 % band.
     """

@@ -14,6 +14,20 @@ BOTH = "both"
 FAR_OFF, FAR_OFF_STOPS = 3.0, 0.4
 
 
+#: Bodies that several photographs were given of, by how many of them -> the least number of photographs.
+POOLED = {"4 photographs": 4, "2 to 4 photographs": 2}
+
+
+def ways_of(model: str) -> list[str]:
+    """Return the names of the ways in which P4 asks a model: with the file's metadata, and without it."""
+    return [model, f"{model}, metadata ignored"]
+
+
+def pooled_name(way: str) -> str:
+    """Return the name of the answers that a way of asking gives for all photographs of a body together."""
+    return f"{way}, pooled"
+
+
 @dataclass(frozen=True)
 class BodySummary:
     """Means over bodies, each counted once, of every model and baseline.
@@ -126,6 +140,9 @@ class RealReport:
         A row for each body, of its trusted photographs.
     photographs : tuple of RealRow
         A row for each photograph.
+    pooled : dict
+        How many photographs of a body were given together -> the answers for all of them and for each by itself, over
+        the bodies that have so many; those that need caution count too.
     """
 
     trusted: BodySummary
@@ -139,3 +156,4 @@ class RealReport:
     trusted_wrongly_of_everything: dict[str, TrustedWrongly]
     bodies: tuple[RealRow, ...]
     photographs: tuple[RealRow, ...]
+    pooled: dict[str, BodySummary]

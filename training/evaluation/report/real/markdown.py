@@ -19,7 +19,14 @@ from training.evaluation.report.markdown_tables import (
     rows_of,
     with_interval,
 )
-from training.evaluation.report.real.content import BOTH, BodySummary, RealReport, RealRow
+from training.evaluation.report.real.content import (
+    BOTH,
+    BodySummary,
+    RealReport,
+    RealRow,
+    pooled_name,
+    ways_of,
+)
 from training.evaluation.report.real.photographs import COUNTED, single_photographs
 
 INTRODUCTION = """\
@@ -28,6 +35,8 @@ once; bodies are resampled. Photographs that need caution are shown apart and le
 table says that it counts them. A measured response knows its shape well and its scale, where white is reached, much
 worse: so the shape error says more than E_est. The paper's Fig. 6 has 8 real photographs, E_est {low} to {high}.
 
+- Each model is asked twice: as users ask it, with the metadata of the file as evidence, and with "metadata ignored".
+- The bank of responses that answers are chosen from knows nothing of the bodies of the photograph's fold.
 - "{others}" is what someone estimates who knows cameras and does not look at the photograph: the
   mean response, in log irradiance, of the bodies of the same folder that are not in the same fold (in data/real each
   body is a fold of its own).
@@ -43,20 +52,28 @@ whether its longest side has fewer than {SCALED_BELOW} pixels, which counts as s
 EXIF names the camera, or the list of the folder has none.
 """
 
+POOLED_TEXT = """\
+"Pooled" is the answer when up to 4 photographs of one body are given together, measured on each of them by the response
+of its own exposure stack; below it stand the answers for the same photographs one by one. Stacks of one body may be of
+one scene or of several. Those that need caution count too, since few bodies have 4 photographs.
+"""
+
 #: Set of real photographs -> its title.
 TITLES = {REAL: "data/real: responses of grade A and B", REAL_BODIES: "data/real_bodies", BOTH: "Both folders"}
 
 
 def real_section(sets: dict[str, RealReport], models: Sequence[str]) -> list[str]:
-    """Return the section of P4."""
+    """Return the section of P4; tables of means have each model in both ways of asking, the others as users ask it."""
+    ways = [way for model in models for way in ways_of(model)]
     parts = ["## P4: real photographs\n", _introduction()]
     for name, report in sets.items():
-        parts += _set(TITLES[name], report, models)
+        parts += _set(TITLES[name], report, ways)
     for name, report in sets.items():
         if name != BOTH:
             parts += [f"### By body, data/{name}\n", _by_body(report.bodies, models)]
     last = list(sets.values())[-1]
-    return [*parts, *_origins(last, models), *single_photographs(last, models)]
+    parts += [*_origins(last, ways), *_pooled(last, ways), *single_photographs(last, models)]
+    return parts
 
 
 def _introduction() -> str:
@@ -81,6 +98,19 @@ def _origins(report: RealReport, models: Sequence[str]) -> list[str]:
         groups = _by_group("file", report.origins_of_everything, models)
         parts += ["The same with those that need caution:\n", groups]
     return parts
+
+
+def _pooled(report: RealReport, ways: Sequence[str]) -> list[str]:
+    """Return the tables of several photographs of one body; none if no body has two."""
+    if not report.pooled:
+        return []
+    rows = []
+    for group, summary in report.pooled.items():
+        for name in [name for way in ways for name in (pooled_name(way), way)] + [OTHER_BODIES]:
+            cells = mean_cells(summary.estimators[name])
+            rows.append([group, str(summary.bodies), str(summary.photographs), bold(name, ways), *cells])
+    table = rows_of(["given together", "bodies", "photographs", "", *ERROR_NAMES], rows)
+    return ["### Several photographs of one body\n", POOLED_TEXT, table]
 
 
 def _weights(report: RealReport) -> list[str]:

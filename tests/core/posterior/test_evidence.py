@@ -1,0 +1,68 @@
+import math
+
+import numpy as np
+import pytest
+
+from crfnet_core.posterior import STATED_ODDS, Evidence, Family, independent_share, scene_similarities
+from tests.helpers.posteriors import small_bank
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return small_bank()
+
+
+def test_the_likelihood_of_an_ordinary_response_is_student_s_t(bank):
+    """By hand, one response after the other: the precision is the factor times its transpose."""
+    rng = np.random.default_rng(3)
+    location, factor = rng.normal(0, 1, 5), np.tril(rng.normal(0, 1, (5, 5)))
+    found = Evidence(location, factor, np.array([-1.0, -2.0, -3.0])).log_likelihoods(bank)
+    precision = factor @ factor.T
+    for number, family in enumerate(bank.families):
+        if family in STATED_ODDS:
+            continue
+        offset = bank.weights[number, :5] - location
+        square = sum(offset[i] * precision[i, j] * offset[j] for i in range(5) for j in range(5))
+        assert found[number] == pytest.approx(-5 * math.log(1 + square / 5))
+
+
+def test_the_families_of_stated_odds_have_one_number_each(bank):
+    evidence = Evidence(np.zeros(5), np.eye(5), np.array([-1.0, -2.0, -3.0]))
+    found = evidence.log_likelihoods(bank)
+    assert found[bank.of(Family.LINEAR)].tolist() == [-1, -1]
+    assert found[bank.of(Family.LOG)].tolist() == [-2]
+    assert evidence.unexplained == -3
+
+
+def test_a_response_at_the_location_is_the_most_likely(bank):
+    at = bank.weights[3, :5]
+    found = Evidence(at, 9 * np.eye(5), np.full(3, -50.0)).log_likelihoods(bank)
+    assert found.argmax() == 3
+    assert found[3] == pytest.approx(0)
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_photographs_of_one_scene_count_as_one_and_different_ones_each(count):
+    assert independent_share(np.ones((count, count))) * count == pytest.approx(1)
+    assert independent_share(np.eye(count)) * count == pytest.approx(count)
+
+
+def test_similar_photographs_count_for_something_between():
+    similarities = np.array([[1, 0.5, 0], [0.5, 1, 0], [0, 0, 1]])
+    assert independent_share(similarities) * 3 == pytest.approx(9 / 4)
+
+
+def test_scenes_are_recognised_by_the_order_of_their_brightness():
+    rng = np.random.default_rng(0)
+    first, second = (rng.permutation(256).reshape(16, 16).astype(float) for _ in range(2))
+    found = scene_similarities([first, 2 * first + 1, second, 255 - first])
+    assert found[0, 1] == pytest.approx(1)
+    assert abs(found[0, 2]) < 0.3
+    assert found[0, 3] == 0
+    np.testing.assert_allclose(found, found.T)
+    assert (np.diag(found) == 1).all()
+
+
+def test_flat_scenes_have_no_similarity_but_with_themselves():
+    np.testing.assert_array_equal(scene_similarities([np.ones((16, 16))]), [[1]])
+    np.testing.assert_array_equal(scene_similarities([np.ones((16, 16))] * 2), np.eye(2))

@@ -1,0 +1,165 @@
+import numpy as np
+import pytest
+
+from crfnet_core.metrics import estimation_error, shape_error
+from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
+from crfnet_core.posterior.verdict import GOOD_STOPS, USABLE_STOPS
+from crfnet_core.response import ResponseCurve
+from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for, small_bank
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return small_bank()
+
+
+@pytest.fixture(scope="module")
+def blurred(bank):
+    """A posterior that no response has alone."""
+    return Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3], precision=1.0)])
+
+
+def curves(bank):
+    return [ResponseCurve.from_samples(row) for row in bank.brightness]
+
+
+def test_no_evidence_returns_the_prior(bank):
+    prior = even_prior(unexplained=0.2)
+    posterior = Posterior.of(bank, prior)
+    for family, members in SMALL_BANK.items():
+        np.testing.assert_allclose(posterior.weights[bank.of(family)], 0.2 / len(members))
+    assert posterior.families == pytest.approx(dict(prior.shares) | {Family.COMPACT: 0, Family.EDITED: 0})
+
+
+@pytest.mark.parametrize("number", [1, 3, 6])
+def test_sharp_evidence_at_a_response_returns_it(bank, number):
+    posterior = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[number], precision=300)])
+    true = curves(bank)[number]
+    assert posterior.weights[number] > 0.999
+    assert estimation_error(true, posterior.curve) < 0.1
+    assert shape_error(true, posterior.curve) < 0.01
+    assert posterior.expected_error < 0.05
+    assert posterior.families[bank.families[number]] > 0.999
+    np.testing.assert_allclose(posterior.mean_weights, bank.weights[number], atol=0.02)
+
+
+def test_two_photographs_multiply(bank):
+    first, second = (evidence_for(bank.weights[number], precision=0.7) for number in (2, 5))
+    prior = even_prior()
+    alone, other, both = (Posterior.of(bank, prior, asked).weights for asked in ([first], [second], [first, second]))
+    product = alone * other / Posterior.of(bank, prior).weights
+    np.testing.assert_allclose(both, product / product.sum(), rtol=1e-9)
+    again = Posterior.of(bank, prior, [first, first], independent=0.5)
+    np.testing.assert_allclose(again.weights, alone, rtol=1e-9)
+
+
+def test_the_exponent_of_the_prior_weakens_the_evidence(bank):
+    evidence, prior = evidence_for(bank.weights[4], precision=0.7), even_prior(evidence=0.5)
+    whole, half = (Posterior.of(bank, asked, [evidence]).weights for asked in (even_prior(), prior))
+    start = Posterior.of(bank, prior).weights
+    product = start * (whole / start) ** 0.5
+    np.testing.assert_allclose(half, product / product.sum(), rtol=1e-9)
+    np.testing.assert_allclose(Posterior.of(bank, even_prior(evidence=0), [evidence]).weights, start)
+
+
+def test_a_family_without_a_share_stays_without(bank):
+    prior = Prior("p", {Family.PHONE: 1.0}, 1.0)
+    posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[3], precision=300)])
+    assert posterior.families[Family.PHONE] == pytest.approx(1)
+    assert posterior.unexplained == pytest.approx(0)
+
+
+def test_the_unexplained_compete_with_all_responses_together(bank):
+    """By hand: prior times evidence of the family, against the sum over the bank."""
+    prior, evidence = even_prior(unexplained=0.3), evidence_for(bank.weights[3], log_odds=(-6, -6, -1.5))
+    posterior = Posterior.of(bank, prior, [evidence])
+    explained = sum(
+        0.7 / len(SMALL_BANK) / bank.of(family).sum() * np.exp(likelihood)
+        for family, likelihood in zip(bank.families, evidence.log_likelihoods(bank), strict=True)
+    )
+    unexplained = 0.3 * np.exp(-1.5)
+    assert posterior.unexplained == pytest.approx(unexplained / (explained + unexplained))
+
+
+def test_the_families_sum_to_1_and_overwhelming_evidence_is_no_overflow(bank):
+    for log_odds in ((-2000, -2000, 2000), (-2000, -2000, -2000), (2000, -2000, -2000)):
+        posterior = Posterior.of(bank, even_prior(unexplained=0.1), [evidence_for(bank.weights[3], log_odds=log_odds)])
+        assert sum(posterior.families.values()) == pytest.approx(1)
+        assert np.isfinite(posterior.weights).all()
+        assert np.isfinite([posterior.expected_error, posterior.expected_shape_error]).all()
+
+
+def test_the_answer_is_the_geometric_mean_of_the_inverses(bank):
+    """By hand: inverses of powers are powers, and their weighted geometric mean has the mean exponent."""
+    posterior = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3])])
+    exponents = 1 / np.array([power for family in SMALL_BANK.values() for power in family])
+    expected = ResponseCurve.gamma(float(posterior.weights @ exponents))
+    assert shape_error(expected, posterior.curve) < 0.02
+    assert estimation_error(expected, posterior.curve) < 0.15
+
+
+def test_the_expected_errors_are_means_of_the_metrics_over_the_bank(blurred, bank):
+    errors = [estimation_error(true, blurred.curve) for true in curves(bank)]
+    shapes = [shape_error(true, blurred.curve) for true in curves(bank)]
+    assert blurred.expected_error == pytest.approx(blurred.weights @ errors, rel=1e-2)
+    assert blurred.expected_shape_error == pytest.approx(blurred.weights @ shapes, rel=5e-2)
+    distances = np.linalg.norm(bank.weights - blurred.weights @ bank.weights, axis=1)
+    assert blurred.expected_distance == pytest.approx(blurred.weights @ distances)
+
+
+def test_the_answer_has_nearly_the_least_expected_shape_error(blurred, bank):
+    """Hardly any member of the bank would have been the better answer."""
+    members = curves(bank)
+    by_member = [blurred.weights @ [shape_error(true, one) for true in members] for one in members]
+    assert blurred.expected_shape_error <= 1.1 * min(by_member)
+
+
+def test_the_band_holds_nine_tenths_of_the_weight():
+    """Of many responses, so that quantiles are fine."""
+    irradiance = np.linspace(0, 1, 1024)
+    powers = np.linspace(0.3, 0.8, 400)
+    bank = ResponseBank((irradiance ** powers[:, None]).astype(np.float32), (Family.CAMERA,) * 400)
+    posterior = Posterior.of(bank, Prior("p", {Family.CAMERA: 1.0}, 1.0))
+    lower, upper = posterior.band()
+    assert lower.shape == upper.shape == (1024,)
+    assert (lower <= upper).all()
+    for sample in (128, 512, 896):  # knots of the band
+        knot = round(sample / 1023 * 64) * 1023 // 64
+        inside = (bank.brightness[:, knot] >= lower[knot]) & (bank.brightness[:, knot] <= upper[knot])
+        assert posterior.weights[inside].sum() == pytest.approx(0.9, abs=0.02)
+
+
+def test_the_band_of_a_certain_answer_lies_between_its_neighbors(bank):
+    lower, upper = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3], precision=3000)]).band()
+    knots = np.linspace(0, 1023, 65).round().astype(int)
+    assert (lower >= bank.brightness[4] - 1e-6)[knots].all()
+    assert (upper <= bank.brightness[2] + 1e-6)[knots].all()
+
+
+@pytest.mark.parametrize(
+    ("families", "spread", "expected"),
+    [
+        ((Family.CAMERA,) * 2, 0.02, Verdict.GOOD),
+        ((Family.CAMERA,) * 2, 0.12, Verdict.USABLE),
+        ((Family.CAMERA,) * 2, 0.4, Verdict.DO_NOT_TRUST),
+        ((Family.LINEAR,) * 2, 0.02, Verdict.DO_NOT_TRUST),
+        ((Family.LOG,) * 2, 0.02, Verdict.DO_NOT_TRUST),
+    ],
+)
+def test_the_verdict_follows_the_expected_stops_and_the_family(families, spread, expected):
+    powers = 0.45 * np.exp([[-spread], [spread]])
+    bank = ResponseBank((np.linspace(0, 1, 1024) ** powers).astype(np.float32), families)
+    posterior = Posterior.of(bank, Prior("p", {families[0]: 1.0}, 1.0))
+    assert Verdict.of(posterior) is expected
+    stops = posterior.expected_shape_error
+    if families[0] is Family.CAMERA:
+        assert Verdict.of(posterior) == (
+            Verdict.GOOD if stops <= GOOD_STOPS else Verdict.USABLE if stops <= USABLE_STOPS else Verdict.DO_NOT_TRUST
+        )
+
+
+def test_a_picture_that_nothing_explains_is_not_to_be_trusted(bank):
+    evidence = evidence_for(bank.weights[3], precision=300, log_odds=(-20, -20, 3))
+    sure = Posterior.of(bank, even_prior(unexplained=0.5), [evidence])
+    assert Verdict.of(sure) is Verdict.DO_NOT_TRUST
+    assert Verdict.of(Posterior.of(bank, even_prior(), [evidence])) is Verdict.GOOD

@@ -1,0 +1,45 @@
+import numpy as np
+import pytest
+
+from crfnet_core.posterior import BANK_FILE, FAMILY_WORDS, Family, ResponseBank
+from tests.helpers.posteriors import SMALL_BANK, small_bank
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return ResponseBank.load()
+
+
+def test_the_packaged_responses_rise_from_0_to_1(bank):
+    assert bank.brightness.dtype == np.float32
+    assert bank.brightness.shape == (len(bank.families), 1024)
+    assert (np.diff(bank.brightness, axis=1) >= 0).all()
+    assert (bank.brightness[:, -1] == 1).all()
+    assert (bank.brightness[:, 0] >= 0).all()
+    assert len(np.unique(bank.brightness, axis=0)) > 0.98 * len(bank.families)
+
+
+def test_every_family_but_the_unexplained_has_responses(bank):
+    counts = {family: int(bank.of(family).sum()) for family in Family}
+    assert counts.pop(Family.UNEXPLAINED) == 0
+    assert min(counts.values()) >= 30
+    assert sum(counts.values()) == len(bank.families)
+
+
+def test_the_words_for_people_name_every_family_once():
+    assert sorted(family for families in FAMILY_WORDS for family in families) == sorted(Family)
+
+
+def test_the_bank_is_read_once_and_is_small(bank):
+    assert ResponseBank.load() is bank
+    assert BANK_FILE.stat().st_size < 2e6
+
+
+def test_weights_and_logarithms_are_those_of_the_curves():
+    bank = small_bank()
+    powers = np.array([power for family in SMALL_BANK.values() for power in family])
+    assert bank.weights.shape == (10, 11)
+    assert bank.log_irradiance.shape == (10, 1024)
+    codes = np.linspace(0, 1, 1024)[400:]
+    np.testing.assert_allclose(bank.log_irradiance[:, 400:], np.log2(codes) / powers[:, None], atol=2e-2)
+    assert (bank.log_irradiance >= -16).all()

@@ -1,0 +1,74 @@
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+
+from training.data.real import bodies as module
+from training.data.real.bodies import measured_bodies, model_key
+from training.data.real.file_origin import Editing
+from training.data.real.photographs import RealPhotograph
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+
+def photograph(folder, name, body, fold, *, stack="1", kind="camera"):
+    """A photograph of DATA/real or DATA/real_bodies, without pixels."""
+    measured = folder / "gt" / f"{body}{stack}.csv"
+    measured.parent.mkdir(parents=True, exist_ok=True)
+    np.savetxt(measured, np.stack([UNIFORM, UNIFORM**0.45], axis=1), delimiter=",", header="e,b")
+    path = folder / "photos" / f"{name}.jpg"
+    return RealPhotograph(name, body, kind, "A", "", True, Editing.UNKNOWN, False, fold, path, measured)
+
+
+@pytest.fixture
+def photographs(tmp_path, monkeypatch):
+    """Two folders that share a model; DATA/real tells two of its bodies apart in brackets."""
+    real, more = tmp_path / "real", tmp_path / "real_bodies"
+    sets = {
+        "real": [
+            photograph(real, "r1", "Nikon D90", "Nikon D90"),
+            photograph(real, "r2", "Nikon D90 (second body)", "Nikon D90 (second body)"),
+            photograph(real, "r3", "Canon S45", "Canon S45", kind="compact"),
+        ],
+        "real_bodies": [
+            photograph(more, "b1", "NIKON D90", "0"),
+            photograph(more, "b2", "NIKON D90", "0", stack="2"),
+            photograph(more, "b3", "NIKON D90", "0", stack="2"),
+            photograph(more, "b4", "Pixel 3", "0", kind="phone"),
+            photograph(more, "b5", "Pixel 4", "1", kind="phone"),
+        ],
+    }
+    monkeypatch.setattr(module, "real_photographs", lambda data: sets)
+    return sets
+
+
+def keys(**options):
+    return [body.key for body in measured_bodies(Path(), **options)]
+
+
+def test_a_body_has_one_response_for_each_stack(photographs):
+    found = {body.key: body for body in measured_bodies(Path())}
+    assert list(found) == ["canon s45", "nikon d90", "nikon d90 (second body)", "pixel 3", "pixel 4"]
+    assert [len(body.responses) for body in found.values()] == [1, 3, 1, 1, 1]
+    assert found["pixel 3"].kind == "phone"
+
+
+def test_a_fold_is_left_out_with_all_bodies_of_its_models(photographs):
+    """The camera of the fold is in the other folder too, once as another body."""
+    first = photographs["real_bodies"][0]
+    assert keys(without=first) == ["canon s45", "pixel 4"]
+    assert keys(without=photographs["real"][1]) == ["canon s45", "pixel 3", "pixel 4"]
+
+
+def test_folds_of_two_folders_are_not_the_same_fold(photographs):
+    """A fold of DATA/real may have the name of one of DATA/real_bodies."""
+    alike = replace(photographs["real"][2], fold="0")
+    photographs["real"][2] = alike
+    assert keys(without=alike) == ["nikon d90", "nikon d90 (second body)", "pixel 3", "pixel 4"]
+
+
+def test_a_model_is_known_without_what_stands_in_brackets(photographs):
+    assert [model_key(one) for one in photographs["real"]] == ["nikon d90", "nikon d90", "canon s45"]

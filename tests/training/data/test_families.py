@@ -1,0 +1,68 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+
+from crfnet_core.metrics import shape_error
+from crfnet_core.posterior import Family
+from crfnet_core.response import ResponseCurve
+from training.data.curves import CurveSource
+from training.data.families import (
+    LINEAR_POWERS,
+    EditedResponses,
+    OneAtATime,
+    ResponseFamilies,
+    edited,
+    log_like,
+    nearly_linear,
+)
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+#: Powers that stand for the in-camera responses of a kind.
+POWERS = {Family.PHONE: 0.4, Family.COMPACT: 0.45, Family.CAMERA: 0.5}
+
+
+@pytest.fixture
+def families():
+    film = CurveSource(UNIFORM ** np.array([[0.3], [0.7]]), (), camera_fraction=0)
+    return ResponseFamilies(lambda family, count, rng: np.tile(UNIFORM ** POWERS[family], (count, 1)), film)
+
+
+@pytest.mark.parametrize("family", [family for family in Family if family is not Family.UNEXPLAINED])
+def test_responses_of_every_family_rise_from_0_to_1(families, family):
+    drawn = families.draw(family, 20, np.random.default_rng(0))
+    assert drawn.shape == (20, 1024)
+    assert (np.diff(drawn, axis=1) >= -1e-12).all()
+    np.testing.assert_allclose(drawn[:, [0, -1]], [[0, 1]] * 20, atol=1e-9)
+    np.testing.assert_array_equal(drawn, families.draw(family, 20, np.random.default_rng(0)))
+
+
+def test_most_edits_are_small_and_a_few_are_large():
+    before = np.tile(UNIFORM**0.45, (300, 1))
+    after = edited(before, np.random.default_rng(1))
+    start = ResponseCurve.from_samples(before[0])
+    errors = np.array([shape_error(start, ResponseCurve.from_samples(row)) for row in after])
+    assert np.median(errors) < 0.3
+    assert errors.max() > 3 * np.median(errors)
+    assert errors.min() > 0
+
+
+def test_nearly_linear_responses_are_powers_near_1():
+    drawn = nearly_linear(200, np.random.default_rng(0))
+    powers = np.log(drawn[:, 512]) / np.log(UNIFORM[512])
+    assert powers.min() >= LINEAR_POWERS[0]
+    assert powers.max() <= LINEAR_POWERS[1]
+    np.testing.assert_allclose(drawn, UNIFORM ** powers[:, None], atol=1e-9)
+
+
+def test_log_responses_lift_the_shadows_more_than_cameras_do():
+    drawn = log_like(200, np.random.default_rng(0))
+    assert np.median(drawn[:, 20]) > UNIFORM[20] ** 0.45
+    assert (drawn[:, 20] > 0.05).all()
+
+
+def test_single_responses_come_from_the_same_draws():
+    rng = np.random.default_rng(3)
+    assert OneAtATime(log_like).draw(rng).shape == (1024,)
+    assert EditedResponses(OneAtATime(nearly_linear)).draw(rng).shape == (1024,)

@@ -1,0 +1,74 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+
+from crfnet_core.metrics import shape_error
+from crfnet_core.response import ResponseCurve
+from training.data.in_camera import COMPONENTS, KINDS, InCameraResponses, log_irradiance, response_of
+from training.data.real.bodies import Body
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+
+def body(key, kind, *powers):
+    """A camera body; a response for each of its stacks, as a power of irradiance."""
+    return Body(key, kind, tuple(ResponseCurve.from_samples(UNIFORM**power) for power in powers))
+
+
+@pytest.fixture(scope="module")
+def bodies():
+    """Phones lift shadows more than cameras do; one camera has many stacks."""
+    rng = np.random.default_rng(0)
+    phones = [body(f"p{k}", "phone", 0.36 + rng.normal(0, 0.01)) for k in range(6)]
+    compacts = [body(f"c{k}", "compact", 0.42 + rng.normal(0, 0.01)) for k in range(6)]
+    cameras = [body(f"d{k}", "camera", 0.48 + rng.normal(0, 0.01)) for k in range(6)]
+    return [*phones, *compacts, *cameras]
+
+
+def middle(curves):
+    """The exponent of powers of irradiance, from the middle of the range."""
+    return np.log(curves[..., 512]) / np.log(UNIFORM[512])
+
+
+def test_a_response_comes_back_from_its_logarithms():
+    curve = ResponseCurve.gamma(2.2)
+    again = ResponseCurve.from_samples(response_of(log_irradiance(curve)))
+    assert shape_error(curve, again) < 0.01
+
+
+def test_kinds_have_their_own_means_and_spread(bodies):
+    found = InCameraResponses.of(bodies)
+    assert set(found.means) == set(KINDS)
+    drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in KINDS}
+    centres = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
+    assert centres == sorted(centres)
+    assert centres == pytest.approx([0.36, 0.42, 0.48], abs=0.02)
+    assert 0.003 < drawn["phone"].std() < 0.04
+
+
+def test_draws_rise_from_0_to_1_and_depend_on_the_seed_alone(bodies):
+    found = InCameraResponses.of(bodies)
+    drawn = found.draw("camera", 50, np.random.default_rng(2))
+    assert (np.diff(drawn, axis=1) >= 0).all()
+    np.testing.assert_allclose(drawn[:, [0, -1]], [[0, 1]] * 50, atol=1e-9)
+    np.testing.assert_array_equal(drawn, found.draw("camera", 50, np.random.default_rng(2)))
+
+
+def test_a_body_counts_once_however_many_stacks_it_has(bodies):
+    many = [*bodies, body("x", "camera", *[0.6] * 20)]
+    one = [*bodies, body("x", "camera", 0.6)]
+    for kind in KINDS:
+        np.testing.assert_allclose(InCameraResponses.of(many).means[kind], InCameraResponses.of(one).means[kind])
+
+
+def test_a_kind_without_bodies_has_the_mean_of_all(bodies):
+    found = InCameraResponses.of([each for each in bodies if each.kind != "phone"])
+    expected = np.mean([found.means["compact"], found.means["camera"]], axis=0)
+    np.testing.assert_allclose(found.means["phone"], expected, atol=0.05)
+
+
+def test_few_bodies_still_give_a_distribution(bodies):
+    found = InCameraResponses.of(bodies[:2])
+    assert len(found.components) <= COMPONENTS
+    assert np.isfinite(found.draw("compact", 3, np.random.default_rng(0))).all()

@@ -1,0 +1,96 @@
+"""The loss beside the core's evidence and posterior, and beside a computation by hand in numpy."""
+
+import numpy as np
+import pytest
+
+torch = pytest.importorskip("torch", reason="training needs the train extra")
+
+from crfnet_core.posterior import STATED_ODDS, Evidence, Posterior, Prior
+from tests.helpers.posteriors import small_bank
+from training.network.loss import ERROR_WEIGHT, WINDOW_WEIGHT, EvidenceLoss, log_likelihoods
+
+
+@pytest.fixture(scope="module")
+def bank():
+    return small_bank()
+
+
+@pytest.fixture(scope="module")
+def competitors(bank):
+    """The responses of the bank as the loss knows them: weights and families."""
+    families = [1 + STATED_ODDS.index(f) if f in STATED_ODDS else 0 for f in bank.families]
+    return torch.from_numpy(bank.weights), torch.tensor(families)
+
+
+def drawn(count, seed=0):
+    """Evidence of random photographs, as the core's and as tensors."""
+    rng = np.random.default_rng(seed)
+    parts = (rng.normal(0, 2, (count, 5)), np.tril(rng.normal(0, 1, (count, 5, 5))), rng.normal(-2, 2, (count, 3)))
+    return [Evidence(*row) for row in zip(*parts, strict=True)], tuple(map(torch.from_numpy, parts))
+
+
+def test_log_likelihoods_are_those_of_the_core(bank, competitors):
+    evidences, tensors = drawn(4)
+    weights, families = competitors
+    found = log_likelihoods(tensors, weights[None], families[None])
+    expected = np.stack([evidence.log_likelihoods(bank) for evidence in evidences])
+    np.testing.assert_allclose(found, expected, rtol=1e-9)
+
+
+def by_hand(evidence, bank, weights, family):
+    """The loss of one photograph: of its evidence, the competing bank, and the truth."""
+    scores = evidence.log_likelihoods(bank)
+    offset = (weights[:5] - evidence.location) @ evidence.factor
+    own = -5 * np.log1p(offset @ offset / 5) if family == 0 else evidence.log_odds[family - 1]
+    likelihoods = np.exp(np.append(scores, own))
+    loss = -np.log(np.exp(own) / likelihoods.sum()) - np.log(len(scores))
+    if family:
+        return loss
+    ordinary = ~np.isin(bank.families, STATED_ODDS)
+    posterior = np.exp(scores[ordinary])
+    mean = posterior / posterior.sum() @ bank.weights[ordinary]
+    return loss + ERROR_WEIGHT * np.sqrt(np.sum((mean - weights) ** 2) + 1e-6)
+
+
+def test_the_loss_of_photographs_is_that_computed_by_hand(bank, competitors):
+    evidences, tensors = drawn(5)
+    rng = np.random.default_rng(1)
+    weights, families = rng.normal(0, 1, (5, 11)), np.array([0, 0, 1, 2, 3])
+    loss = EvidenceLoss(*competitors)
+    found = loss.of(tensors, torch.from_numpy(weights), torch.from_numpy(families))
+    expected = [by_hand(*row) for row in zip(evidences, [bank] * 5, weights, families, strict=True)]
+    np.testing.assert_allclose(found, expected, rtol=1e-6)
+
+
+def test_windows_that_are_not_present_are_no_part_of_the_loss(competitors):
+    _, of_photographs = drawn(2)
+    _, of_windows = drawn(6, seed=4)
+    weights, families = torch.zeros(2, 11, dtype=torch.float64), torch.tensor([0, 2])
+    present = torch.tensor([[True, False, True], [False, False, True]])
+    windows = tuple(part.unflatten(0, (2, 3)) for part in of_windows)
+    loss = EvidenceLoss(*competitors)
+    found = loss((windows, of_photographs), present, weights, families)
+    kept = tuple(part[[0, 2, 5]] for part in of_windows)
+    single = loss.of(kept, weights[[0, 0, 1]], families[[0, 0, 1]])
+    assert float(found) == pytest.approx(
+        float(loss.of(of_photographs, weights, families).mean() + WINDOW_WEIGHT * single.mean())
+    )
+
+
+def test_evidence_that_says_nothing_costs_nothing_but_the_error_of_the_mean(competitors):
+    """Then the truth is as likely as each of the responses that it competes with."""
+    nothing = (torch.zeros(1, 5), torch.zeros(1, 5, 5), torch.zeros(1, 3))
+    weights, families = (part.float() if part.is_floating_point() else part for part in competitors)
+    loss = EvidenceLoss(weights, families)
+    found = loss.of(nothing, weights[:1], torch.tensor([1]))
+    assert float(found) == pytest.approx(np.log(11 / 10), abs=1e-5)
+
+
+def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):
+    """The posterior's mean, under a prior that gives every ordinary response the same share."""
+    (evidence,), tensors = drawn(1)
+    counts = {family: float(bank.of(family).sum()) for family in bank.families if family not in STATED_ODDS}
+    prior = Prior("p", {family: count / sum(counts.values()) for family, count in counts.items()}, 1.0)
+    mean = Posterior.of(bank, prior, [evidence]).mean_weights
+    found = EvidenceLoss(*competitors).errors(tensors, torch.zeros(1, 11, dtype=torch.float64))
+    assert float(found) == pytest.approx(np.linalg.norm(mean), abs=1e-5)
