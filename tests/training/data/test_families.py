@@ -10,7 +10,6 @@ from training.data.curves import CurveSource
 from training.data.families import (
     LINEAR_POWERS,
     EditedResponses,
-    OneAtATime,
     ResponseFamilies,
     edited,
     log_like,
@@ -64,5 +63,5 @@ def test_log_responses_lift_the_shadows_more_than_cameras_do():
 
 def test_single_responses_come_from_the_same_draws():
     rng = np.random.default_rng(3)
-    assert OneAtATime(log_like).draw(rng).shape == (1024,)
-    assert EditedResponses(OneAtATime(nearly_linear)).draw(rng).shape == (1024,)
+    source = CurveSource(nearly_linear(3, rng), (), camera_fraction=0)
+    assert EditedResponses(source).draw(rng).shape == (1024,)
