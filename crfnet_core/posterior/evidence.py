@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.posterior.families import STATED_ODDS, Family
+from crfnet_core.posterior.families import STATED_ODDS
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.types import Float64Array
 
@@ -48,11 +48,6 @@ class Evidence:
         for family, log_odds in zip(STATED_ODDS, self.log_odds, strict=True):
             likelihoods[bank.of(family)] = log_odds
         return np.asarray(likelihoods)
-
-    @property
-    def unexplained(self) -> float:
-        """The log likelihood of a picture that no response explains."""
-        return float(self.log_odds[STATED_ODDS.index(Family.UNEXPLAINED)])
 
 
 def independent_share(similarities: Float64Array) -> float:

@@ -9,7 +9,7 @@ from functools import cached_property
 import numpy as np
 
 from crfnet_core.posterior.evidence import Evidence
-from crfnet_core.posterior.families import Family
+from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
@@ -54,17 +54,22 @@ class Posterior:
         independent : float
             Fraction of the evidence that is independent, in (0, 1]: see `independent_share`.
         """
-        exponent = prior.evidence * independent
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
-        for evidence in evidences:
-            logarithms = logarithms + exponent * evidence.log_likelihoods(bank)
-            unexplained += exponent * evidence.unexplained
-        largest = logarithms.max()
-        weights = np.exp(logarithms - largest)
-        total = weights.sum()
-        log_explained = largest + np.log(total)
-        return cls(bank, weights / total, float(1 / (1 + np.exp(min(log_explained - unexplained, 700.0)))))
+        if evidences:
+            likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
+            log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
+            ordinary = bank.ordinary
+            before = logarithms[ordinary]
+            average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
+            after = before + prior.evidence * likelihoods[ordinary]
+            logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
+            for family, gain in zip(STATED_ODDS, prior.unusual_evidence * (log_odds - average), strict=True):
+                logarithms[bank.of(family)] += gain
+            unexplained += float(prior.unusual_evidence * (log_odds - average)[STATED_ODDS.index(Family.UNEXPLAINED)])
+        explained = _log_sum(logarithms)
+        weights = np.exp(logarithms - explained)
+        return cls(bank, weights, float(1 / (1 + np.exp(min(explained - unexplained, 700.0)))))
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -75,8 +80,14 @@ class Posterior:
 
     @cached_property
     def curve(self) -> ResponseCurve:
-        """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25."""
-        irradiance = np.exp2(self.weights @ self.bank.log_irradiance)
+        """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25.
+
+        Linear and log members count only if no other does: between them and the others there is no answer in the
+        middle, and where they win, the answer is not to be trusted anyway.
+        """
+        ordinary = np.where(self.bank.ordinary, self.weights, 0)
+        weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
+        irradiance = np.exp2(weights @ self.bank.log_irradiance)
         irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
         uniform = np.linspace(0, 1, SAMPLES)
         return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
@@ -114,6 +125,12 @@ class Posterior:
         ends = [[np.interp(level, cumulative[:, k], ordered[:, k]) for k in range(BAND_KNOTS)] for level in levels]
         uniform = np.arange(SAMPLES)
         return np.stack([np.interp(uniform, knots, end) for end in ends])
+
+
+def _log_sum(logarithms: Float64Array) -> float:
+    """Return the logarithm of a sum of numbers whose logarithms are given."""
+    largest = logarithms.max()
+    return float(largest + np.log(np.exp(logarithms - largest).sum()))
 
 
 def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PriorError
@@ -26,19 +26,23 @@ class Prior:
     shares : dict
         Family -> share; at least 0, and their sum is 1.
     evidence : float
-        Exponent on the likelihood, in [0, 1]. Evidence is learned from simulated photographs; on real ones it is worth
-        less, and this is how much.
+        Exponent on the likelihood of ordinary responses, in [0, 1]. Evidence is learned from simulated photographs; on
+        real ones it is worth less, and this is how much.
+    unusual_evidence : float
+        The same of the families `STATED_ODDS` against all ordinary responses together.
     """
 
     name: str
     shares: Mapping[Family, float]
     evidence: float
+    unusual_evidence: float = 1.0
 
     @classmethod
     def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
-        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.5}`; families that it leaves out have no share.
+        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.25, "unusual_evidence": 0.45}`; families that it
+        leaves out have no share, and without "unusual_evidence" it is that of "evidence".
 
         Raises
         ------
@@ -59,23 +63,24 @@ class Prior:
     @classmethod
     def _of_entries(cls, path: Path, entries: object) -> Prior:
         """Return the prior that a JSON file describes, or say what is wrong with it."""
-        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.5}'
-        if not isinstance(entries, dict) or set(entries) != {"shares", "evidence"}:
+        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.25}'
+        if not isinstance(entries, dict) or set(entries) - {"unusual_evidence"} != {"shares", "evidence"}:
             raise PriorError(f"{path}: {example}")
         shares, evidence = entries["shares"], entries["evidence"]
+        exponents = [evidence, entries.get("unusual_evidence", evidence)]
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
             raise PriorError(f"{path}: shares are of {', '.join(Family)}")
-        numbers = [*shares.values(), evidence]
-        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-1]):
+        numbers = [*shares.values(), *exponents]
+        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-2]):
             raise PriorError(f"{path}: shares and evidence are numbers from 0 to 1, and one share is above 0")
         total = sum(shares.values())
-        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, float(evidence))
+        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, *exponents)
 
     def given(self, factors: Mapping[Family, float]) -> Prior:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""
         shares = {family: share * factors.get(family, 1.0) for family, share in self.shares.items()}
         total = sum(shares.values())
-        return Prior(self.name, {family: share / total for family, share in shares.items()}, self.evidence)
+        return replace(self, shares={family: share / total for family, share in shares.items()})
 
 
 def packaged_priors() -> list[str]:
