@@ -10,7 +10,7 @@ from training.network.model import EvidenceTensors
 
 #: Weight of the loss of single windows relative to that of photographs, and of the error of the posterior's mean
 #: relative to the negative logarithm of its density.
-WINDOW_WEIGHT, ERROR_WEIGHT = 0.3, 2.0
+WINDOW_WEIGHT, ERROR_WEIGHT = 0.3, 0.5
 
 
 class EvidenceLoss:

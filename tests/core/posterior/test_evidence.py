@@ -31,7 +31,6 @@ def test_the_families_of_stated_odds_have_one_number_each(bank):
     found = evidence.log_likelihoods(bank)
     assert found[bank.of(Family.LINEAR)].tolist() == [-1, -1]
     assert found[bank.of(Family.LOG)].tolist() == [-2]
-    assert evidence.unexplained == -3
 
 
 def test_a_response_at_the_location_is_the_most_likely(bank):

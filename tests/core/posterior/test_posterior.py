@@ -53,13 +53,27 @@ def test_two_photographs_multiply(bank):
     np.testing.assert_allclose(again.weights, alone, rtol=1e-9)
 
 
-def test_the_exponent_of_the_prior_weakens_the_evidence(bank):
+def test_the_exponent_of_the_prior_weakens_the_evidence_among_ordinary_responses(bank):
     evidence, prior = evidence_for(bank.weights[4], precision=0.7), even_prior(evidence=0.5)
     whole, half = (Posterior.of(bank, asked, [evidence]).weights for asked in (even_prior(), prior))
     start = Posterior.of(bank, prior).weights
-    product = start * (whole / start) ** 0.5
-    np.testing.assert_allclose(half, product / product.sum(), rtol=1e-9)
-    np.testing.assert_allclose(Posterior.of(bank, even_prior(evidence=0), [evidence]).weights, start)
+    product = (start * (whole / start) ** 0.5)[bank.ordinary]
+    np.testing.assert_allclose(half[bank.ordinary], product / product.sum(), rtol=1e-9)
+    unmoved = Posterior.of(bank, even_prior(evidence=0), [evidence]).weights[bank.ordinary]
+    np.testing.assert_allclose(unmoved, start[bank.ordinary] / start[bank.ordinary].sum())
+
+
+@pytest.mark.parametrize(("exponent", "share"), [(0.0, 0.2), (0.5, 0.5), (1.0, 0.8)])
+def test_the_unusual_families_have_an_exponent_of_their_own(bank, exponent, share):
+    """By hand: the average likelihood of ordinary responses is 1 / 16 of that of LOG, at prior odds of 1 to 4."""
+    evidence = evidence_for(bank.weights[4], precision=0.7)
+    ordinary = np.exp(evidence.log_likelihoods(bank))[bank.ordinary]
+    start = Posterior.of(bank, even_prior()).weights[bank.ordinary]
+    log_odds = (-50.0, float(np.log(16 * (start @ ordinary) / start.sum())), -50.0)
+    shares = {Family.PHONE: 4 / 15, Family.CAMERA: 4 / 15, Family.FILM: 4 / 15, Family.LOG: 0.2}
+    prior = Prior("p", shares, 0.3, exponent)
+    posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[4], precision=0.7, log_odds=log_odds)])
+    assert posterior.families[Family.LOG] == pytest.approx(share)
 
 
 def test_a_family_without_a_share_stays_without(bank):
