@@ -25,7 +25,7 @@ from training.network.shards import STATED_FAMILIES, photograph_source
 from training.synthesis.camera import Capture, automatic_exposure, render_photo, sensor_light
 
 #: Photographs of each validation scene that the likelihood is fitted to, and windows of each.
-PHOTOGRAPHS, WINDOWS = 25, 10
+PHOTOGRAPHS, WINDOWS = 10, 10
 
 #: The least slope: below, an answer hardly depends on the weight and says next to nothing about it.
 LEAST_SLOPE = 0.05
