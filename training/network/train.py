@@ -35,8 +35,6 @@ class TrainingConfig:
         Passes over the photographs, and photographs of a step.
     learning_rate, weight_decay : float
         The highest learning rate of the cycle, and the decay of AdamW.
-    embedding_factor : float
-        Factor on the learning rate of the embedding; small where it comes from `--init` and knows more photographs.
     all_windows : float
         Fraction of the training photographs seen with all their windows; of the others, some are left out at random.
     without_held_out : bool
@@ -53,7 +51,6 @@ class TrainingConfig:
     batch: int = 256
     learning_rate: float = 1e-3
     weight_decay: float = 0.05
-    embedding_factor: float = 1.0
     all_windows: float = 0.6
     without_held_out: bool = False
     without_fold: int | None = None
@@ -165,12 +162,9 @@ def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> 
     """Return an untrained network with its optimizer and schedule."""
     torch.manual_seed(config.seed)
     net = PhotographNet(network)
-    rates = {net.embedding: config.learning_rate * config.embedding_factor}
-    rates |= {part: config.learning_rate for part in (net.score, net.window, net.photograph)}
-    groups = [{"params": list(part.parameters()), "lr": rate} for part, rate in rates.items()]
-    optimizer = torch.optim.AdamW(groups, weight_decay=config.weight_decay)
+    optimizer = torch.optim.AdamW(net.parameters(), lr=config.learning_rate, weight_decay=config.weight_decay)
     steps = config.epochs * (photographs // config.batch)
-    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, list(rates.values()), total_steps=steps, pct_start=0.15)
+    schedule = torch.optim.lr_scheduler.OneCycleLR(optimizer, config.learning_rate, total_steps=steps, pct_start=0.15)
     return TrainingState(net, optimizer, schedule)
 
 
@@ -212,7 +206,6 @@ def main() -> None:
     parser.add_argument("--run", type=Path, required=True, help="folder of the checkpoints and the log")
     parser.add_argument("--epochs", type=int, default=defaults.epochs)
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
-    parser.add_argument("--embedding-factor", type=float, default=defaults.embedding_factor)
     parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
     parser.add_argument("--without-fold", type=int, choices=range(FOLDS), help="leave out and validate on these scenes")
