@@ -98,7 +98,7 @@ def test_a_figure_that_is_not_the_model_s_is_found_out():
 
 def test_the_first_finding_is_the_unpleasant_one(readme):
     first = accuracy_section(readme).strip().splitlines()[0]
-    assert "worse than the mean response of real cameras" in first
+    assert "uncertainty of a single real photograph is not known" in first
 
 
 def test_blender_comes_first(readme):
