@@ -48,7 +48,7 @@ def values(accuracy, unit):
             yield value
         elif unit == "%" and re.match(r"(E_est|uncertainty) (?!ratio|win|rank)", name):
             yield 100 * value / FULL_RANGE
-        elif unit == "%" and re.search(r"win rate|coverage", name):
+        elif unit == "%" and re.search(r"win rate|coverage|accepted", name):
             yield 100 * value
         elif not unit:
             yield value
