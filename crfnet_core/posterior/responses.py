@@ -51,7 +51,12 @@ class ResponseBank:
 
     def of(self, family: Family) -> BoolArray:
         """Return which responses belong to a family, bool (N,)."""
-        return np.array([member is family for member in self.families])
+        return self._members[family]
+
+    @cached_property
+    def _members(self) -> dict[Family, BoolArray]:
+        """Which responses belong to each family."""
+        return {family: np.array([member is family for member in self.families]) for family in Family}
 
     @cached_property
     def ordinary(self) -> BoolArray:
