@@ -104,6 +104,9 @@ def _options() -> argparse.ArgumentParser:
     parser.add_argument("--learning-rate", type=float, help="other than the recipe's")
     parser.add_argument("--head-factor", type=float, help="other than the recipe's")
     parser.add_argument("--batch", type=int, help="other than the recipe's")
+    parser.add_argument(
+        "--float32", action="store_true", help="no bfloat16: faster on processors without AVX-512 (see /proc/cpuinfo)"
+    )
     parser.add_argument("--validate-every", type=int, default=500, help="steps")
     parser.add_argument("--per-photograph", type=int, default=1, help="windows of one photograph; the paper takes 10")
     parser.add_argument("--seed", type=int, default=1)
@@ -118,6 +121,7 @@ def main() -> None:
     torch.set_num_threads(options.threads)
     changes = {name: getattr(options, name) for name in ("learning_rate", "head_factor", "batch")}
     recipe = replace(RECIPES[options.recipe], **{name: value for name, value in changes.items() if value is not None})
+    recipe = replace(recipe, mixed=recipe.mixed and not options.float32)
     names = ("stage", "steps", "seed", "init", "validate_every", "per_photograph")
     config = RunConfig(recipe=recipe, **{name: getattr(options, name) for name in names})
     train(options.data_pack, options.run, config, workers=options.workers)
