@@ -60,7 +60,7 @@ model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): m
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000
 	$(TRAIN)/bin/python -m training.network.train --shards $(RUN)/photos --run $(RUN)
-	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --data $(DATA) --out $(MODEL) --golden $(RUN)/golden_predictions.npz
+	$(TRAIN)/bin/python -m training.export.model_folder --run $(RUN) --out $(MODEL) --golden $(RUN)/golden_predictions.npz
 	$(TRAIN)/bin/python -m training.evaluation --data $(DATA) --model $(MODEL) --out $(RUN)/evaluation
 	$(TRAIN)/bin/python -m training.export.model_card --model $(MODEL) --report $(RUN)/evaluation/report.json
 

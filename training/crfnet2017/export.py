@@ -88,7 +88,9 @@ def cost_of_rounding(network: WindowAnswers) -> float:
 
 def main() -> None:
     """Export the best network of a run."""
-    options = export_options((__doc__ or "").splitlines()[0]).parse_args()
+    parser = export_options((__doc__ or "").splitlines()[0])
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
+    options = parser.parse_args()
     network = load_network(options.run)
     print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
     likelihood = fit(*validation_answers(network, options.data))

@@ -14,8 +14,7 @@ from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
 
-#: Range of the powers of nearly linear data, of the factor a of log curves log(1 + a E), and of the black that log
-#: footage is stored with.
+#: Ranges of the powers of nearly linear data, and of the factor a of log curves log(1 + a E).
 LINEAR_POWERS, LOG_FACTORS = (0.82, 1.25), (30.0, 6000.0)
 
 

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
+from crfnet_core.posterior.responses import LEAST_IRRADIANCE
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE
@@ -34,9 +35,6 @@ BRIGHTNESS = np.linspace(0, 1, SAMPLES)
 #: Standard deviation of the Gaussian that smooths measured responses, in samples (3 codes of 255), and how far a
 #: response is continued beyond its ends, mirrored in the end point, so that the end point stays.
 SMOOTHING, REACH = 12.0, 48
-
-#: Irradiance at which logarithms are cut off.
-LEAST_IRRADIANCE = 2.0**-16
 
 
 @dataclass(frozen=True)

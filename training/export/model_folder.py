@@ -1,4 +1,4 @@
-"""Turn a run into a model folder: ``python -m training.export.model_folder --run DIR --data DIR --out DIR ...``.
+"""Turn a run into a model folder: ``python -m training.export.model_folder --run DIR --out DIR ...``.
 
 The steps: the graph (`onnx_graph`), the golden predictions and the parity with them (`golden`), model.json, and the
 record of the run beside it.
@@ -91,7 +91,6 @@ def export_options(description: str | None) -> argparse.ArgumentParser:
     """Return the parser of the options that every export needs."""
     parser = argparse.ArgumentParser(description=description)
     parser.add_argument("--run", type=Path, required=True, help="folder written by the training")
-    parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
     parser.add_argument("--out", type=Path, required=True, help="the model's folder, named as the model")
     parser.add_argument("--golden", type=Path, required=True, help="file of the golden predictions")
     return parser
