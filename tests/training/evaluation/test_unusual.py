@@ -61,7 +61,7 @@ def test_good_and_usable_are_accepted():
     assert accepted_overall({}).share == 0
 
 
-def test_p6_asks_once_with_the_prior_of_cameras_as_of_files_that_name_no_camera(scene, fixed_model, tmp_path, monkeypatch):
+def test_p6_asks_once_as_of_files_that_name_no_camera(scene, fixed_model, tmp_path, monkeypatch):
     asked = []
 
     def estimate(photo, *, network, **options):
