@@ -19,7 +19,12 @@ import PyOpenColorIO as OCIO
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text
 from ocio.configs.files import load_config, write_config
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from ocio.configs.plate_color_space import (
+    FAMILY,
+    PlateColorSpace,
+    add_plate_color_space,
+    without_plate_color_space,
+)
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
@@ -162,6 +167,60 @@ def restore(folder: Path) -> Restored:
     except OSError as problem:
         raise ConfigError(f"{config}: cannot be restored ({problem.strerror}); check the folder") from problem
     return Restored(config, is_removed=not record.backup)
+
+
+def installed_color_spaces(folder: Path) -> tuple[str, ...]:
+    """Return the names of the colour spaces that were installed into the config of `folder`, in its order.
+
+    They are those whose LUT lies in `FOLDER`. There are none if nothing was installed there.
+
+    Raises
+    ------
+    ConfigError
+        If OpenColorIO refuses the config.
+    """
+    config = folder / CONFIG_NAME
+    if _read_record(folder) is None or not config.exists():
+        return ()
+    return tuple(space.getName() for space in load_config(config).getColorSpaces() if _installed_lut(space))
+
+
+def uninstall(folder: Path, name: str) -> None:
+    """Take an installed colour space, its file rules and its LUT out of the config of `folder`.
+
+    After the last one has been taken out, the config is as before the first: see `restore`.
+
+    Raises
+    ------
+    ConfigError
+        If no such colour space was installed there, somebody else has changed the config since, or it cannot be
+        written.
+    """
+    record, config = _read_record(folder), folder / CONFIG_NAME
+    names = installed_color_spaces(folder)
+    if record is None or name not in names:
+        raise ConfigError(f"{config}: has no installed colour space {name!r}; check the name")
+    if _digest(config) != record.sha256:
+        raise ConfigError(f"{config}: was changed by another program since; edit it yourself")
+    if names == (name,):
+        restore(folder)
+        return
+    loaded = load_config(config)
+    lut_file = _installed_lut(loaded.getColorSpace(name))
+    write_config(config, without_plate_color_space(loaded, name), check={}, overwrite=True)
+    try:
+        _write_record(folder, replace(record, sha256=_digest(config)))
+        (folder / lut_file).unlink(missing_ok=True)
+    except OSError as problem:
+        raise ConfigError(f"{folder}: cannot be changed ({problem.strerror}); check the folder") from problem
+
+
+def _installed_lut(space: OCIO.ColorSpace) -> str:
+    """Return the LUT file of a colour space that was installed, relative to the config; else an empty text."""
+    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    first = next(iter(transform), None) if isinstance(transform, OCIO.GroupTransform) else transform
+    source = first.getSrc() if isinstance(first, OCIO.FileTransform) else ""
+    return source if space.getFamily() == FAMILY and source.startswith(f"{FOLDER}/") else ""
 
 
 @contextmanager

@@ -6,7 +6,7 @@ import pytest
 from crfnet_core.errors import ConfigError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
-from ocio.configs.installed import FOLDER, install, restore
+from ocio.configs.installed import FOLDER, install, installed_color_spaces, restore, uninstall
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
@@ -159,3 +159,55 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path, base):
     (tmp_path / "file").touch()
     with pytest.raises(PlateError, match="is not a folder"):
         install(tmp_path / "file" / "user", base, SPACE, LUT)
+
+
+OTHER_SPACE = PlateColorSpace("CRF other", "other.spi1d", file_pattern="other.*", exposure=1.0)
+
+
+def test_what_was_installed_is_listed_and_nothing_else(folder, base):
+    assert installed_color_spaces(folder) == ()
+    assert installed_color_spaces(base.parent) == ()
+    install(folder, base, SPACE, LUT)
+    install(folder, base, OTHER_SPACE, OTHER_LUT)
+    assert installed_color_spaces(folder) == ("CRF plate", "CRF other")
+
+
+def test_one_color_space_is_taken_out_and_the_others_stay(folder, base, tolerance):
+    install(folder, base, SPACE, LUT)
+    alone = tree(folder)
+    config = install(folder, base, OTHER_SPACE, OTHER_LUT).config
+    uninstall(folder, "CRF other")
+    assert tree(folder).keys() == alone.keys()
+    assert installed_color_spaces(folder) == ("CRF plate",)
+    assert [rule for rule in file_rules(config) if "CRF other" in rule] == []
+    values = np.linspace(0, 1, 99)
+    np.testing.assert_allclose(irradiance(config, values), LUT.apply(values), atol=tolerance.lut)
+    uninstall(folder, "CRF plate")  # the last one
+    assert not (folder / CONFIG_NAME).exists()
+    assert not (folder / FOLDER).exists()
+
+
+def test_the_earlier_config_is_back_after_the_last_was_taken_out(base):
+    before = base.read_bytes()
+    install(base.parent, base, SPACE, LUT)
+    install(base.parent, base, OTHER_SPACE, OTHER_LUT)
+    uninstall(base.parent, "CRF plate")
+    uninstall(base.parent, "CRF other")
+    assert base.read_bytes() == before
+
+
+def test_only_what_was_installed_can_be_taken_out(folder, base):
+    config = install(folder, base, SPACE, LUT).config
+    before = config.read_bytes()
+    for name in ("lin_rec709_scene", "nothing"):
+        with pytest.raises(ConfigError, match="has no installed colour space"):
+            uninstall(folder, name)
+    config.write_bytes(before + b"\n# mine\n")
+    with pytest.raises(ConfigError, match="changed by another program"):
+        uninstall(folder, "CRF plate")
+    assert config.read_bytes() == before + b"\n# mine\n"
+
+
+def file_rules(config):
+    rules = loaded(config).getFileRules()
+    return [rules.getName(index) for index in range(rules.getNumEntries())]
