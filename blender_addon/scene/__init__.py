@@ -7,5 +7,7 @@ stored_estimate   the estimate as a custom property of its image or clip
 apply             what a completed job changes
 node_group        the inverse response as a compositor node group
 compositor        where the node group goes in the compositor
+comparison        the linear plate in the place of the plate, for looking only
+linear_pixels     code values of an image, and the linear plate in memory
 color_management  the OpenColorIO config that this Blender runs on
 """

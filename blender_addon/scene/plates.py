@@ -11,6 +11,7 @@ import bpy
 from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import Plate
+from . import comparison
 
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
@@ -27,12 +28,15 @@ Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
-    """Return the image or clip that the editor shows; in the compositor, that of the active node."""
+    """Return the image or clip that the editor shows; in the compositor, that of the active node.
+
+    While an Image Editor shows the linear plate for comparison, it is the plate.
+    """
     space = context.space_data
     if space is None:
         return None
     if space.type == "IMAGE_EDITOR":
-        return space.image
+        return comparison.plate_of(space.image) or space.image
     if space.type == "CLIP_EDITOR":
         return space.clip
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
