@@ -258,7 +258,7 @@ def test_blenders_own_libraries_are_used():
 
 
 def test_the_preferences_come_first_until_a_plate_is_set(addon):
-    assert addon.apply == "NODES"
+    assert addon.apply == "ESTIMATE"
     addon.apply = "EXPORT"
     image = bpy.data.images.new("new", 8, 8)
     assert image.camera_response_settings.apply == "EXPORT"
