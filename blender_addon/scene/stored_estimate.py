@@ -94,6 +94,11 @@ def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     datablock[KEY][name] = value
 
 
+def pending_color_space(datablock: Datablock | None) -> str:
+    """Return the colour space that a plate waits for; an empty text if it waits for none."""
+    return datablock[KEY].get(PENDING_COLOR_SPACE, "") if datablock is not None and is_stored(datablock) else ""
+
+
 def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> str:
     """Return the colour space that a plate waits for, and end the wait, if it is available; else an empty text."""
     name = datablock[KEY].get(PENDING_COLOR_SPACE) if is_stored(datablock) else None

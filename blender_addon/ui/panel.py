@@ -35,6 +35,8 @@ class ResponsePanel:
         """Draw the button or the progress, the estimate of the plate, and the settings by which it is applied."""
         layout, datablock = self.layout, plates.active_datablock(context)
         draw_restart(layout)
+        if name := stored_estimate.pending_color_space(datablock):
+            draw_text(layout, f'"{name}" comes with a restart.', letters_of(context), icon="COLOR")
         if run := running.current():
             _draw_progress(layout, run)
         elif obstacle := _obstacle(context, datablock):
