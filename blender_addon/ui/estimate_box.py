@@ -30,8 +30,8 @@ WARNING = "Warning: "
 #: pixels at a scale of 1.
 _LETTER, _BORDER, _ICON = 6, 52, 20
 
-#: The height of the picture of the curve, in units of the interface.
-_CURVE_HEIGHT = 9
+#: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
+_SMALLEST, _LARGEST = 9, 18
 
 #: The distance of lines that belong together, against that of buttons.
 _LINE = 0.75
@@ -51,7 +51,7 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops):
         column.label(text=f"Expected error {stops:.2f} stop")
-    box.template_icon(icon_value=curve_icon(datablock), scale=_CURVE_HEIGHT)
+    box.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_SMALLEST, _width(context) / _ICON)))
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
     first, *others = stored_estimate.lines(datablock)
@@ -89,8 +89,13 @@ def draw_text(layout: bpy.types.UILayout, text: str, letters: int, *, icon: str 
 
 def letters_of(context: bpy.types.Context) -> int:
     """Return how many letters fit into a line of a box in the region; at least 20."""
+    return max(20, int(_width(context) / _LETTER))
+
+
+def _width(context: bpy.types.Context) -> float:
+    """Return the width inside a box in the region, in pixels at a scale of 1."""
     scale = context.preferences.system.ui_scale or 1  # 0 without a screen
-    return max(20, int((context.region.width / scale - _BORDER) / _LETTER))
+    return context.region.width / scale - _BORDER
 
 
 def curve_icon(datablock: plates.Datablock) -> int:

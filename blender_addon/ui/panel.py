@@ -42,7 +42,7 @@ class ResponsePanel:
         elif obstacle := _obstacle(context, datablock):
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
         else:
-            layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA", text="Estimate Response")
+            layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
             return
         is_stored = stored_estimate.is_stored(datablock)

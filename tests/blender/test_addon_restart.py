@@ -6,7 +6,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
-from .test_addon_panel import Panel, drawn_in, labels, operators  # noqa: E402 - after the skip
+from .test_addon_panel import Panel, drawn_in, labels  # noqa: E402 - after the skip
 
 
 @pytest.fixture
