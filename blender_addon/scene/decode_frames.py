@@ -64,7 +64,10 @@ def _set_output(scene: bpy.types.Scene) -> None:
 
 def _decode(scene: bpy.types.Scene, node: bpy.types.Node, file: str, frame: int, target: Path) -> str:
     """Write one frame to a file, which gets its name when it is whole; return why that is impossible, or nothing."""
-    image = bpy.data.images.load(file, check_existing=True)
+    try:
+        image = bpy.data.images.load(file, check_existing=True)
+    except RuntimeError as problem:
+        return str(problem).strip()
     image.colorspace_settings.name = "Non-Color"
     image.use_deinterlace = "--deinterlace" in sys.argv
     node.image = image

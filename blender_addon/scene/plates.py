@@ -28,7 +28,10 @@ Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
-    """Return the image or clip that the editor shows; in the compositor, that of the active node."""
+    """Return the image or clip that the editor shows; in the compositor, that of the active node.
+
+    If a plate's node group is active, it is the plate that the group linearises.
+    """
     space = context.space_data
     if space is None:
         return None
@@ -37,7 +40,7 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
     if space.type == "CLIP_EDITOR":
         return space.clip
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
-        return datablock_of_node(space.edit_tree.nodes.active)
+        return _plate_behind(space.edit_tree.nodes.active)
     return None
 
 
@@ -46,6 +49,27 @@ def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
     if node is None:
         return None
     return {"IMAGE": getattr(node, "image", None), "MOVIECLIP": getattr(node, "clip", None)}.get(node.type)
+
+
+def _plate_behind(node: bpy.types.Node | None) -> Datablock | None:
+    """Return the image or clip of a node; of a plate's node group that of the node that its Image input comes from."""
+    datablock, seen = datablock_of_node(node), {node}
+    if datablock is not None or not _is_response_group(node):
+        return datablock
+    while datablock is None and node is not None:
+        source = node.inputs.get("Image") or next(iter(node.inputs), None)
+        node = source.links[0].from_node if source is not None and source.links else None
+        if node in seen:
+            return None
+        seen.add(node)
+        datablock = datablock_of_node(node)
+    return datablock
+
+
+def _is_response_group(node: bpy.types.Node | None) -> bool:
+    """Return whether a node is a plate's node group, which a custom property marks."""
+    tree = getattr(node, "node_tree", None)
+    return tree is not None and any(name.startswith("camera_response") for name in tree.keys())  # noqa: SIM118
 
 
 def chosen_datablock(context: bpy.types.Context, image: str = "", clip: str = "") -> Datablock:

@@ -4,8 +4,8 @@
 from __future__ import annotations
 
 import tempfile
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -71,6 +71,28 @@ def frame_reader(plate: Plate) -> Iterator[FrameReader]:
 def _own_files(sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
     """Return the plate's own files."""
     return sequence
+
+
+@contextmanager
+def sampled_files(
+    plates: Sequence[tuple[Plate, FrameSequence]], progress: Progress | None = None
+) -> Iterator[tuple[FrameSequence, ...]]:
+    """Yield, for each plate, the files that the response is estimated from; temporary ones are removed at the end.
+
+    Parameters
+    ----------
+    plates : sequence of (Plate, FrameSequence)
+        The plates with their frames, as `frames_of` returns them.
+    progress : callable or None
+        Called with (done, total) while frames are decoded; what it raises ends the wait.
+
+    Raises
+    ------
+    AddonError
+        See `frame_reader`.
+    """
+    with ExitStack() as stack:
+        yield tuple(stack.enter_context(frame_reader(plate))(sample(frames), progress) for plate, frames in plates)
 
 
 @contextmanager

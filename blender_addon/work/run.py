@@ -15,7 +15,7 @@ from ocio.report import verdict_lines
 
 from . import writers
 from .encoding_check import check_is_encoded
-from .frame_files import frame_reader, frames_of, sample
+from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
@@ -99,14 +99,14 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
-    options, decodes = job.estimation.options, job.plate.decoder is not None
-    with frame_reader(job.plate) as read:
-        frames = read(sample(sequence), _part(progress, 0) if decodes else progress)
+    options, is_decoded = job.estimation.options, job.plate.decoder is not None
+    decoding, estimating = (_part(progress, 0), _part(progress, 1)) if is_decoded else (progress, progress)
+    with sampled_files([(job.plate, sequence)], decoding) as (frames,):
         if not job.estimation.is_forced:
             check_is_encoded(job.plate, frames.paths[0], job.config.path)
         prior, network = load_prior(options), _load_network(options)
         options = replace(options, use_metadata=options.use_metadata and job.plate.has_metadata)
-        return estimate_frames(frames, network, prior, options, progress=_part(progress, 1) if decodes else progress)
+        return estimate_frames(frames, network, prior, options, progress=estimating)
 
 
 def _part(progress: Progress | None, part: int) -> Progress | None:

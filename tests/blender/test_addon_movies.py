@@ -276,37 +276,3 @@ def test_a_packed_image_of_such_a_format(addon, tmp_path, codes):
     bpy.ops.crf.estimate_response(image=image.name, apply="BAKE", depth="float", folder=str(tmp_path))
     expected = stored_curve(image).inverse(codes / 255)
     assert np.abs(read_image(tmp_path / "other_linear.exr") - expected).max() < 1e-6
-
-
-def test_a_gif_is_called_a_gif(addon, tmp_path):
-    (tmp_path / "few.gif").write_bytes(b"GIF89a")
-    image = bpy.data.images.load(str(tmp_path / "few.gif"))
-    with pytest.raises(RuntimeError, match="GIF files hold at most 256 colors"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
-def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes):
-    from blender_addon.scene.plates import obstacle, plate_of
-    from blender_addon.work.frame_files import frames_of
-
-    names = [write_image(tmp_path / f"shot.{n}.png", codes).name for n in range(1001, 1006)]
-    files = [{"name": name} for name in names]
-    first = str(tmp_path / names[0])
-    bpy.ops.image.open(filepath=first, directory=str(tmp_path), files=files, use_udim_detecting=True)
-    (image,) = (image for image in bpy.data.images if image.source == "TILED")
-    assert "set Source to Image Sequence" in obstacle(image)
-    image.source = "SEQUENCE"
-    assert obstacle(image) == ""
-    assert frames_of(plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
-
-
-@pytest.mark.parametrize("kind", ["BLANK", "UV_GRID", "COLOR_GRID"])
-def test_what_blender_generates_is_refused_until_it_is_painted(addon, codes, kind):
-    image = bpy.data.images.new("made", 256, 256)
-    image.generated_type = kind
-    with pytest.raises(RuntimeError, match="Blank images and test grids have no camera response"):
-        bpy.ops.crf.estimate_response(image=image.name)
-    pixels = np.ones((256, 256, 4), np.float32)
-    pixels[..., :3] = codes / 255
-    image.pixels.foreach_set(pixels.ravel())
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
