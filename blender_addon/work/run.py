@@ -19,12 +19,13 @@ from ocio.pipeline import (
     load_prior,
     response_lut,
 )
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.frames import FrameSequence
 from ocio.report import verdict_lines
 
 from . import writers
 from .encoding_check import check_is_encoded
 from .errors import AddonError, CancelledError
+from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 from .target_check import check_targets
 from .wording import panel_line
@@ -49,7 +50,7 @@ class CompletedJob:
     stops : float
         The stops to add after the inverse response.
     frames : tuple of int
-        The frame numbers of a sequence that Blender is to show; empty for a single file.
+        The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
     files : Baked, Exported, Installed or None
         What was written; None for nodes, which need no file, and if the response is not applied.
     problem : AddonError, CRFNetError or None
@@ -102,7 +103,7 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
         is the `problem` of the completed job, so that the estimate is not lost. Files that the job has written are
         removed again.
     """
-    sequence = cache(partial(find_frames, job.plate.file))  # looks for the frames at most once, and only if needed
+    sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
     try:
@@ -124,7 +125,7 @@ def _completed(
     completed = CompletedJob(job, estimate, stops, (), None)
     if not completed.is_applied:
         return completed
-    shows_frames = job.plate.is_sequence and job.output.mode in _SHOWING_FRAMES
+    shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
         lut = response_lut(estimate, length=job.output.lut_length)
@@ -144,19 +145,23 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
-    photographs = job.estimation.photographs
-    if not job.estimation.is_forced:
-        check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
-        for photograph in photographs:
-            check_is_encoded(photograph, sample_frames(find_frames(photograph.file))[0], job.config.path)
-    options = job.estimation.options
-    prior, network = load_prior(options), _load_network(options)
-    has_metadata = all(plate.has_metadata for plate in (job.plate, *photographs))
-    options = replace(options, use_metadata=options.use_metadata and has_metadata)
-    if not photographs:
-        return estimate_frames(sequence, network, prior, options, progress=progress)
-    paths = (
-        *sample_frames(sequence),
-        *(path for plate in photographs for path in sample_frames(find_frames(plate.file))),
-    )
-    return estimate_photographs(paths, network, prior, options, progress=progress).estimate
+    plates = (job.plate, *job.estimation.photographs)
+    sequences = (sequence, *map(frames_of, job.estimation.photographs))
+    options, is_decoded = job.estimation.options, any(plate.decoder is not None for plate in plates)
+    decoding, estimating = (_part(progress, 0), _part(progress, 1)) if is_decoded else (progress, progress)
+    with sampled_files(list(zip(plates, sequences, strict=True)), decoding) as files:
+        if not job.estimation.is_forced:
+            for plate, frames in zip(plates, files, strict=True):
+                check_is_encoded(plate, frames.paths[0], job.config.path)
+        prior, network = load_prior(options), _load_network(options)
+        has_metadata = all(plate.has_metadata for plate in plates)
+        options = replace(options, use_metadata=options.use_metadata and has_metadata)
+        if len(plates) == 1:
+            return estimate_frames(files[0], network, prior, options, progress=estimating)
+        paths = [path for frames in files for path in frames.paths]
+        return estimate_photographs(paths, network, prior, options, progress=estimating).estimate
+
+
+def _part(progress: Progress | None, part: int) -> Progress | None:
+    """Return a callback for one of two parts of a job, 0 or 1, that takes half of the progress."""
+    return None if progress is None else lambda done, total: progress(part * total + done, 2 * total)
