@@ -12,7 +12,6 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.frame_files import frame_reader, frames_of, sample
 from blender_addon.work.job import ApplyMode, BlenderDecoder
 from blender_addon.work.run import run
-from crfnet_core.errors import CRFNetError
 from crfnet_core.image_io import read_codes
 from tests.helpers.images import read_image, write_image
 

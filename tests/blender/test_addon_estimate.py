@@ -61,6 +61,7 @@ def test_with_the_packaged_model(addon, plate):
 
 def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
+    image.use_fake_user = True
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
     image = bpy.data.images["plate.png"]
