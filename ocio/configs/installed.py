@@ -9,9 +9,9 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
 import PyOpenColorIO as OCIO
@@ -19,11 +19,11 @@ import PyOpenColorIO as OCIO
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text
 from ocio.configs.files import load_config, write_config
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from ocio.configs.plate_color_space import FAMILY, PlateColorSpace, add_plate_color_space, without_plate_rules
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_folder, new_files_removed_on_failure, output_folder
+from ocio.output_files import check_folder, distinct_names, new_files_removed_on_failure, output_folder
 
 #: The folder of our own beside the config, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"
@@ -85,18 +85,26 @@ class _Record:
         The file name of the earlier config's copy.
     folders : tuple of str
         The LUT folders that were copied beside the config.
+    plates : dict of str to str
+        The plate of each colour space that was added, by the name of the space; records of old versions have none.
     """
 
     sha256: str
     backup: str | None
     folders: tuple[str, ...]
+    plates: Mapping[str, str] = field(default_factory=dict)
 
 
-def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) -> Installed:
+def install(
+    folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D, *, plate: str, hint: str = ""
+) -> Installed:
     """Write a plate's LUT, and its colour space into the config of `folder`.
 
     The colour space is added to the config in the folder. If there is none, the new config is `base` with the colour
     space added, and the LUT folders of `base` are copied, so that the folder is complete in itself.
+
+    The config gets no file rule, and loses those of earlier versions: it holds for every project of its user, and rules
+    know a file by its name alone. The program has to choose the colour space for the plate itself.
 
     Parameters
     ----------
@@ -105,9 +113,14 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
     base : str or Path
         The config to build on if the folder has none.
     space : PlateColorSpace
-        The colour space; its LUT goes into `FOLDER`.
+        The colour space; its LUT goes into `FOLDER`. If the config has a space of this name for another plate, the
+        hint or a number is added to the name.
     lut : Lut1D
         The inverse response.
+    plate : str
+        What the plate is known by, such as its full path: only a colour space of the same plate is replaced.
+    hint : str
+        What tells the plate from others of its name, such as its folder.
 
     Raises
     ------
@@ -115,12 +128,15 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
         If the folder cannot be written to, or OpenColorIO refuses the config, which is then as it was.
     """
     check_folder(folder)
-    config, lut_file = folder / CONFIG_NAME, folder / FOLDER / space.lut_file
-    before = (_digest(config), _digest(lut_file))
+    config = folder / CONFIG_NAME
     record = _read_record(folder)
+    plates = dict(record.plates) if record else {}
     try:
         is_new = not config.exists()
-        source = load_config(base if is_new else config)
+        source = without_plate_rules(load_config(base if is_new else config))
+        space = replace(space.renamed(_free_name(source, space.name, plates, plate, hint)), file_pattern=None)
+        lut_file = folder / FOLDER / space.lut_file
+        before = (_digest(config), _digest(lut_file))
         with (
             output_folder(folder / FOLDER),
             _copied_folders(source, folder, Path(base).parent if is_new else None) as copied,
@@ -131,7 +147,7 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
             backup = _backup(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
-            _write_record(folder, _Record(_digest(config), backup, folders))
+            _write_record(folder, _Record(_digest(config), backup, folders, {**plates, space.name: plate}))
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be written ({problem.strerror}); choose another folder") from problem
     is_changed = before != (_digest(config), _digest(lut_file))
@@ -147,6 +163,8 @@ def restore(folder: Path) -> Restored:
         If nothing was installed there, or somebody else has changed the config since.
     """
     record, config = _read_record(folder), folder / CONFIG_NAME
+    if record is None and _remove_if_empty(folder):
+        return Restored(config, is_removed=True)
     if record is None:
         raise ConfigError(f"{folder}: holds no config with an installed camera response; there is nothing to restore")
     if config.exists() and _digest(config) != record.sha256:
@@ -159,9 +177,31 @@ def restore(folder: Path) -> Restored:
             config.unlink(missing_ok=True)
             for name in (*record.folders, FOLDER):
                 shutil.rmtree(folder / name, ignore_errors=True)
+            _remove_if_empty(folder)
     except OSError as problem:
         raise ConfigError(f"{config}: cannot be restored ({problem.strerror}); check the folder") from problem
     return Restored(config, is_removed=not record.backup)
+
+
+def _free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: str, hint: str) -> str:
+    """Return a name for a plate's colour space that the config does not use for another plate."""
+    for candidate in distinct_names(name, hint):
+        found = config.getColorSpace(candidate)
+        if found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate:
+            return candidate
+    raise AssertionError("there are names without end")
+
+
+def _remove_if_empty(folder: Path) -> bool:
+    """Remove a folder if it is empty, and return whether it was.
+
+    Blender takes an empty folder for the user's, finds no config in it, and runs without AgX.
+    """
+    try:
+        folder.rmdir()
+    except OSError:
+        return False
+    return True
 
 
 @contextmanager
@@ -209,7 +249,8 @@ def _read_record(folder: Path) -> _Record | None:
     """Return what was done in a folder, or None if nothing was or the record is damaged."""
     try:
         entries = json.loads((folder / FOLDER / RECORD_NAME).read_text(encoding="utf-8"))
-        return _Record(entries["sha256"], entries["backup"], tuple(entries["folders"]))
+        folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
+        return _Record(entries["sha256"], entries["backup"], folders, plates)
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
