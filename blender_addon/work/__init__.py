@@ -4,6 +4,8 @@
 job              what to do: the plate, where its response comes from, what is written
 run              the job, done
 writers          the files of each way to apply a response
+frame_files      the frames of a plate as files that the estimator reads: its own, or temporary ones
+decoding         another Blender, which decodes movies and the image formats that the estimator does not read
 encoding_check   refuses plates that are logarithmic or linear already
 background       a job in another thread, with progress and cancellation
 estimate_record  an estimate as the entries that a .blend file keeps

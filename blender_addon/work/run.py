@@ -10,11 +10,12 @@ from crfnet_core import ResponseEstimate
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress
 from ocio.pipeline import anchored_exposure, estimate_frames, load_network, load_prior, response_lut
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.frames import FrameSequence
 from ocio.report import verdict_lines
 
 from . import writers
 from .encoding_check import check_is_encoded
+from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
@@ -37,7 +38,7 @@ class CompletedJob:
     stops : float
         The stops to add after the inverse response.
     frames : tuple of int
-        The frame numbers of a sequence that Blender is to show; empty for a single file.
+        The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
     files : Baked, Exported, Installed or None
         What was written; None for nodes, which need no file.
     """
@@ -74,11 +75,11 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     CRFNetError, AddonError
         If the plate, the model or a folder cannot be used; files that the job has written are removed again.
     """
-    sequence = cache(partial(find_frames, job.plate.file))  # looks for the frames at most once, and only if needed
+    sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
     gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
     stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
-    shows_frames = job.plate.is_sequence and job.output.mode in _SHOWING_FRAMES
+    shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
         lut = response_lut(estimate, length=job.output.lut_length)
@@ -98,9 +99,16 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
-    if not job.estimation.is_forced:
-        check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
-    options = job.estimation.options
-    prior, network = load_prior(options), _load_network(options)
-    options = replace(options, use_metadata=options.use_metadata and job.plate.has_metadata)
-    return estimate_frames(sequence, network, prior, options, progress=progress)
+    options, is_decoded = job.estimation.options, job.plate.decoder is not None
+    decoding, estimating = (_part(progress, 0), _part(progress, 1)) if is_decoded else (progress, progress)
+    with sampled_files([(job.plate, sequence)], decoding) as (frames,):
+        if not job.estimation.is_forced:
+            check_is_encoded(job.plate, frames.paths[0], job.config.path)
+        prior, network = load_prior(options), _load_network(options)
+        options = replace(options, use_metadata=options.use_metadata and job.plate.has_metadata)
+        return estimate_frames(frames, network, prior, options, progress=estimating)
+
+
+def _part(progress: Progress | None, part: int) -> Progress | None:
+    """Return a callback for one of two parts of a job, 0 or 1, that takes half of the progress."""
+    return None if progress is None else lambda done, total: progress(part * total + done, 2 * total)

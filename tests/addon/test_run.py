@@ -6,8 +6,8 @@ import shutil
 import numpy as np
 import pytest
 
+from blender_addon.work import frame_files, writers
 from blender_addon.work import run as run_module
-from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
@@ -70,7 +70,7 @@ def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
 
 
 def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, sequence_file):
-    scans, luts = calls(run_module, "find_frames"), calls(run_module, "response_lut")
+    scans, luts = calls(frame_files, "find_frames"), calls(run_module, "response_lut")
     completed = run(make_job(sequence_file, is_sequence=True))
     assert (len(scans), len(luts)) == (1, 1)
     assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
