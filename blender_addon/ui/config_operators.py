@@ -28,8 +28,8 @@ _read_at_start: str | None = None
 #: Environment variables that name a config. Blender 5.2 sets OCIO itself, and must not hand it on.
 _CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 
-#: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installed`, repeated because the
-#: interface is drawn without `ocio`.
+#: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
+#: because the interface is drawn without `ocio`.
 RECORD = Path("camera_response", "installed.json")
 
 
@@ -141,7 +141,10 @@ def draw_restart(layout: bpy.types.UILayout) -> None:
 def draw_installed(layout: bpy.types.UILayout) -> None:
     """Draw the color spaces in the user's config, each with a button that removes it, and the button for all."""
     folder = color_management.user_folder()
-    if (folder / RECORD).is_file():
+    is_left_over = folder.is_dir() and not (folder / color_management.CONFIG_NAME).exists()  # Blender runs without AgX
+    if is_left_over:
+        layout.operator(CRF_OT_restore_config.bl_idname, icon="LOOP_BACK")
+    elif (folder / RECORD).is_file():
         box = layout.box()
         box.label(text="In your OpenColorIO config", icon="COLOR")
         column = box.column(align=True)

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
@@ -145,7 +146,16 @@ def install_color_space(job: Job, lut: Lut1D, stops: float) -> Installed:
     """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
     folder = _folder(job)
     space = color_space(job.plate, output_files(job.plate, folder), stops)
-    return install(folder, job.config.path, space, lut)
+    hint = job.plate.folder.name if job.plate.folder else ""
+    return install(folder, job.config.path, space, lut, plate=identity(job.plate), hint=hint)
+
+
+def identity(plate: Plate) -> str:
+    """Return what a plate is known by in the config: its full path; without a file of its own, what it contains."""
+    if plate.content is None:
+        return str(plate.file.resolve())
+    content = plate.content if isinstance(plate.content, bytes) else plate.content.tobytes()
+    return f"sha256 {hashlib.sha256(content).hexdigest()}"
 
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
@@ -154,7 +164,7 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float) -> PlateColorSpace:
-    """Return the plate's colour space, with a file rule for all its files."""
+    """Return the plate's colour space, with a file rule for all its files, which an installed config leaves out."""
     return files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
 
 
