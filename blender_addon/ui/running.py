@@ -2,7 +2,8 @@
 """The one run that is under way: a job in another thread, and how its progress is shown.
 
 Every display makes Blender draw parts of its window, which takes processor time from the job. So the progress is shown
-at most every `REDRAW` seconds, and only if it has changed; whether the job has ended is looked at more often.
+only if it has changed, at most every `REDRAW` seconds, and more seldom where drawing is slow; whether the job has ended
+is looked at more often.
 """
 
 from __future__ import annotations
@@ -20,8 +21,8 @@ from ..work.background import BackgroundTask
 #: Seconds between two checks of whether the job has ended.
 TICK = 0.1
 
-#: Seconds between two displays of the progress.
-REDRAW = 0.5
+#: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
+REDRAW, LONGEST, DRAWING_SHARE = 0.5, 5.0, 0.1
 
 _current: Run | None = None
 
@@ -46,6 +47,7 @@ class Run:
         self._timer = self._manager.event_timer_add(TICK, window=context.window)
         self._manager.progress_begin(0, 100)
         self._shown, self._shown_at = "", 0.0
+        self._pause: float | None = 0.0  # seconds until the next display; None until it is known how long drawing took
 
     @property
     def text(self) -> str:
@@ -55,15 +57,21 @@ class Run:
     def cancel(self) -> None:
         """Ask the job to stop, and show that it was asked."""
         self.task.cancel()
-        self._shown_at = 0.0
+        self._pause = 0.0
         self.show()
 
     def show(self) -> None:
-        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now."""
+        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now.
+
+        The call after a display comes late by the time that drawing took.
+        """
+        since = time.monotonic() - self._shown_at
+        if self._pause is None:
+            self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
         text = self.text if self.task.is_cancelled else f"Camera response of {self.text}  |  Esc to cancel"
-        if text == self._shown or time.monotonic() - self._shown_at < REDRAW:
+        if text == self._shown or since < self._pause:
             return
-        self._shown, self._shown_at = text, time.monotonic()
+        self._shown, self._shown_at, self._pause = text, time.monotonic(), None
         self._set_status(text)
         self._manager.progress_update(self.task.percent)
         redraw_editors(self._manager, regions=("UI",))

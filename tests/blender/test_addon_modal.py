@@ -4,6 +4,7 @@ import threading
 import time
 from types import SimpleNamespace
 
+import numpy as np
 import pytest
 
 from tests.helpers.images import write_image
@@ -221,6 +222,27 @@ def test_the_progress_is_drawn_only_if_it_changed_and_seldom(waiting, interface,
     assert 9 <= len(interface.status) - drawn[0] <= 11
     assert set(interface.redrawn) == {"UI"}  # never the picture
     assert "50 %" in run.text
+
+
+def test_where_drawing_is_slow_the_progress_is_drawn_more_seldom(waiting, interface, monkeypatch):
+    """A display that takes 0.3 s is followed by 3 s without one."""
+    from blender_addon.ui import running
+
+    run, job = waiting
+    now = [time.monotonic() + 1]
+    monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
+    shown = []
+    for percent in range(1, 101):
+        job.progress(percent, 100)
+        before = len(interface.status)
+        run.show()
+        is_shown = len(interface.status) > before
+        shown += [now[0]] * is_shown
+        now[0] += 0.4 if is_shown else 0.1
+    assert np.diff(shown).min() > 2.9
+    assert len(shown) >= 3
+    run.cancel()  # at once
+    assert interface.status[-1] == "Canceling"
 
 
 def test_one_run_at_a_time(waiting, image):
