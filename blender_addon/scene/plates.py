@@ -9,6 +9,7 @@ from typing import Any, TypeAlias
 
 import bpy
 
+from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import BlenderDecoder, Plate
 from . import comparison
@@ -109,6 +110,8 @@ def datablock_of_plate(plate: Plate) -> Datablock:
 
 def obstacle(datablock: Datablock) -> str:
     """Return why no response can be estimated from an image or clip, or an empty text; reads no file."""
+    if problem := lazy_import.missing():
+        return problem
     if datablock.library is not None:
         return f"{datablock.name} is linked from another file: make it local first"
     if datablock.filepath.lower().endswith(".gif"):
