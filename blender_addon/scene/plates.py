@@ -25,6 +25,9 @@ OPEN_A_PLATE = {
     "NODE_EDITOR": "Select an Image or Movie Clip node that has a plate",
 }
 
+#: The custom property of a hidden copy whose pixels are code values, see `code_values`; its value is the plate.
+CODE_VALUES_OF = "camera_response_code_values_of"
+
 #: What a plate is in Blender's data.
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
@@ -48,7 +51,16 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
 
 
 def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the image or clip of a compositor's Image or Movie Clip node; None for any other node."""
+    """Return the plate of a compositor's Image or Movie Clip node; None for any other node.
+
+    Of a node that shows a plate's code values, it is the plate.
+    """
+    shown = shown_by_node(node)
+    return None if shown is None else shown.get(CODE_VALUES_OF) or shown
+
+
+def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
+    """Return the image or clip that an Image or Movie Clip node shows itself; None for any other node."""
     if node is None:
         return None
     return {"IMAGE": getattr(node, "image", None), "MOVIECLIP": getattr(node, "clip", None)}.get(node.type)

@@ -105,7 +105,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
 
     def _pick(self, space: bpy.types.SpaceImageEditor, place: tuple[float, float]) -> float:
         """Set the anchor of the plate to the brightness at a place, from (0, 0) bottom left to (1, 1); return it."""
-        codes = lazy_import.load(".scene.linear_pixels").code_values(space.image, space.image_user)
+        codes = comparison.code_values(space.image, space.image_user)
         settings = space.image.camera_response_settings
         settings.gray = mean_around(codes, place)
         settings.anchor = "GRAY"
@@ -145,8 +145,7 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
     gray = settings.gray if settings.anchor == "GRAY" else None
     stops = lazy_import.load("ocio.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
-    pixels = lazy_import.load(".scene.linear_pixels")
-    return pixels.linear_pixels(pixels.code_values(space.image, space.image_user), curve, stops)
+    return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
 
 
 _CLASSES = (CRF_OT_compare, CRF_OT_pick_gray)
