@@ -52,6 +52,13 @@ def test_a_restart_is_due_until_it_is_done(image, user_config, in_editor, monkey
         assert config_operators.is_restart_due()  # the config that Blender runs on is gone
 
 
+def test_another_estimate_does_not_end_the_wait(image, user_config):
+    from blender_addon.scene.stored_estimate import pending_color_space
+
+    bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+    assert pending_color_space(image) == "CRF plate"
+
+
 def test_a_restored_config_leaves_nothing_to_do(image, user_config):
     """Blender has never read the config that came and went."""
     from blender_addon.ui import config_operators
