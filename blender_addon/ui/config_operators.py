@@ -104,6 +104,9 @@ class CRF_OT_save_and_restart(bpy.types.Operator):
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """Save, start another Blender, and quit this one; quit nothing that was not saved."""
         comparison.end_all()
+        if unsaved := next((image.name for image in bpy.data.images if image.is_dirty), ""):
+            self.report({"ERROR"}, f"{unsaved}: has changes that would be lost; save or pack the image first")
+            return {"CANCELLED"}
         try:
             bpy.ops.wm.save_mainfile()
             start_blender(bpy.data.filepath)

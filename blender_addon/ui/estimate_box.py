@@ -28,7 +28,7 @@ WARNING = "Warning: "
 
 #: The mean width of a letter of the interface, what the panel and a box take beside a line, and the width of an icon:
 #: pixels at a scale of 1.
-_LETTER, _BORDER, _ICON = 6, 52, 20
+_LETTER, _BORDER, _ICON = 6, 60, 20
 
 #: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
 _SMALLEST, _LARGEST = 9, 18

@@ -16,6 +16,9 @@ from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate
 from .photographs import draw_photographs
 from .plate_settings import is_to_be_applied
 
+#: The width of the word "stops", in units of the interface.
+_UNIT_WIDTH = 2.5
+
 
 class ResponsePanel:
     """The panel, which is the same in every editor."""
@@ -98,7 +101,9 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
             row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
     row = column.row(align=True)
     row.prop(settings, "exposure")
-    row.label(text="stops")
+    unit = row.row()
+    unit.ui_units_x = _UNIT_WIDTH
+    unit.label(text="stops")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in ("ESTIMATE", "NODES"):

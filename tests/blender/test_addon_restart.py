@@ -139,6 +139,17 @@ def test_a_config_that_the_environment_demands_stays_in_it(image, tmp_path, star
     assert started[0][1]["OCIO"] == str(tmp_path / "studio.ocio")
 
 
+def test_painted_images_are_not_lost(image, tmp_path, started):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    painted = bpy.data.images.new("painted", 8, 8)
+    painted.pixels[0] = 0.5
+    with pytest.raises(RuntimeError, match="painted: has changes that would be lost"):
+        bpy.ops.crf.save_and_restart()
+    assert started == []
+    painted.pack()
+    assert bpy.ops.crf.save_and_restart() == {"FINISHED"}
+
+
 def test_nothing_is_quit_that_was_not_saved(image, tmp_path, started, monkeypatch):
     from blender_addon.ui import config_operators
 
