@@ -17,9 +17,10 @@ from typing import ClassVar
 import bpy
 
 from .. import lazy_import
-from ..scene import color_management, comparison
+from ..scene import color_management
 from ..work.errors import expected_errors
 from ..work.wording import american
+from . import comparison
 from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.

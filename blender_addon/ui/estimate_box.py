@@ -9,7 +9,7 @@ import textwrap
 import bpy
 import bpy.utils.previews
 
-from ..scene import comparison, plates, stored_estimate
+from ..scene import plates, stored_estimate
 from ..work import curve_picture
 from .image_tools import CRF_OT_compare
 
@@ -111,7 +111,7 @@ def curve_icon(datablock: plates.Datablock) -> int:
 
 def _draw_comparison(layout: bpy.types.UILayout, space: bpy.types.SpaceImageEditor) -> None:
     """Draw the switch between the plate and the linear plate."""
-    is_after = comparison.plate_of(space.image) is not None
+    is_after = plates.compared_plate(space.image) is not None
     row = layout.row(align=True)
     row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
     row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True

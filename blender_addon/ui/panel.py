@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor."""
+"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor, and the entries of their menus."""
 
 from __future__ import annotations
 
@@ -15,6 +15,9 @@ from .image_tools import CRF_OT_pick_gray
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
 from .plate_settings import is_to_be_applied
+
+#: The menus of the three editors, by which Blender's search finds the operators, too.
+MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
 
 #: The width of the word "stops", in units of the interface.
 _UNIT_WIDTH = 2.5
@@ -74,6 +77,16 @@ class CRF_PT_node(ResponsePanel, bpy.types.Panel):
 
     bl_space_type = "NODE_EDITOR"
     bl_category = "Node"
+
+
+def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Draw the entries of a menu; the node editor has them only as the compositor."""
+    space = context.space_data
+    if space is not None and space.type == "NODE_EDITOR" and space.tree_type != "CompositorNodeTree":
+        return
+    menu.layout.separator()
+    menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
+    menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
 
 
 def _obstacle(context: bpy.types.Context, datablock: plates.Datablock | None) -> str:
@@ -156,12 +169,16 @@ _CLASSES = (CRF_PT_image, CRF_PT_clip, CRF_PT_node)
 
 
 def register() -> None:
-    """Register the panels."""
+    """Register the panels, and add the entries to the menus."""
     for kind in _CLASSES:
         bpy.utils.register_class(kind)
+    for name in MENUS:
+        getattr(bpy.types, name).append(draw_menu_entries)
 
 
 def unregister() -> None:
-    """Unregister the panels."""
+    """Remove the entries, and unregister the panels."""
+    for name in MENUS:
+        getattr(bpy.types, name).remove(draw_menu_entries)
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)
