@@ -26,11 +26,13 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         If the plate was removed, or the config lacks a colour space that the nodes need; nothing is changed then.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
-    if completed.files is None:
+    if completed.is_applied and completed.files is None:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     remember_settings(datablock, job)
+    if not completed.is_applied:
+        return "nothing else was changed"
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)

@@ -9,8 +9,10 @@ from typing import Any, TypeAlias
 
 import bpy
 
+from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import BlenderDecoder, Plate
+from . import comparison
 from .packed_images import DECODED_SUFFIXES, name_and_content
 
 #: The editors that have the panel.
@@ -33,13 +35,14 @@ Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, that of the active node.
 
-    If a plate's node group is active, it is the plate that the group linearises.
+    While an Image Editor shows the linear plate for comparison, it is the plate. If a plate's node group is active, it
+    is the plate that the group linearises.
     """
     space = context.space_data
     if space is None:
         return None
     if space.type == "IMAGE_EDITOR":
-        return space.image
+        return comparison.plate_of(space.image) or space.image
     if space.type == "CLIP_EDITOR":
         return space.clip
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
@@ -119,6 +122,8 @@ def datablock_of_plate(plate: Plate) -> Datablock:
 
 def obstacle(datablock: Datablock) -> str:
     """Return why no response can be estimated from an image or clip, or an empty text; reads no file."""
+    if problem := lazy_import.missing():
+        return problem
     if datablock.library is not None:
         return f"{datablock.name} is linked from another file: make it local first"
     if datablock.filepath.lower().endswith(".gif"):

@@ -57,15 +57,11 @@ def frame_reader(plate: Plate) -> Iterator[FrameReader]:
     AddonError
         If temporary files cannot be written, or Blender cannot decode a frame.
     """
-    if plate.content is None and plate.decoder is None:
+    if _has_own_files(plate):
         yield _own_files
         return
-    with _temporary_folder(plate) as folder:
-        if plate.decoder is None:
-            yield partial(_written, plate, folder)
-        else:
-            with running_decoder(plate, plate.decoder, folder) as decoder:
-                yield decoder.read
+    with _temporary_folder(plate) as folder, _reader(plate, folder) as read:
+        yield read
 
 
 def _own_files(sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
@@ -91,8 +87,36 @@ def sampled_files(
     AddonError
         See `frame_reader`.
     """
+    chosen = [sample(frames) for _, frames in plates]
+    total, files = sum(len(frames.paths) for frames in chosen), list(chosen)
     with ExitStack() as stack:
-        yield tuple(stack.enter_context(frame_reader(plate))(sample(frames), progress) for plate, frames in plates)
+        for index, (plate, _) in enumerate(plates):
+            done = sum(len(frames.paths) for frames in chosen[:index])
+            if not _has_own_files(plate):
+                folder = stack.enter_context(_temporary_folder(plate))
+                with _reader(plate, folder) as read:  # the other Blender ends before the next one starts
+                    files[index] = read(chosen[index], counted_from(progress, done, total))
+        yield tuple(files)
+
+
+def counted_from(progress: Progress | None, start: int, total: int) -> Progress | None:
+    """Return a callback for a part of the frames, which counts those before it as done."""
+    return None if progress is None else lambda done, _total: progress(start + done, total)
+
+
+def _has_own_files(plate: Plate) -> bool:
+    """Return whether the estimator can read the plate's own files."""
+    return plate.content is None and plate.decoder is None
+
+
+@contextmanager
+def _reader(plate: Plate, folder: Path) -> Iterator[FrameReader]:
+    """Yield what returns frames as temporary files in a folder."""
+    if plate.decoder is None:
+        yield partial(_written, plate, folder)
+    else:
+        with running_decoder(plate, plate.decoder, folder) as decoder:
+            yield decoder.read
 
 
 @contextmanager

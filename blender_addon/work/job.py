@@ -22,8 +22,9 @@ _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
 
 
 class ApplyMode(StrEnum):
-    """The ways to apply a response: in the compositor, as a colour space, as linear EXR files, as files to hand on."""
+    """What becomes of a response: nothing yet, or nodes, a colour space, linear EXR files, files to hand on."""
 
+    ESTIMATE = "ESTIMATE"
     NODES = "NODES"
     COLORSPACE = "COLORSPACE"
     BAKE = "BAKE"
@@ -152,11 +153,14 @@ class Estimation:
         Whether it is estimated even if the plate is said to be logarithmic or linear.
     stored : ResponseEstimate or None
         An earlier estimate, which is used instead of a new one.
+    photographs : tuple of Plate
+        Further photographs of the same camera with the same settings, which share the response.
     """
 
     options: EstimateOptions
     is_forced: bool
     stored: ResponseEstimate | None = None
+    photographs: tuple[Plate, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -194,6 +198,8 @@ class Output:
         The entries of LUT files.
     overwrite : bool
         Whether existing files may be replaced.
+    despite_verdict : bool
+        Whether a response is applied that is not to be trusted.
     """
 
     mode: ApplyMode
@@ -201,6 +207,7 @@ class Output:
     depth: str
     lut_length: int
     overwrite: bool
+    despite_verdict: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

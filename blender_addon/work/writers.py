@@ -26,7 +26,7 @@ from ocio.plates.frames import FramePattern, FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
 from .errors import AddonError
-from .frame_files import FrameReader, frame_reader
+from .frame_files import FrameReader, counted_from, frame_reader
 from .job import ApplyMode, Job, Plate
 
 #: Decoded frames that are on the disk at a time; 4K frames of 8 bits take up to 25 MB each.
@@ -123,15 +123,10 @@ def _bake_decoded(
             for start in range(0, len(targets), FRAMES_DECODED):
                 part = slice(start, start + FRAMES_DECODED)
                 frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
-                so_far = _counted_from(progress, start, len(targets))
+                so_far = counted_from(progress, start, len(targets))
                 linearize_plates(read(frames, so_far), targets[part], lut, options)
     if progress is not None:
         progress(len(targets), len(targets))
-
-
-def _counted_from(progress: Progress | None, start: int, total: int) -> Progress | None:
-    """Return a callback for a part of the frames, which counts those before it as done."""
-    return None if progress is None else lambda done, _total: progress(start + done, total)
 
 
 def export(job: Job, lut: Lut1D, stops: float) -> Exported:

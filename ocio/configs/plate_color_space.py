@@ -166,6 +166,13 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
     return config
 
 
+def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:
+    """Return a copy of `config` without a plate's colour space and its file rules; all else stays."""
+    config = copy.deepcopy(config)
+    _remove(config, name)
+    return config
+
+
 def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
     """Remove an earlier version of a plate's space and its rule; raise a ConfigError if the name is used otherwise."""
     earlier = config.getColorSpace(space.name)
@@ -173,10 +180,15 @@ def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
         return
     if earlier.getFamily() != FAMILY or earlier.getName().casefold() != space.name.casefold():
         raise ConfigError(f"{space.name}: the config uses this name for {earlier.getName()!r}; choose another name")
-    config.removeColorSpace(earlier.getName())
+    _remove(config, earlier.getName())
+
+
+def _remove(config: OCIO.Config, name: str) -> None:
+    """Remove a colour space of a config, and the file rules of its name."""
+    config.removeColorSpace(name)
     rules = config.getFileRules()
     for index in reversed(range(rules.getNumEntries())):
-        if rules.getName(index).casefold() == space.name.casefold():
+        if rules.getName(index).casefold() == name.casefold():
             rules.removeRule(index)
     config.setFileRules(rules)
 

@@ -9,10 +9,9 @@ import numpy as np
 import pytest
 
 from blender_addon.work.errors import AddonError, CancelledError
-from blender_addon.work.frame_files import frame_reader, frames_of, sample
+from blender_addon.work.frame_files import frame_reader, frames_of, sample, sampled_files
 from blender_addon.work.job import ApplyMode, BlenderDecoder
 from blender_addon.work.run import run
-from crfnet_core.errors import CRFNetError
 from crfnet_core.image_io import read_codes
 from tests.helpers.images import read_image, write_image
 
@@ -139,7 +138,7 @@ def test_existing_files_are_told_before_a_frame_is_decoded(movie_job, tmp_path):
     stored = run(movie_job(mode=ApplyMode.NODES)).estimate
     (tmp_path / "out").mkdir()
     (tmp_path / "out" / "clip_linear.0012.exr").write_bytes(b"finished")
-    with pytest.raises(CRFNetError, match="exists already"):
+    with pytest.raises(AddonError, match="exists already"):
         run(movie_job(stored=stored))
     assert [path.name for path in (tmp_path / "out").iterdir()] == ["clip_linear.0012.exr"]
 
@@ -174,3 +173,17 @@ def test_images_of_other_formats_are_decoded_one_by_one(make_job, sequence_file,
         found = read(sample(frames_of(plate)), None)
         assert found.numbers == (1, 2, 3, 5, 6, 7, 8, 9)
         np.testing.assert_array_equal(read_image(found.paths[-1]), read_image(sequence_file.with_name("shot.0009.png")))
+
+
+def test_files_of_several_plates_are_there_together(movie_job, make_job, temporary, codes):
+    movie, own = movie_job().plate, make_job().plate
+    painted = dataclasses.replace(own, content=codes)
+    steps = []
+    plates = [(plate, frames_of(plate)) for plate in (own, movie, painted)]
+    with sampled_files(plates, lambda done, total: steps.append((done, total))) as files:
+        assert files[0].paths == (own.file,)
+        assert [len(frames.paths) for frames in files] == [1, 8, 1]
+        assert all(path.is_file() for frames in files for path in frames.paths)
+    assert steps == sorted(steps)
+    assert (steps[0], steps[-1][1]) == ((1, 10), 10)
+    assert list(temporary.iterdir()) == []

@@ -137,7 +137,7 @@ def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
     with in_editor("NODE_EDITOR") as space:
         space.node_tree = tree
         assert bpy.ops.crf.estimate_response.poll()
-        assert bpy.ops.crf.estimate_response() == {"FINISHED"}
+        assert bpy.ops.crf.estimate_response(apply="NODES") == {"FINISHED"}
     assert node.outputs["Image"].links[0].to_node.node_tree.name == "Camera Response plate"
 
 

@@ -9,7 +9,8 @@ import pytest
 from crfnet_core.errors import ConfigError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
-from ocio.configs.installed import FOLDER, install, restore
+from ocio.configs.installation_record import FOLDER, RECORD_NAME
+from ocio.configs.installed import install, installed_color_spaces, restore, uninstall
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
@@ -56,9 +57,7 @@ def test_a_new_folder_is_complete_in_itself(folder, base, tolerance):
     done = install(folder, base, SPACE, LUT, plate=PLATE)
     assert (done.config, done.color_space) == (folder / CONFIG_NAME, "CRF plate")
     assert (done.is_changed, done.backup) == (True, None)
-    assert set(tree(folder)) == {
-        *(CONFIG_NAME, "luts/film.spi1d", f"{FOLDER}/plate.spi1d", f"{FOLDER}/{installed.RECORD_NAME}")
-    }
+    assert set(tree(folder)) == {*(CONFIG_NAME, "luts/film.spi1d", f"{FOLDER}/plate.spi1d", f"{FOLDER}/{RECORD_NAME}")}
     assert list(loaded(done.config).getSearchPaths()) == ["luts", "."]
     values = np.linspace(0, 1, 99)
     np.testing.assert_allclose(irradiance(done.config, values), LUT.apply(values), atol=tolerance.lut)
@@ -124,7 +123,7 @@ def test_two_plates_of_one_name_keep_their_responses(folder, base, tolerance):
 def test_a_space_of_an_earlier_version_is_left_to_its_plate(folder, base):
     """Its record does not say which plate it belongs to."""
     install(folder, base, SPACE, LUT, plate=PLATE)
-    record = folder / FOLDER / installed.RECORD_NAME
+    record = folder / FOLDER / RECORD_NAME
     entries = json.loads(record.read_text())
     del entries["plates"]
     record.write_text(json.dumps(entries))
@@ -188,7 +187,7 @@ def test_a_config_changed_since_gets_a_backup_of_its_own(folder, base):
 
 def test_a_damaged_record_counts_as_none(folder, base):
     install(folder, base, SPACE, LUT, plate=PLATE)
-    (folder / FOLDER / installed.RECORD_NAME).write_text("{}")
+    (folder / FOLDER / RECORD_NAME).write_text("{}")
     with pytest.raises(ConfigError, match="there is nothing to restore"):
         restore(folder)
     assert install(folder, base, SPACE, LUT, plate=PLATE).backup is not None
@@ -223,3 +222,49 @@ def test_a_folder_that_cannot_be_made_is_refused(tmp_path, base):
     (tmp_path / "file").touch()
     with pytest.raises(PlateError, match="is not a folder"):
         install(tmp_path / "file" / "user", base, SPACE, LUT, plate=PLATE)
+
+
+OTHER_SPACE = PlateColorSpace("CRF other", "other.spi1d", file_pattern="other.*", exposure=1.0)
+
+
+def test_what_was_installed_is_listed_and_nothing_else(folder, base):
+    assert installed_color_spaces(folder) == ()
+    assert installed_color_spaces(base.parent) == ()
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    install(folder, base, OTHER_SPACE, OTHER_LUT, plate="/shot/other.png")
+    assert installed_color_spaces(folder) == ("CRF plate", "CRF other")
+
+
+def test_one_color_space_is_taken_out_and_the_others_stay(folder, base, tolerance):
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    alone = tree(folder)
+    config = install(folder, base, OTHER_SPACE, OTHER_LUT, plate="/shot/other.png").config
+    uninstall(folder, "CRF other")
+    assert tree(folder).keys() == alone.keys()
+    assert installed_color_spaces(folder) == ("CRF plate",)
+    values = np.linspace(0, 1, 99)
+    np.testing.assert_allclose(irradiance(config, values), LUT.apply(values), atol=tolerance.lut)
+    uninstall(folder, "CRF plate")  # the last one
+    assert not (folder / CONFIG_NAME).exists()
+    assert not (folder / FOLDER).exists()
+
+
+def test_the_earlier_config_is_back_after_the_last_was_taken_out(base):
+    before = base.read_bytes()
+    install(base.parent, base, SPACE, LUT, plate=PLATE)
+    install(base.parent, base, OTHER_SPACE, OTHER_LUT, plate="/shot/other.png")
+    uninstall(base.parent, "CRF plate")
+    uninstall(base.parent, "CRF other")
+    assert base.read_bytes() == before
+
+
+def test_only_what_was_installed_can_be_taken_out(folder, base):
+    config = install(folder, base, SPACE, LUT, plate=PLATE).config
+    before = config.read_bytes()
+    for name in ("lin_rec709_scene", "nothing"):
+        with pytest.raises(ConfigError, match="has no installed colour space"):
+            uninstall(folder, name)
+    config.write_bytes(before + b"\n# mine\n")
+    with pytest.raises(ConfigError, match="changed by another program"):
+        uninstall(folder, "CRF plate")
+    assert config.read_bytes() == before + b"\n# mine\n"
