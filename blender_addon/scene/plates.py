@@ -137,7 +137,7 @@ def obstacle(datablock: Datablock) -> str:
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
-    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock)
+    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
 
 
 #: Why images of some sources have no response to estimate.
@@ -156,6 +156,14 @@ def _obstacle_in_blender(datablock: Datablock) -> str:
         return "Float images made in Blender hold linear values, which have no camera response: open a photograph"
     if not datablock.packed_file and not datablock.is_dirty:
         return "Blank images and test grids have no camera response: open a photograph"
+    return ""
+
+
+def _obstacle_unsaved(datablock: Datablock) -> str:
+    """Return that an image was painted on since its file was read or packed; an empty text for any other."""
+    is_kept = datablock.source != "GENERATED" or datablock.packed_file
+    if is_kept and getattr(datablock, "is_dirty", False):
+        return f"{datablock.name} has unsaved changes: save, pack or reload it in the Image menu first"
     return ""
 
 
