@@ -273,33 +273,3 @@ def test_blenders_own_libraries_are_used():
     import PyOpenColorIO
 
     assert "bpy" in PyOpenColorIO.__file__
-
-
-def test_the_preferences_come_first_until_a_plate_is_set(addon):
-    assert addon.apply == "ESTIMATE"
-    addon.apply = "EXPORT"
-    image = bpy.data.images.new("new", 8, 8)
-    assert image.camera_response_settings.apply == "EXPORT"
-    image.camera_response_settings.apply = "BAKE"
-    addon.apply = "NODES"
-    assert image.camera_response_settings.apply == "BAKE"
-
-
-def test_the_interface_offers_what_jobs_and_ocio_know(addon):
-    """It repeats their choices and defaults, because it is drawn without them."""
-    from blender_addon.scene.color_management import CONFIG_NAME
-    from blender_addon.work.job import Anchor, ApplyMode
-    from ocio import defaults
-
-    settings = bpy.data.images.new("new", 8, 8).camera_response_settings.bl_rna.properties
-    assert settings["apply"].enum_items.keys() == list(ApplyMode)
-    assert settings["anchor"].enum_items.keys() == list(Anchor)
-    assert settings["depth"].enum_items.keys() == list(defaults.DEPTHS)
-    assert settings["prior"].enum_items.keys() == [*defaults.PRIORS, "file"]
-    assert settings["prior"].default == defaults.PRIORS[0]
-    assert (settings["exposure"].hard_min, settings["exposure"].hard_max) == (
-        -defaults.MAX_EXPOSURE,
-        defaults.MAX_EXPOSURE,
-    )
-    assert addon.lut_length == defaults.LUT_LENGTH
-    assert defaults.CONFIG_NAME == CONFIG_NAME
