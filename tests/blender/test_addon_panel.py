@@ -14,7 +14,7 @@ def image(addon, plate_file):
 
 
 class Layout:
-    """Stands for a layout; records what is drawn into it."""
+    """Stands for a layout; records what is drawn into it, and knows what a real layout can draw."""
 
     def __init__(self):
         self.drawn = []
@@ -24,7 +24,12 @@ class Layout:
         return self, self
 
     def __getattr__(self, name):
+        function = bpy.types.UILayout.bl_rna.functions[name]
+
         def draw(*arguments, **options):
+            assert options.keys() <= set(function.parameters.keys()), (name, options)
+            if "icon" in options:
+                assert options["icon"] in function.parameters["icon"].enum_items, (name, options)
             self.drawn.append((name, *arguments, *options.values()))
             return self
 
