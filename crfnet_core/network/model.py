@@ -14,7 +14,7 @@ from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
 MODELS = Path(__file__).parents[1] / "models"
-DEFAULT_MODEL = MODELS / "photograph-statistics-2.0"
+DEFAULT_MODEL = MODELS / "photograph-statistics-2.1"
 
 
 @dataclass(frozen=True)
