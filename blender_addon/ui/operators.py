@@ -150,9 +150,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
             return False
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
-        datablock = plates.active_datablock(context)
-        why = plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
-        if why:
+        if why := plates.obstacle_in(context):
             cls.poll_message_set(why)
         return not why
 

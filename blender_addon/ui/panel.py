@@ -11,7 +11,7 @@ from ..scene import plates, stored_estimate
 from . import running
 from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_text, letters_of
-from .image_tools import CRF_OT_pick_gray
+from .image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
 from .plate_settings import is_to_be_applied
@@ -45,8 +45,10 @@ class ResponsePanel:
             draw_text(layout, f'"{name}" comes with a restart.', letters_of(context), icon="COLOR")
         if run := running.current():
             _draw_progress(layout, run)
-        elif obstacle := _obstacle(context, datablock):
+        elif obstacle := plates.obstacle_in(context):
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
+            if plates.is_tiled(datablock):
+                layout.operator(CRF_OT_read_as_sequence.bl_idname, icon="SEQUENCE")
         else:
             layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
@@ -87,11 +89,6 @@ def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.separator()
     menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
     menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
-
-
-def _obstacle(context: bpy.types.Context, datablock: plates.Datablock | None) -> str:
-    """Return why no response can be estimated here, or an empty text."""
-    return plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
 
 
 def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:

@@ -264,3 +264,14 @@ def test_a_movie_needs_no_blender_of_its_own_once_estimated(movie, tmp_path, mon
     monkeypatch.setattr("blender_addon.work.frame_files.running_decoder", None)
     done = bpy.ops.crf.apply_response(image=image.name, apply="EXPORT", folder=str(tmp_path / "look"))
     assert done == {"FINISHED"}
+
+
+def test_a_movie_of_ten_bits_is_not_compared_but_says_why(movie, in_editor):
+    """Its pixels are floats that Blender has made linear by the colour space."""
+    image = load("image", movie("deep.mkv"))
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        bpy.ops.crf.estimate_response()
+        with pytest.raises(RuntimeError, match=r"deep.mkv: movies of more than 8 bits .* choose Nodes or Bake"):
+            bpy.ops.crf.compare(is_after=True)
+        assert space.image == image

@@ -155,6 +155,19 @@ def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
     assert operators(panel.layout.drawn) == []
 
 
+@pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
+def test_a_missing_library_is_told_before_there_is_a_plate(addon, in_editor, monkeypatch, editor):
+    from blender_addon import lazy_import
+    from blender_addon.ui.panel import ResponsePanel
+
+    monkeypatch.setattr(lazy_import, "missing", lambda: "onnxruntime is missing: install the add-on again")
+    panel = Panel()
+    with in_editor(editor):
+        ResponsePanel.draw(panel, bpy.context)
+        assert not bpy.ops.crf.estimate_response.poll()
+    assert " ".join(labels(panel.layout.drawn)) == "onnxruntime is missing: install the add-on again"
+
+
 def test_the_icon_is_drawn_once_per_estimate(image):
     from blender_addon.ui import estimate_box
     from blender_addon.work.curve_picture import SIZE
