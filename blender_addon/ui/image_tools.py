@@ -125,11 +125,11 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether the plate is made of tiles and may be changed."""
         datablock = plates.active_datablock(context)
-        return plates.is_tiled(datablock) and datablock.library is None
+        return datablock is not None and plates.is_tiled(datablock) and datablock.library is None
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Change the source of the image, which has its first frame as its file then."""
-        plates.active_datablock(context).source = "SEQUENCE"
+        """Change the source of the image."""
+        plates.chosen_datablock(context).source = "SEQUENCE"
         return {"FINISHED"}
 
 

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..work.run import CompletedJob
 
 #: What is reported of an estimate that is not applied because it is not to be trusted.
-WITHHELD = "nothing was changed; to use it all the same, press Apply Anyway"
+WITHHELD = "not applied; to use it all the same, press Apply Anyway"
 
 
 class PlateOperator(PlateChoices):
@@ -71,7 +71,8 @@ class PlateOperator(PlateChoices):
         except expected_errors() as problem:
             return self._fail(problem)
         context.window_manager.modal_handler_add(self)
-        self._run = running.start(context, job.plate.name, lambda progress: run(job, progress))
+        doing = "Applying" if self.is_estimated else "Estimating"
+        self._run = running.start(context, job.plate.name, lambda progress: run(job, progress), doing=doing)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
