@@ -16,10 +16,13 @@ def image(addon, plate_file):
 
 
 class Layout:
-    """Stands for a layout; records what is drawn into it, and knows what a real layout can draw."""
+    """Stands for a layout; records what is drawn and set, and knows what a real layout can draw."""
 
     def __init__(self):
-        self.drawn = []
+        vars(self)["drawn"] = []
+
+    def __setattr__(self, name, value):
+        self.drawn.append(("set", name, value))
 
     def panel(self, name, **options):
         """An open panel: its header and its body."""
@@ -79,7 +82,10 @@ def test_it_draws_every_mode(image, in_editor, mode):
     assert (("crf.apply_response", "Apply") in operators(drawn)) == (mode != "ESTIMATE")
     assert ("Choose under" in words) == (mode == "ESTIMATE")
     assert ("overwrite" in properties) == (mode in ("BAKE", "EXPORT"))
-    assert ("folder" in properties) == (mode in ("COLORSPACE", "BAKE", "EXPORT"))
+    usual = {"COLORSPACE": "Blender's own", "BAKE": "Beside the plate", "EXPORT": "Beside the plate"}
+    assert [entry[3] for entry in drawn if entry[0] == "prop" and entry[2] == "folder"] == [
+        usual[other] for other in usual if other == mode
+    ]
 
 
 @pytest.mark.parametrize(
@@ -101,6 +107,7 @@ def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdic
     assert ("The plate was not changed." in words) == is_doubted
     assert ("No camera explains it, so take another." in words) == is_doubted
     assert ("Look at the linear plate before you rely on it." in words) == (verdict == "usable")
+    assert [entry[2] for entry in drawn if entry[:2] == ("set", "alert")] == [is_doubted]  # and never of the button
     if is_doubted:
         bpy.ops.crf.apply_response(image=image.name, anyway=True)
         assert "The plate was not changed." not in " ".join(labels(drawn_in(image, in_editor)))

@@ -65,6 +65,11 @@ def test_the_panel_restarts_a_file_that_has_a_name(image, user_config, in_editor
     assert "Save the file first" not in " ".join(labels(drawn))
 
 
+def test_the_report_and_the_panel_say_the_same(image, user_config, capfd):
+    bpy.ops.crf.apply_response(image=image.name, apply="COLORSPACE", exposure=1)
+    assert 'restart due for "CRF plate": press Save and Restart' in capfd.readouterr().out
+
+
 def test_another_estimate_does_not_end_the_wait(image, user_config):
     from blender_addon.scene.stored_estimate import pending_color_space
 
