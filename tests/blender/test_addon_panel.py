@@ -23,6 +23,7 @@ class Layout:
 
     def __setattr__(self, name, value):
         self.drawn.append(("set", name, value))
+        vars(self)[name] = value
 
     def panel(self, name, **options):
         """An open panel: its header and its body."""
