@@ -32,7 +32,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     remember_settings(datablock, job)
     if not completed.is_applied:
-        return "nothing else was changed"
+        return "the plate was not changed"
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)
@@ -91,7 +91,7 @@ def _set_color_space(datablock: Datablock, installed: Installed, job: Job) -> st
         return f'its color space is "{name}"{kept}'
     if job.config.is_demanded or config.parent != color_management.user_folder():
         return f'restart Blender once with the environment variable OCIO set to {config} for "{name}"{kept}'
-    return f'save the file and restart Blender once: the color space "{name}" is there from then on{kept}'
+    return f'restart due for "{name}": press Save and Restart{kept}'
 
 
 def _keep_nodes_right(datablock: Datablock, name: str) -> str:

@@ -127,6 +127,19 @@ def datablock_of_plate(plate: Plate) -> Datablock:
     raise AddonError(f"{plate.name}: the image or clip was removed meanwhile")
 
 
+def obstacle_in(context: bpy.types.Context) -> str:
+    """Return why no response can be estimated in one of the `EDITORS`, or an empty text; reads no file."""
+    datablock = active_datablock(context)
+    if datablock is not None:
+        return obstacle(datablock)
+    return lazy_import.missing() or OPEN_A_PLATE[context.area.type]
+
+
+def is_tiled(datablock: Datablock | None) -> bool:
+    """Return whether Blender took the frames of an image for UDIM tiles."""
+    return datablock is not None and datablock.source == "TILED"
+
+
 def obstacle(datablock: Datablock) -> str:
     """Return why no response can be estimated from an image or clip, or an empty text; reads no file."""
     if problem := lazy_import.missing():
@@ -143,8 +156,7 @@ def obstacle(datablock: Datablock) -> str:
 #: Why images of some sources have no response to estimate.
 _OBSTACLES = {
     "VIEWER": "Renders have no camera response: open a photograph",
-    "TILED": "Blender took these files for UDIM tiles: set Source to Image Sequence in the Image tab, or open them"
-    " again without Detect UDIMs",
+    "TILED": "Blender took these files for UDIM tiles: set Source to Image Sequence",
 }
 
 

@@ -75,6 +75,11 @@ def lines(datablock: Datablock) -> list[str]:
     return datablock[KEY]["lines"].split("\n")
 
 
+def warnings(datablock: Datablock) -> list[str]:
+    """Return the warnings of the stored estimate."""
+    return datablock[KEY]["warnings"].splitlines()
+
+
 def curve_and_band(datablock: Datablock) -> Float64Array:
     """Return the stored response and the lower and upper end of its band, shape (3, 1024)."""
     entries = datablock[KEY]

@@ -6,7 +6,7 @@ running           the one run that is under way, and how its progress is shown
 panel             the sidebar panel and the menu entries of three editors
 estimate_box      what the panel shows of an estimate
 comparison        the linear plate in the place of the plate, for looking only
-image_tools       the Image Editor's before and after, and the eyedropper for gray
+image_tools       before and after, the eyedropper for gray, and frames that Blender took for UDIM tiles
 photographs       further photographs of the same camera
 config_operators  what is in the OpenColorIO config: list it, take it out, restart
 plate_settings    what can be chosen for one plate

@@ -84,13 +84,17 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     Raises
     ------
     AddonError
-        If Blender cannot read the image.
+        If Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels are not code values.
     PhotoError
         If its file cannot be read.
     """
     width, height = image.size
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
+    if image.is_float and image.source == "MOVIE":
+        raise AddonError(
+            f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
+        )
     if image.is_float and not image.packed_file:  # its pixels are linear light by the color space, not code values
         read_photo = lazy_import.load("crfnet_core.image_io").read_photo
         return read_photo(Path(image.filepath_from_user(image_user=user))).pixels[::-1]

@@ -21,6 +21,7 @@ from ..scene import color_management
 from ..work.errors import expected_errors
 from ..work.wording import american
 from . import comparison
+from .estimate_box import draw_text
 from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.
@@ -32,6 +33,10 @@ _CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 #: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
 #: because the interface is drawn without `ocio`.
 RECORD = Path("camera_response", "installed.json")
+
+
+#: How many letters fit into a line of the preferences.
+_LETTERS = 60
 
 
 class CRF_OT_restore_config(bpy.types.Operator):
@@ -132,14 +137,33 @@ def is_restart_due() -> bool:
     return _read_at_start is not None and _fingerprint() != _read_at_start
 
 
-def draw_restart(layout: bpy.types.UILayout) -> None:
-    """Draw that a restart is due, and the button that does it; nothing while none is."""
+def draw_restart(layout: bpy.types.UILayout, letters: int, pending: str = "") -> None:
+    """Draw that a restart is due, and the button that does it, or the one that must come before.
+
+    Nothing is drawn while no restart is due and no color space is waited for.
+
+    Parameters
+    ----------
+    layout : UILayout
+        Gets a box.
+    letters : int
+        How many letters fit into a line.
+    pending : str
+        The color space that the plate waits for; empty if it waits for none.
+    """
     if not is_restart_due():
+        if pending:  # the environment names the config, so that Blender must be started with another one
+            draw_text(layout, f'"{pending}" comes with a restart.', letters, icon="COLOR")
         return
-    box = layout.box().column(align=True)
-    box.label(text="Restart is due", icon="INFO")
-    box.label(text="for the color spaces", icon="BLANK1")
-    box.operator(CRF_OT_save_and_restart.bl_idname, icon="FILE_REFRESH")
+    box = layout.box()
+    draw_text(
+        box, f'Restart due for "{pending}".' if pending else "Restart due for color spaces.", letters, icon="INFO"
+    )
+    if bpy.data.filepath:
+        box.operator(CRF_OT_save_and_restart.bl_idname, icon="FILE_REFRESH")
+        return
+    draw_text(box, "Save the file first: it has no name yet.", letters)
+    box.operator("wm.save_as_mainfile", text="Save As...", icon="FILE_TICK")
 
 
 def draw_installed(layout: bpy.types.UILayout) -> None:
@@ -157,7 +181,7 @@ def draw_installed(layout: bpy.types.UILayout) -> None:
             row.label(text=name)
             row.operator(CRF_OT_remove_color_space.bl_idname, text="", icon="X").color_space = name
         box.operator(CRF_OT_restore_config.bl_idname, icon="LOOP_BACK")
-    draw_restart(layout)
+    draw_restart(layout, _LETTERS)
 
 
 @lru_cache(maxsize=1)

@@ -11,17 +11,25 @@ import bpy.utils.previews
 
 from ..scene import plates, stored_estimate
 from ..work import curve_picture
+from ..work.wording import capitalized, says_too_little
 from .image_tools import CRF_OT_compare
 
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
 
-#: Each verdict in a word or two, with its icon.
+#: Each verdict in a word or two, with its icon and what follows from it; the estimate says what to do if it is not to
+#: be trusted.
 VERDICTS = {
-    "good": ("Good", "CHECKMARK"),
-    "usable": ("Usable: check it", "INFO"),
-    stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR"),
+    "good": ("Good", "CHECKMARK", ""),
+    "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
+    stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
 }
+
+#: The same of a picture that hardly tells one response from another, whatever its verdict.
+MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the picture says too little of its response.")
+
+#: What the picture of the curve shows.
+CAPTION = "Code value by stops below white. Blue: 90 % band. Dashed: gamma 2.2."
 
 #: How a warning begins among the lines of an estimate.
 WARNING = "Warning: "
@@ -40,33 +48,40 @@ _LINE = 0.75
 def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw the stored estimate of a plate in one box."""
     letters = letters_of(context)
-    word, icon = VERDICTS[stored_estimate.verdict(datablock)]
+    word, icon, advice = _verdict_words(datablock)
     box = layout.box()
     column = box.column(align=True)
     row = column.row()
     row.alert = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
     row.label(text=word, icon=icon)
-    if row.alert:
-        draw_text(column, "Nothing else was changed.", letters)
+    if advice:
+        draw_text(column, advice, letters)
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops):
         column.label(text=f"Expected error {stops:.2f} stop")
     box.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_SMALLEST, _width(context) / _ICON)))
+    draw_text(box, CAPTION, letters)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
-    first, *others = stored_estimate.lines(datablock)
-    warnings = [line.removeprefix(WARNING) for line in others if line.startswith(WARNING)]
+    _, *others = stored_estimate.lines(datablock)
+    warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:
         draw_paragraphs(box, warnings, letters, icon="ERROR")
     header, body = layout.panel("CRF_details", default_closed=True)
     header.label(text="Details")
     if body is not None:
-        lines = [first, *(line for line in others if not line.startswith(WARNING))]
-        draw_paragraphs(body, [*lines, LEGEND], letters)
+        draw_paragraphs(body, [line for line in others if not line.startswith(WARNING)], letters)
 
 
-#: What the picture of the curve shows.
-LEGEND = "Curve: code value over light in stops below white; orange the response, blue its 90 % band, dashed gamma 2.2."
+def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
+    """Return the verdict in a word or two, its icon, and what follows from it or an empty text."""
+    verdict = stored_estimate.verdict(datablock)
+    if says_too_little(verdict, stored_estimate.warnings(datablock)):
+        return MEAN_OF_CAMERAS
+    word, icon, advice = VERDICTS[verdict]
+    if verdict == stored_estimate.DO_NOT_TRUST:  # the first line is "The estimate is not to be trusted: ..."
+        advice = capitalized(stored_estimate.lines(datablock)[0].partition(": ")[2])
+    return word, icon, advice
 
 
 def draw_paragraphs(layout: bpy.types.UILayout, lines: list[str], letters: int, *, icon: str = "NONE") -> None:

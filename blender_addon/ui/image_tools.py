@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The tools of the Image Editor: look at the plate before and after, and pick the brightness of gray in it."""
+"""Tools for images: look at the plate before and after, pick gray in it, make a sequence of what is taken for tiles."""
 
 from __future__ import annotations
 
@@ -113,6 +113,26 @@ class CRF_OT_pick_gray(bpy.types.Operator):
         return settings.gray
 
 
+class CRF_OT_read_as_sequence(bpy.types.Operator):
+    """Make an image sequence of frames that Blender took for UDIM tiles."""
+
+    bl_idname = "crf.read_as_sequence"
+    bl_label = "Set to Image Sequence"
+    bl_description = "Set Source to Image Sequence: the numbers in the file names are frames, not UDIM tiles"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether the plate is made of tiles and may be changed."""
+        datablock = plates.active_datablock(context)
+        return datablock is not None and plates.is_tiled(datablock) and datablock.library is None
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Change the source of the image."""
+        plates.chosen_datablock(context).source = "SEQUENCE"
+        return {"FINISHED"}
+
+
 def mean_around(codes: Float32Array, place: tuple[float, float]) -> float:
     """Return the mean brightness of red, green and blue in a square of pixels.
 
@@ -149,7 +169,7 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
 
 
-_CLASSES = (CRF_OT_compare, CRF_OT_pick_gray)
+_CLASSES = (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
 
 
 def register() -> None:

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from ..work.run import CompletedJob
 
 #: What is reported of an estimate that is not applied because it is not to be trusted.
-WITHHELD = "nothing was changed; to use it all the same, press Apply Anyway"
+WITHHELD = "not applied; to use it all the same, press Apply Anyway"
 
 
 class PlateOperator(PlateChoices):
@@ -71,7 +71,8 @@ class PlateOperator(PlateChoices):
         except expected_errors() as problem:
             return self._fail(problem)
         context.window_manager.modal_handler_add(self)
-        self._run = running.start(context, job.plate.name, lambda progress: run(job, progress))
+        doing = "Applying" if self.is_estimated else "Estimating"
+        self._run = running.start(context, job.plate.name, lambda progress: run(job, progress), doing=doing)
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
@@ -150,9 +151,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
             return False
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
-        datablock = plates.active_datablock(context)
-        why = plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
-        if why:
+        if why := plates.obstacle_in(context):
             cls.poll_message_set(why)
         return not why
 

@@ -11,10 +11,10 @@ from ..scene import plates, stored_estimate
 from . import running
 from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_text, letters_of
-from .image_tools import CRF_OT_pick_gray
+from .image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
-from .plate_settings import is_to_be_applied
+from .plate_settings import WITHOUT_FILES, is_applied, is_to_be_applied
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
@@ -40,13 +40,13 @@ class ResponsePanel:
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate, and the settings by which it is applied."""
         layout, datablock = self.layout, plates.active_datablock(context)
-        draw_restart(layout)
-        if name := stored_estimate.pending_color_space(datablock):
-            draw_text(layout, f'"{name}" comes with a restart.', letters_of(context), icon="COLOR")
+        draw_restart(layout, letters_of(context), stored_estimate.pending_color_space(datablock))
         if run := running.current():
             _draw_progress(layout, run)
-        elif obstacle := _obstacle(context, datablock):
+        elif obstacle := plates.obstacle_in(context):
             draw_text(layout, obstacle, letters_of(context), icon="INFO")
+            if plates.is_tiled(datablock):
+                layout.operator(CRF_OT_read_as_sequence.bl_idname, icon="SEQUENCE")
         else:
             layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
@@ -89,11 +89,6 @@ def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
     menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
 
 
-def _obstacle(context: bpy.types.Context, datablock: plates.Datablock | None) -> str:
-    """Return why no response can be estimated here, or an empty text."""
-    return plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
-
-
 def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
     """Draw how far the run is, with a button that cancels it."""
     row = layout.row(align=True)
@@ -119,8 +114,9 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     unit.label(text="stops")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
-    if settings.apply not in ("ESTIMATE", "NODES"):
-        column.prop(settings, "folder", placeholder="Beside the plate" if settings.apply != "COLORSPACE" else "")
+    if settings.apply not in WITHOUT_FILES:
+        usual = "Blender's own" if settings.apply == "COLORSPACE" else "Beside the plate"
+        column.prop(settings, "folder", placeholder=usual)
     if settings.apply in ("BAKE", "EXPORT"):
         column.prop(settings, "overwrite")
     if stored_estimate.is_stored(datablock):
@@ -130,17 +126,20 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
 
 
 def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw the button that applies the estimate, or what to choose first; say if settings wait to be applied."""
+    """Draw what has been applied, and the button that applies the estimate, or what to choose first."""
     if datablock.camera_response_settings.apply == "ESTIMATE":
         draw_text(layout, "Choose under Apply As what to make of the response.", letters_of(context))
         return
     is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
-    column = layout.column(align=True)
-    column.alert = not is_trusted
     text, icon = ("Apply", "CHECKMARK") if is_trusted else ("Apply Anyway", "ERROR")
-    column.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
-    if is_to_be_applied(datablock):
+    if is_applied(datablock):
+        draw_text(layout, "Applied with these settings.", letters_of(context), icon="CHECKMARK")
+        text, icon = "Apply Again", "FILE_REFRESH"
+    elif is_to_be_applied(datablock):
         draw_text(layout, "Changed settings count once they are applied.", letters_of(context), icon="INFO")
+    elif not is_trusted:
+        draw_text(layout, "The plate was not changed.", letters_of(context))
+    layout.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
 
 
 def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
@@ -158,8 +157,9 @@ def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup
 
 
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
-    """Return a column whose properties stand beside their names."""
+    """Return a column whose properties stand beside their names, gray while a run goes by earlier settings."""
     column = layout.column()
+    column.enabled = running.current() is None
     column.use_property_split = True
     column.use_property_decorate = False
     return column

@@ -37,6 +37,10 @@ _MODES = {number: name for name, number in _NUMBERS.items()}
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
 
 
+#: The ways to apply a response that write no file.
+WITHOUT_FILES = ("ESTIMATE", "NODES")
+
+
 class PlateChoices:
     """The choices for a plate that the panel offers and the operators take as arguments."""
 
@@ -120,6 +124,11 @@ def remember_applied(datablock: bpy.types.ID) -> None:
     stored_estimate.set_entry(datablock, APPLIED, _comparable(datablock.camera_response_settings))
 
 
+def is_applied(datablock: bpy.types.ID) -> bool:
+    """Return whether the estimate of a plate has been applied with its present settings."""
+    return APPLIED in datablock[stored_estimate.KEY] and not is_to_be_applied(datablock)
+
+
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:
     """Return whether settings of a plate with an estimate have been changed since they were applied."""
     applied = datablock[stored_estimate.KEY].get(APPLIED)
@@ -131,6 +140,7 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     names = [*APPLIED_SETTINGS]
     names += ["gray"] if settings.anchor == "GRAY" else []
     names += ["depth"] if settings.apply == "BAKE" else []
+    names += ["folder"] if settings.apply not in WITHOUT_FILES else []
     return {name: getattr(settings, name) for name in names}
 
 

@@ -38,10 +38,12 @@ class Run:
         The name of the plate.
     function : callable
         The job; see `BackgroundTask`.
+    doing : str
+        What the job does with the response, in a word that stands before the plate's name.
     """
 
-    def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any]) -> None:
-        self.name = name
+    def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any], doing: str) -> None:
+        self.name, self._doing = name, doing
         self.task: BackgroundTask[Any] = BackgroundTask(function)
         self._manager, self._workspace = context.window_manager, context.workspace
         self._timer = self._manager.event_timer_add(TICK, window=context.window)
@@ -51,8 +53,11 @@ class Run:
 
     @property
     def text(self) -> str:
-        """How far the job is, in words."""
-        return "Canceling" if self.task.is_cancelled else f"{self.name}: {self.task.percent} %"
+        """How far the job is, in words; without a number until there is one, as 0 % would look stuck."""
+        if self.task.is_cancelled:
+            return "Canceling"
+        percent = self.task.percent
+        return f"{self.name}: {percent} %" if percent else f"{self._doing} {self.name} ..."
 
     def cancel(self) -> None:
         """Ask the job to stop, and show that it was asked."""
@@ -68,7 +73,7 @@ class Run:
         since = time.monotonic() - self._shown_at
         if self._pause is None:
             self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
-        text = self.text if self.task.is_cancelled else f"Camera response of {self.text}  |  Esc to cancel"
+        text = self.text if self.task.is_cancelled else f"Camera response: {self.text}  |  Esc to cancel"
         if text == self._shown or since < self._pause:
             return
         self._shown, self._shown_at, self._pause = text, time.monotonic(), None
@@ -98,10 +103,10 @@ def current() -> Run | None:
     return _current
 
 
-def start(context: bpy.types.Context, name: str, function: Callable[..., Any]) -> Run:
+def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *, doing: str = "Estimating") -> Run:
     """Return a run that has just been started; there must be no other."""
     global _current
-    _current = Run(context, name, function)
+    _current = Run(context, name, function, doing)
     _current.show()
     _current.task.start()
     return _current

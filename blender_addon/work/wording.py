@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
@@ -28,6 +29,9 @@ _NAME = re.compile(r"[/\\\"']|\.\w")
 #: The estimation error in the units of the literature, which the panel leaves out.
 _ESTIMATION_ERROR = re.compile(r" \(E_est [\d.]+\)")
 
+#: How the warning begins of a picture that hardly tells one response from another, such as a gray card.
+_SAYS_TOO_LITTLE = "no window covers the range of brightness"
+
 #: Each verdict as a sentence about the response, for one-line reports.
 _SENTENCES = {
     "good": "the response is good",
@@ -46,11 +50,28 @@ def panel_line(line: str) -> str:
     return american(_ESTIMATION_ERROR.sub("", line))
 
 
+def capitalized(text: str) -> str:
+    """Return a text with a capital letter at its beginning; the others stay as they are."""
+    return text[:1].upper() + text[1:]
+
+
+def says_too_little(verdict: str, warnings: Iterable[str]) -> bool:
+    """Return whether an estimate is little more than the mean of cameras, though its verdict is good or usable."""
+    return verdict != "do not trust" and any(warning.startswith(_SAYS_TOO_LITTLE) for warning in warnings)
+
+
 def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
-    """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done."""
+    """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done.
+
+    Blender cuts lines that are too long in their middle, so the advice behind the colon of a warning is left out.
+    """
     first, *others = estimate.warnings or ("",)
-    warning = f" (warning: {first}{f', and {len(others)} more' if others else ''})" if first else ""
-    return american(f"{name}: {_SENTENCES[estimate.verdict.value]}{warning}; {done}")
+    finding = first.partition(": ")[0]
+    warning = f" (warning: {finding}{f', and {len(others)} more' if others else ''})" if first else ""
+    sentence = _SENTENCES[estimate.verdict.value]
+    if says_too_little(estimate.verdict.value, estimate.warnings):
+        sentence = "the response is little more than the mean of cameras"
+    return american(f"{name}: {sentence}{warning}; {done}")
 
 
 def _spelled(match: re.Match[str]) -> str:

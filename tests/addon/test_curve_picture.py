@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 from blender_addon.work.curve_picture import (
+    _SIGNS,
     BACKGROUND,
     BAND,
     BELOW,
@@ -15,6 +16,7 @@ from blender_addon.work.curve_picture import (
     SIZE,
     STOPS,
     WIDTH,
+    _draw_sign,
     draw_response,
 )
 
@@ -72,8 +74,26 @@ def test_the_axes_have_their_numbers(picture):
 
 
 def test_a_zero_is_a_ring(picture):
-    """The number below the right end, dot by dot."""
-    is_number = (np.abs(picture[..., :3] - NUMBER) < 1e-6).all(axis=2)
-    rows, columns = np.nonzero(is_number[:BELOW, column(-1) : SIZE])
-    sign = is_number[rows.min() : rows.max() + 1 : 4, column(-1) + columns.min() : column(-1) + columns.max() + 1 : 4]
-    np.testing.assert_array_equal(sign, [[1, 1, 1], [1, 0, 1], [1, 0, 1], [1, 0, 1], [1, 1, 1]])
+    """The number below the right end."""
+    sign = picture[:BELOW, column(0) - 12 : column(0) + 12, 0]
+    assert sign[:, 12].max() > 0.7  # above and below its middle
+    rows = np.nonzero(sign.max(axis=1) > 0.5)[0]
+    middle = sign[(rows.min() + rows.max()) // 2]
+    assert middle[12] == pytest.approx(BACKGROUND[0])
+    assert middle[:12].max() > 0.7
+    assert middle[13:].max() > 0.7
+
+
+def test_numbers_have_smooth_edges(picture):
+    shades = np.unique(np.round(picture[:BELOW, LEFT:, 0], 2))
+    assert ((shades > BACKGROUND[0] + 0.05) & (shades < NUMBER[0] - 0.05)).sum() > 10
+
+
+def test_no_sign_is_like_another():
+    signs = []
+    for sign in _SIGNS:
+        canvas = np.zeros((40, 40, 4), np.float32)
+        _draw_sign(canvas, sign, 10, 10)
+        signs.append(canvas[..., 0])
+    for n, sign in enumerate(signs):
+        assert all(np.abs(sign - other).sum() > 20 for other in signs[:n]), list(_SIGNS)[n]

@@ -4,7 +4,7 @@ import dataclasses
 
 import pytest
 
-from blender_addon.work.wording import american, panel_line, report_line
+from blender_addon.work.wording import american, capitalized, panel_line, report_line
 from crfnet_core.posterior import Verdict
 
 
@@ -34,6 +34,25 @@ def test_a_report_names_the_verdict_and_the_warning(estimate, plate_file):
     assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray photograph); done"
     two = dataclasses.replace(found, warnings=("gray photograph", "noise"))
     assert "(warning: gray photograph, and 1 more)" in report_line("plate", two, "done")
+
+
+def test_a_report_leaves_advice_out_so_that_it_is_not_cut(estimate, plate_file):
+    warning = "no window covers the range of brightness: expect a poor estimate"
+    found = dataclasses.replace(estimate(plate_file), verdict=Verdict.DO_NOT_TRUST, warnings=(warning,))
+    expected = "the response is not to be trusted (warning: no window covers the range of brightness); done"
+    assert report_line("plate", found, "done") == f"plate: {expected}"
+
+
+@pytest.mark.parametrize("verdict", [Verdict.GOOD, Verdict.USABLE])
+def test_a_picture_that_says_nothing_is_not_called_usable(estimate, plate_file, verdict):
+    warning = "no window covers the range of brightness: expect a poor estimate"
+    found = dataclasses.replace(estimate(plate_file), verdict=verdict, warnings=("saved by GIMP", warning))
+    assert report_line("card", found, "done").startswith("card: the response is little more than the mean of cameras (")
+
+
+def test_a_capital_letter_and_no_other_change():
+    assert capitalized("no camera of NIKON") == "No camera of NIKON"
+    assert capitalized("") == ""
 
 
 def test_a_verdict_is_a_sentence(estimate, plate_file):

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tests.helpers.images import write_image
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
@@ -14,10 +16,14 @@ def image(addon, plate_file):
 
 
 class Layout:
-    """Stands for a layout; records what is drawn into it, and knows what a real layout can draw."""
+    """Stands for a layout; records what is drawn and set, and knows what a real layout can draw."""
 
     def __init__(self):
-        self.drawn = []
+        vars(self)["drawn"] = []
+
+    def __setattr__(self, name, value):
+        self.drawn.append(("set", name, value))
+        vars(self)[name] = value
 
     def panel(self, name, **options):
         """An open panel: its header and its body."""
@@ -69,28 +75,43 @@ def test_it_draws_every_mode(image, in_editor, mode):
     assert "windows agree" in words
     assert "E_est" not in words
     assert "Expected error 0." in words
-    assert "The estimate is" in words
+    assert "The estimate is" not in words  # the verdict says it
+    assert "Dashed: gamma 2.2" in words
     assert "Most likely" in words
     assert "stops" in labels(drawn)
     assert "ignore_metadata" in properties
     assert (("crf.apply_response", "Apply") in operators(drawn)) == (mode != "ESTIMATE")
     assert ("Choose under" in words) == (mode == "ESTIMATE")
     assert ("overwrite" in properties) == (mode in ("BAKE", "EXPORT"))
-    assert ("folder" in properties) == (mode in ("COLORSPACE", "BAKE", "EXPORT"))
+    usual = {"COLORSPACE": "Blender's own", "BAKE": "Beside the plate", "EXPORT": "Beside the plate"}
+    assert [entry[3] for entry in drawn if entry[0] == "prop" and entry[2] == "folder"] == [
+        usual[other] for other in usual if other == mode
+    ]
 
 
 @pytest.mark.parametrize(
     ("verdict", "word", "icon"),
-    [("good", "Good", "CHECKMARK"), ("usable", "Usable: check it", "INFO"), ("do not trust", "Do not trust", "ERROR")],
+    [("good", "Good", "CHECKMARK"), ("usable", "Usable", "INFO"), ("do not trust", "Do not trust", "ERROR")],
 )
 def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdict, word, icon):
     image["camera_response"]["verdict"] = verdict
+    image["camera_response"]["warnings"] = ""
+    image["camera_response"]["lines"] = (
+        "The estimate is so: no camera explains it, so take another.\nMost likely a film."
+    )
     image.camera_response_settings.apply = "NODES"
     drawn = drawn_in(image, in_editor)
     assert next(entry for entry in drawn if entry[0] == "label") == ("label", word, icon)
     button = "Apply Anyway" if verdict == "do not trust" else "Apply"
     assert [text for name, text in operators(drawn) if name == "crf.apply_response"] == [button]
-    assert ("Nothing else was changed." in " ".join(labels(drawn))) == (verdict == "do not trust")
+    words, is_doubted = " ".join(labels(drawn)), verdict == "do not trust"
+    assert ("The plate was not changed." in words) == is_doubted
+    assert ("No camera explains it, so take another." in words) == is_doubted
+    assert ("Look at the linear plate before you rely on it." in words) == (verdict == "usable")
+    assert [entry[2] for entry in drawn if entry[:2] == ("set", "alert")] == [is_doubted]  # and never of the button
+    if is_doubted:
+        bpy.ops.crf.apply_response(image=image.name, anyway=True)
+        assert "The plate was not changed." not in " ".join(labels(drawn_in(image, in_editor)))
 
 
 def test_every_line_fits_the_sidebar(image, in_editor):
@@ -100,7 +121,20 @@ def test_every_line_fits_the_sidebar(image, in_editor):
     for entry in drawn:
         if entry[0] == "label" and len(entry) > 2:
             assert len(entry[1]) <= (20 if entry[2] == "NONE" else 17), entry
-    assert "so the edges say nothing" in " ".join(labels(drawn))
+    assert "This photograph is gray, so the edges say nothing" in " ".join(labels(drawn))
+
+
+def test_a_gray_card_is_no_more_than_the_mean_of_cameras(addon, in_editor, tmp_path):
+    """Its verdict may be usable or even good, but the warning below says that the picture says nothing."""
+    card = bpy.data.images.load(str(write_image(tmp_path / "card.png", np.full((256, 256, 3), 118, np.uint8))))
+    bpy.ops.crf.estimate_response(image=card.name)
+    for verdict in ("good", "usable", "do not trust"):
+        card["camera_response"]["verdict"] = verdict
+        drawn = drawn_in(card, in_editor)
+        first = next(entry for entry in drawn if entry[0] == "label")
+        assert first[1] == ("Do not trust" if verdict == "do not trust" else "Mean of cameras")
+        assert "Look at the linear plate" not in " ".join(labels(drawn))
+        assert "No window covers the range of brightness" in " ".join(labels(drawn))
 
 
 def test_an_obstacle_is_drawn_and_not_only_a_gray_button(addon, in_editor):
@@ -111,10 +145,25 @@ def test_an_obstacle_is_drawn_and_not_only_a_gray_button(addon, in_editor):
 
 
 def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
-    assert "Changed settings" not in " ".join(labels(drawn_in(image, in_editor)))
+    image.camera_response_settings.apply = "NODES"
+    assert (shown(image, in_editor)) == ("Apply", False, False)
+    bpy.ops.crf.apply_response(image=image.name)
+    assert shown(image, in_editor) == ("Apply Again", True, False)
     image.camera_response_settings.exposure = 1
-    assert "Changed settings" in " ".join(labels(drawn_in(image, in_editor)))
+    assert shown(image, in_editor) == ("Apply", False, True)
+    image.camera_response_settings.exposure = 0
+    assert shown(image, in_editor) == ("Apply Again", True, False)
+    bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")  # another response, which is not applied
+    image.camera_response_settings.apply = "NODES"
+    assert shown(image, in_editor) == ("Apply", False, False)
+
+
+def shown(image, in_editor):
+    """The button, and whether the settings are said to be applied, or to wait for it."""
+    drawn = drawn_in(image, in_editor)
+    (button,) = (text for name, text in operators(drawn) if name == "crf.apply_response")
+    words = " ".join(labels(drawn))
+    return button, "Applied with these settings." in words, "Changed settings count" in words
 
 
 def test_every_property_that_it_draws_exists(image, in_editor):
@@ -153,6 +202,19 @@ def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
         ResponsePanel.draw(panel, bpy.context)
     assert " ".join(labels(panel.layout.drawn)) == OPEN_A_PLATE[editor]
     assert operators(panel.layout.drawn) == []
+
+
+@pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
+def test_a_missing_library_is_told_before_there_is_a_plate(addon, in_editor, monkeypatch, editor):
+    from blender_addon import lazy_import
+    from blender_addon.ui.panel import ResponsePanel
+
+    monkeypatch.setattr(lazy_import, "missing", lambda: "onnxruntime is missing: install the add-on again")
+    panel = Panel()
+    with in_editor(editor):
+        ResponsePanel.draw(panel, bpy.context)
+        assert not bpy.ops.crf.estimate_response.poll()
+    assert " ".join(labels(panel.layout.drawn)) == "onnxruntime is missing: install the add-on again"
 
 
 def test_the_icon_is_drawn_once_per_estimate(image):

@@ -7,6 +7,8 @@ from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+from .test_addon_panel import drawn_in, operators  # noqa: E402 - after the skip
+
 
 @pytest.fixture
 def compositor(addon, plate_file, in_editor):
@@ -61,7 +63,7 @@ def test_a_gif_is_called_a_gif(addon, tmp_path):
         bpy.ops.crf.estimate_response(image=image.name)
 
 
-def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes):
+def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes, in_editor):
     from blender_addon.scene.plates import obstacle, plate_of
     from blender_addon.work.frame_files import frames_of
 
@@ -71,7 +73,12 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
     bpy.ops.image.open(filepath=first, directory=str(tmp_path), files=files, use_udim_detecting=True)
     (image,) = (image for image in bpy.data.images if image.source == "TILED")
     assert "set Source to Image Sequence" in obstacle(image)
-    image.source = "SEQUENCE"
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        assert ("crf.read_as_sequence", "SEQUENCE") in operators(drawn_in(image, in_editor))
+        assert bpy.ops.crf.read_as_sequence() == {"FINISHED"}
+        assert not bpy.ops.crf.read_as_sequence.poll()
+    assert image.source == "SEQUENCE"
     assert obstacle(image) == ""
     assert frames_of(plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
 

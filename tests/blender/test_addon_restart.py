@@ -38,8 +38,11 @@ def test_a_restart_is_due_until_it_is_done(image, user_config, in_editor, monkey
 
     for _ in range(2):  # and not only once
         drawn = drawn_in(image, in_editor)
-        assert "crf.save_and_restart" in [entry[1] for entry in drawn if entry[0] == "operator"]
-        assert '"CRF plate" comes' in " ".join(labels(drawn))
+        buttons = [entry[1] for entry in drawn if entry[0] == "operator"]
+        assert "wm.save_as_mainfile" in buttons  # the file has no name
+        assert "crf.save_and_restart" not in buttons
+        assert 'Restart due for "CRF plate". Save the file first' in " ".join(labels(drawn))
+        assert "comes with a restart" not in " ".join(labels(drawn))
     with monkeypatch.context() as restarted:  # what the next Blender reads at its start
         restarted.setattr(config_operators, "_read_at_start", config_operators._fingerprint())
         drawn = drawn_in(image, in_editor)
@@ -50,6 +53,21 @@ def test_a_restart_is_due_until_it_is_done(image, user_config, in_editor, monkey
         assert config_operators.is_restart_due()
         bpy.ops.crf.restore_config()
         assert config_operators.is_restart_due()  # the config that Blender runs on is gone
+
+
+def test_the_panel_restarts_a_file_that_has_a_name(image, user_config, in_editor, tmp_path):
+    image.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    drawn = drawn_in(image, in_editor)
+    buttons = [entry[1] for entry in drawn if entry[0] == "operator"]
+    assert "crf.save_and_restart" in buttons
+    assert "wm.save_as_mainfile" not in buttons
+    assert "Save the file first" not in " ".join(labels(drawn))
+
+
+def test_the_report_and_the_panel_say_the_same(image, user_config, capfd):
+    bpy.ops.crf.apply_response(image=image.name, apply="COLORSPACE", exposure=1)
+    assert 'restart due for "CRF plate": press Save and Restart' in capfd.readouterr().out
 
 
 def test_another_estimate_does_not_end_the_wait(image, user_config):

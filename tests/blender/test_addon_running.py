@@ -132,7 +132,9 @@ def test_the_panel_shows_the_progress_and_cancels(waiting, in_editor, image):
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image
         ResponsePanel.draw(panel, bpy.context)
-    assert ("progress", 0.0, "plate: 0 %") in panel.layout.drawn
+    assert ("progress", 0.0, "Estimating plate ...") in panel.layout.drawn
     drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
     assert "crf.cancel_run" in drawn
+    assert ("set", "enabled", False) in panel.layout.drawn  # the settings, which no longer count for this run
+    assert ("set", "enabled", True) not in panel.layout.drawn
     assert "crf.estimate_response" not in drawn
