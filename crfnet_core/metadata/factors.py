@@ -25,8 +25,9 @@ FACTORS: dict[str, tuple[float, ...]] = {
     Device.CAMERA: (0.03, 0.1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
     Device.SCANNER: (0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
-    # Web pages and messengers strip EXIF from camera pictures; frames, scans and renderings never had it.
-    "no camera": (0.6, 0.6, 0.6, 0.8, 1, 1, 1, 1),
+    # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
+    # data, renderings and screenshots never had it.
+    "no camera": (0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),
     # Who saves from an editor mostly changed tones, though some only scale or turn; developers also write the rest.
     "editor": (1, 1, 1, 5, 2, 2, 1, 2),
     # Nothing but the camera has written the file; its picture may still be flat on purpose, or an app's.

@@ -64,9 +64,10 @@ class Posterior:
             average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
             after = before + prior.evidence * likelihoods[ordinary]
             logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
-            for family, gain in zip(STATED_ODDS, prior.unusual_evidence * (log_odds - average), strict=True):
+            gains = _bounded(log_odds - average, prior.lookalikes)
+            for family, gain in zip(STATED_ODDS, gains, strict=True):
                 logarithms[bank.of(family)] += gain
-            unexplained += float(prior.unusual_evidence * (log_odds - average)[STATED_ODDS.index(Family.UNEXPLAINED)])
+            unexplained += float(gains[STATED_ODDS.index(Family.UNEXPLAINED)])
         explained = _log_sum(logarithms)
         weights = np.exp(logarithms - explained)
         return cls(bank, weights, float(1 / (1 + np.exp(min(explained - unexplained, 700.0)))))
@@ -131,6 +132,14 @@ def _log_sum(logarithms: Float64Array) -> float:
     """Return the logarithm of a sum of numbers whose logarithms are given."""
     largest = logarithms.max()
     return float(largest + np.log(np.exp(logarithms - largest).sum()))
+
+
+def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
+    """Return log odds of unusual families, if a share of ordinary photographs looks to the network as unusual ones do.
+
+    Such photographs add to the likelihood of ordinary responses: the odds x become x / (1 - lookalikes + lookalikes x).
+    """
+    return log_odds - np.logaddexp(np.log1p(-lookalikes), _log(lookalikes) + log_odds)
 
 
 def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:

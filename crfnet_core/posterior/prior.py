@@ -28,21 +28,22 @@ class Prior:
     evidence : float
         Exponent on the likelihood of ordinary responses, in [0, 1]. Evidence is learned from simulated photographs; on
         real ones it is worth less, and this is how much.
-    unusual_evidence : float
-        The same of the families `STATED_ODDS` against all ordinary responses together.
+    lookalikes : float
+        Share of ordinary photographs that look to the network as unusual pictures do, in [0, 1). The pixels alone
+        never raise the odds of an unusual family by more than 1 / lookalikes; 0 sets no bound.
     """
 
     name: str
     shares: Mapping[Family, float]
     evidence: float
-    unusual_evidence: float = 1.0
+    lookalikes: float = 0.0
 
     @classmethod
     def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
-        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.25, "unusual_evidence": 0.45}`; families that it
-        leaves out have no share, and without "unusual_evidence" it is that of "evidence".
+        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.25, "lookalikes": 0.03}`; families that it leaves
+        out have no share, and "lookalikes" is 0 unless it is given.
 
         Raises
         ------
@@ -64,17 +65,18 @@ class Prior:
     def _of_entries(cls, path: Path, entries: object) -> Prior:
         """Return the prior that a JSON file describes, or say what is wrong with it."""
         example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.25}'
-        if not isinstance(entries, dict) or set(entries) - {"unusual_evidence"} != {"shares", "evidence"}:
+        if not isinstance(entries, dict) or set(entries) - {"lookalikes"} != {"shares", "evidence"}:
             raise PriorError(f"{path}: {example}")
-        shares, evidence = entries["shares"], entries["evidence"]
-        exponents = [evidence, entries.get("unusual_evidence", evidence)]
+        shares, evidence, lookalikes = entries["shares"], entries["evidence"], entries.get("lookalikes", 0.0)
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
             raise PriorError(f"{path}: shares are of {', '.join(Family)}")
-        numbers = [*shares.values(), *exponents]
+        numbers = [*shares.values(), evidence, lookalikes]
         if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-2]):
-            raise PriorError(f"{path}: shares and evidence are numbers from 0 to 1, and one share is above 0")
+            raise PriorError(f"{path}: its values are numbers from 0 to 1, and one share is above 0")
+        if lookalikes == 1:
+            raise PriorError(f"{path}: lookalikes is a share of all photographs, below 1")
         total = sum(shares.values())
-        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, *exponents)
+        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, evidence, lookalikes)
 
     def given(self, factors: Mapping[Family, float]) -> Prior:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""

@@ -49,12 +49,29 @@ class NetworkConfig:
     kind_dropout: float = 0.15
 
 
+#: The kinds of features, as `Embedding` names their layers.
+KINDS = ("levels", "edges", "equations", "candidates")
+
+
 class KindLayer(nn.Module):
-    """One kind of features to a vector: normalisation, kind dropout in training, and a dense layer."""
+    """One kind of features to a vector: normalisation, kind dropout in training, and a dense layer.
+
+    Parameters
+    ----------
+    features : int
+        How many there are.
+    config : NetworkConfig
+        The sizes of the network.
+
+    Attributes
+    ----------
+    is_left_out : bool
+        Whether all features are set to 0, as training does at random: to measure what a kind is worth.
+    """
 
     def __init__(self, features: int, config: NetworkConfig) -> None:
         super().__init__()
-        self.kind_dropout = config.kind_dropout
+        self.kind_dropout, self.is_left_out = config.kind_dropout, False
         self.normalization = nn.BatchNorm1d(features, affine=False)
         self.dense = _dense(features, config)
 
@@ -65,6 +82,8 @@ class KindLayer(nn.Module):
 
     def drop_kind(self, features: Tensor) -> Tensor:
         """Return the features; in training, all of some rows are 0 so that the network relies on no kind alone."""
+        if self.is_left_out:
+            return torch.zeros_like(features)
         if not self.training:
             return features
         row = (len(features), *[1] * (features.ndim - 1))

@@ -31,8 +31,9 @@ SHOT, READ = 5e-5, 4e-4
 SEED = 2017
 JPEG_QUALITY = 95
 
-#: Highlight roll-off (1 is none) and strength of the S-curve (0 is none, 1 is smoothstep).
-ROLL_OFF, CONTRAST = 2.0, 0.4
+#: Highlight roll-off (1 is none) and strength of the S-curve (0 is none, 1 is smoothstep). So this response is about as
+#: far from the mean of measured cameras as half of them are: 0.09 stop and an E_est of 1.4 (they 0.09 and 1.1).
+ROLL_OFF, CONTRAST = 1.5, 0.8
 
 
 def camera_response(irradiance: Float64Array) -> Float64Array:

@@ -63,15 +63,18 @@ def test_the_exponent_of_the_prior_weakens_the_evidence_among_ordinary_responses
     np.testing.assert_allclose(unmoved, start[bank.ordinary] / start[bank.ordinary].sum())
 
 
-@pytest.mark.parametrize(("exponent", "share"), [(0.0, 0.2), (0.5, 0.5), (1.0, 0.8)])
-def test_the_unusual_families_have_an_exponent_of_their_own(bank, exponent, share):
-    """By hand: the average likelihood of ordinary responses is 1 / 16 of that of LOG, at prior odds of 1 to 4."""
+@pytest.mark.parametrize(("lookalikes", "share"), [(0.0, 4 / 5), (0.2, 1 / 2), (0.6, 2 / 7)])
+def test_lookalikes_bound_what_pixels_say_for_unusual_families(bank, lookalikes, share):
+    """By hand: LOG is 16 times as likely as the average of ordinary responses, at prior odds of 1 to 4.
+
+    The odds of 16 become 16, 16 / (0.8 + 3.2) = 4, and 16 / (0.4 + 9.6) = 1.6.
+    """
     evidence = evidence_for(bank.weights[4], precision=0.7)
     ordinary = np.exp(evidence.log_likelihoods(bank))[bank.ordinary]
     start = Posterior.of(bank, even_prior()).weights[bank.ordinary]
     log_odds = (-50.0, float(np.log(16 * (start @ ordinary) / start.sum())), -50.0)
     shares = {Family.PHONE: 4 / 15, Family.CAMERA: 4 / 15, Family.FILM: 4 / 15, Family.LOG: 0.2}
-    prior = Prior("p", shares, 0.3, exponent)
+    prior = Prior("p", shares, 0.3, lookalikes)
     posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[4], precision=0.7, log_odds=log_odds)])
     assert posterior.families[Family.LOG] == pytest.approx(share)
 

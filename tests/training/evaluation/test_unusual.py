@@ -9,6 +9,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
+from crfnet_core.metadata import FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.unusual import (
     accepted_by_kind,
@@ -60,18 +61,18 @@ def test_good_and_usable_are_accepted():
     assert accepted_overall({}).share == 0
 
 
-def test_p6_asks_once_with_the_prior_of_cameras_and_without_metadata(scene, fixed_model, tmp_path, monkeypatch):
+def test_p6_asks_once_as_of_files_that_name_no_camera(scene, fixed_model, tmp_path, monkeypatch):
     asked = []
 
     def estimate(photo, *, network, **options):
-        asked.append(options)
+        asked.append((photo.metadata, options))
         return SimpleNamespace(verdict=Verdict.GOOD if "solarised" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
     kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.PALETTE), [File(scene, "a"), File(scene, "b")]
     file = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     measure_unusual(scenes, {"m": fixed_model}, {"m": file}, kinds=kinds)
-    assert asked == [{"use_metadata": False}] * 4
+    assert asked == [(FileMetadata(file_format="PNG"), {})] * 4
     again = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     assert again.verdicts == file.verdicts
     assert list(again.verdicts) == ["a, solarised or inverted", "a, palette", "b, solarised or inverted", "b, palette"]

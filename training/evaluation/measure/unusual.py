@@ -4,12 +4,14 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate import estimate_response
+from crfnet_core.metadata import FileMetadata
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Verdict
@@ -17,6 +19,9 @@ from training.evaluation.measure.verdict_files import VerdictFile
 from training.evaluation.report.unusual import Accepted, UnusualReport
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
+
+#: The metadata of the pictures: no program or camera that makes such pictures writes the EXIF of a camera.
+NO_CAMERA = FileMetadata(file_format="PNG")
 
 #: Seed of the pictures. Each has a generator of its own, so a kind that is added last changes no other picture.
 SEED = 2017
@@ -29,7 +34,7 @@ def measure_unusual(
     *,
     kinds: Sequence[UnusualKind] = tuple(UnusualKind),
 ) -> None:
-    """Add to the verdict files what they lack, with the prior "camera" and without metadata.
+    """Add to the verdict files what they lack, with the prior "camera", as of files that name no camera.
 
     Parameters
     ----------
@@ -50,7 +55,7 @@ def measure_unusual(
     for one, (_, photo) in zip(labels, pictures, strict=True):
         for name, file in files.items():
             if one not in file.verdicts:
-                estimate = estimate_response(photo, network=networks[name], use_metadata=False)
+                estimate = estimate_response(replace(photo, metadata=NO_CAMERA), network=networks[name])
                 file.verdicts[one] = estimate.verdict
                 file.save()
 

@@ -9,8 +9,8 @@ from training.evaluation.report.markdown_tables import rows_of
 from training.evaluation.report.real.content import RealReport, ways_of
 
 INTRODUCTION = """\
-Every kind of picture of every test scene, asked with the prior "camera" and without metadata. "Accepted" are those that
-the model calls "good" or "usable": the fewer the better.
+Every kind of picture of every test scene, as a file that names no camera, with the prior "camera". "Accepted" are those
+that the model calls "good" or "usable": the fewer the better.
 """
 
 REFUSED_TEXT = """\
