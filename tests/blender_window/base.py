@@ -15,7 +15,7 @@ from typing import Any
 from tests.blender_window.artist import Artist
 from tests.blender_window.png import write_png
 from tests.blender_window.screen import Picture, Screen
-from tests.blender_window.session import Blender
+from tests.blender_window.session import LAST, Blender
 
 #: Where `make test-blender-window` says what to use.
 BLENDER, ZIP, FILES, PICTURES = (f"CRFNET_WINDOW_{name}" for name in ("BLENDER", "ZIP", "FILES", "PICTURES"))
@@ -44,12 +44,20 @@ class WindowTest(unittest.TestCase):
         self.folder = Path(tempfile.mkdtemp(prefix="crf_window_"))
         self.addCleanup(shutil.rmtree, self.folder, ignore_errors=True)
         self.home = self.folder / "home"
+        self.blenders: list[Blender] = []
         if self.is_installed:
             copy_home(installed_home(), self.home)
+
+    def tearDown(self) -> None:
+        """Assert that no Blender has printed a traceback: what fails while a panel is drawn is told nowhere else."""
+        for blender in self.blenders:
+            blender.quit()
+            assert "Traceback" not in blender.printed, blender.printed[-LAST:]
 
     def start(self, file: Path | None = None, *, scale: int = 1, theme: str = "dark") -> Artist:
         """Return an artist at a Blender that has just started."""
         blender = Blender(os.environ[BLENDER], screen(*SIZES[scale]), self.home, file)
+        self.blenders.append(blender)
         self.addCleanup(blender.quit)
         return Artist(blender, scale=scale, theme=theme)
 
@@ -112,7 +120,7 @@ def installed_home() -> Path:
     atexit.register(shutil.rmtree, folder, ignore_errors=True)
     with Blender(os.environ[BLENDER], screen(*SIZES[1]), folder / "home") as blender:
         if not blender.call("runs.install", str(package())):
-            raise RuntimeError(f"the add-on is not enabled: {blender.log.read_text(errors='replace')[-2000:]}")
+            raise RuntimeError(f"the add-on is not enabled: {blender.printed[-LAST:]}")
     return folder / "home"
 
 

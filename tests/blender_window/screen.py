@@ -56,6 +56,13 @@ class Picture:
         starts = [3 * (row * self.width + box.x) for row in rows]
         return Picture(box.width, box.height, b"".join(self.rgb[at : at + 3 * box.width] for at in starts))
 
+    def trimmed(self) -> Picture:
+        """Return the picture without the equal rows at its lower end, all but one of them."""
+        rows = [self.rgb[at : at + 3 * self.width] for at in range(0, len(self.rgb), 3 * self.width)]
+        while len(rows) > 1 and rows[-1] == rows[-2]:
+            rows.pop()
+        return Picture(self.width, len(rows), b"".join(rows))
+
     def difference(self, other: Picture) -> float:
         """Return the fraction of pixels that differ from those of a picture of the same size."""
         if self.rgb == other.rgb:

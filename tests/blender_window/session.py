@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import socket
 import subprocess
 import tempfile
@@ -15,6 +16,9 @@ from tests.blender_window.screen import Screen
 
 #: What runs inside Blender.
 INSIDE = Path(__file__).parent / "inside" / "serve.py"
+
+#: How many of the last letters that Blender printed an error tells.
+LAST = 2000
 
 #: Seconds that Blender may take to start, and to answer.
 START, ANSWER = 120, 180
@@ -38,10 +42,10 @@ class Blender:
     def __init__(self, program: str, screen: Screen, home: Path, file: Path | None = None) -> None:
         self.screen, self.home, self.user = screen, home, home / "blender"
         self._folder = Path(tempfile.mkdtemp(prefix="crf_blender_"))
-        self._socket, self.log = self._folder / "socket", self._folder / "log"
+        self._socket, self._log, self._printed = self._folder / "socket", self._folder / "log", ""
         command = [program, "--window-geometry", "0", "0", str(screen.width), str(screen.height)]
         command += [*([str(file)] if file else []), "--python", str(INSIDE), "--", str(self._socket)]
-        with self.log.open("wb") as log:
+        with self._log.open("wb") as log:
             self._process = subprocess.Popen(command, env=self._environment(), stdout=log, stderr=log)
         self._wait()
 
@@ -59,6 +63,11 @@ class Blender:
         """Return what a Python expression is worth inside Blender: numbers, texts, lists and dictionaries of them."""
         return self._ask({"expression": expression})
 
+    @property
+    def printed(self) -> str:
+        """What Blender has printed so far, its errors among it."""
+        return self._log.read_text(encoding="utf-8", errors="replace") if self._log.exists() else self._printed
+
     def quit(self) -> None:
         """End Blender as its user does, by the operator; kill it if it does not end."""
         if self._process.poll() is None:
@@ -68,6 +77,9 @@ class Blender:
             except (OSError, RuntimeError, subprocess.TimeoutExpired):
                 self._process.kill()
                 self._process.wait()
+        if self._folder.exists():
+            self._printed = self.printed
+            shutil.rmtree(self._folder)
 
     def _environment(self) -> dict[str, str]:
         """Return the environment of a user who has set nothing."""
@@ -90,14 +102,14 @@ class Blender:
         deadline = time.monotonic() + START
         while time.monotonic() < deadline:
             if self._process.poll() is not None:
-                raise RuntimeError(f"Blender ended: {self.log.read_text(errors='replace')[-2000:]}")
+                raise RuntimeError(f"Blender ended: {self.printed[-LAST:]}")
             try:
                 self.value("1")
                 return
             except (FileNotFoundError, ConnectionRefusedError):
                 time.sleep(0.1)
         self._process.kill()
-        raise RuntimeError(f"Blender did not start in {START} s: {self.log.read_text(errors='replace')[-2000:]}")
+        raise RuntimeError(f"Blender did not start in {START} s: {self.printed[-LAST:]}")
 
     def _ask(self, question: dict[str, Any]) -> Any:
         """Return the answer to a question; RuntimeError with Blender's traceback if it failed."""
@@ -109,7 +121,7 @@ class Blender:
                 line = stream.readline()
         if not line:
             code = self._process.poll()
-            raise RuntimeError(f"Blender ended with {code}: {self.log.read_text(errors='replace')[-2000:]}")
+            raise RuntimeError(f"Blender ended with {code}: {self.printed[-LAST:]}")
         found = json.loads(line)
         if "error" in found:
             raise RuntimeError(found["error"])

@@ -27,7 +27,7 @@ class TestPictures(WindowTest):
         def keep(state):
             whole = artist.picture()
             self.keep(whole, f"window_{state}_{theme}_{scale}x")
-            self.keep(whole.cropped(artist.sidebar()), f"panel_{state}_{theme}_{scale}x")
+            self.keep(whole.cropped(artist.sidebar()).trimmed(), f"panel_{state}_{theme}_{scale}x")
 
         artist.open(self.plate("plate.jpg"))
         keep("before")
