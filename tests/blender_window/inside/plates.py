@@ -70,8 +70,10 @@ def tree() -> Any:
 
 
 def plate_nodes(name: str) -> list[bpy.types.Node]:
-    """Return the nodes of the compositor that show an image."""
-    return [node for node in tree().nodes if node.type == "IMAGE" and node.image == bpy.data.images[name]]
+    """Return the nodes of the compositor that show the file of an image."""
+    file = bpy.path.abspath(bpy.data.images[name].filepath)
+    shown = [node for node in tree().nodes if node.type == "IMAGE" and node.image]
+    return [node for node in shown if bpy.path.abspath(node.image.filepath) == file]
 
 
 def groups_behind(name: str) -> list[str]:
