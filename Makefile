@@ -36,7 +36,7 @@ demo: $(PLOT)/ready  ## one photograph to LUTs, OCIO config, linear plate and sh
 	@$(PLOT)/bin/crfnet estimate $(PHOTO) --out $(DEMO) --overwrite
 	@$(PLOT)/bin/python tests/demo.py $(DEMO)
 
-addon: $(ADDON)/ready  ## the Blender extension, one zip per platform, in dist/ (downloads 120 MB, once)
+addon: $(ADDON)/ready  ## the Blender extension, one zip per platform and one for Linux distributions, in dist/ (downloads 160 MB, once)
 	$(ADDON)/bin/python blender_addon/build.py
 
 test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as skipped

@@ -28,6 +28,18 @@ def unregister() -> None:
 
 def _registered() -> tuple[ModuleType, ...]:
     """Return the modules with something to register, in order: the settings use the preferences."""
-    from .ui import handlers, operators, panel, plate_settings, preferences
+    from .ui import (
+        config_operators,
+        estimate_box,
+        handlers,
+        image_tools,
+        menus,
+        operators,
+        panel,
+        photographs,
+        plate_settings,
+        preferences,
+    )
 
-    return preferences, plate_settings, operators, panel, handlers
+    tools = (operators, image_tools, photographs, config_operators)
+    return (preferences, plate_settings, *tools, estimate_box, panel, menus, handlers)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Build the Blender extension, one zip per platform: `make addon`. Needs only the standard library and pip.
+"""Build the Blender extension, one zip per platform and one for the Blenders of Linux distributions: `make addon`.
 
-The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so the next build needs no network. The
-same sources give the same bytes: the members of a zip are sorted by name, uncompressed, and all of one date; the wheel
-of `crfnet_core` and `ocio` is built by the setuptools of wheels.sha256 from a folder that holds nothing else.
+Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so
+the next build needs no network. The same sources give the same bytes: the members of a zip are sorted by name,
+uncompressed, and all of one date; the wheel of `crfnet_core` and `ocio` is built by the setuptools of wheels.sha256,
+from a folder that holds nothing else.
 """
 
 from __future__ import annotations
@@ -37,6 +38,15 @@ WHEEL_PLATFORMS = {
     "windows-x64": ("win", "amd64"),
 }
 
+#: The versions of Python in Blender as blender.org builds it, whose wheels are in the zip of each platform.
+OFFICIAL_PYTHONS = ("cp311", "cp313")
+
+#: The zips that are built, with their platform and their versions of Python; None for every one of the manifest.
+ZIPS: dict[str, tuple[str, tuple[str, ...] | None]] = {
+    **{platform: (platform, OFFICIAL_PYTHONS) for platform in WHEEL_PLATFORMS},
+    "linux-x64-any-python": ("linux-x64", None),
+}
+
 #: Files of this folder that go into the zip, and exceptions from them.
 SHIPPED = ("LICENSE", "**/*.py")
 NOT_SHIPPED = ("build.py",)
@@ -56,7 +66,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Build the zips that the command line asks for, and return the exit code, 0 or `FAILED`."""
     options = _parser().parse_args(argv)
     try:
-        for path in build_addon(options.platform or list(WHEEL_PLATFORMS), out=options.out, cache=options.cache):
+        for path in build_addon(options.platform or list(ZIPS), out=options.out, cache=options.cache):
             sys.stdout.write(f"{path}  {path.stat().st_size / 1e6:.1f} MB\n")
     except (BuildError, OSError) as problem:
         sys.stderr.write(f"{problem}\n")
@@ -64,13 +74,13 @@ def main(argv: Sequence[str] | None = None) -> int:
     return 0
 
 
-def build_addon(platforms: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
-    """Write one zip per platform into a folder and return their paths.
+def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
+    """Write zips into a folder and return their paths.
 
     Parameters
     ----------
-    platforms : sequence of str
-        Blender's names of the platforms: keys of `WHEEL_PLATFORMS`.
+    names : sequence of str
+        Which ones: keys of `ZIPS`.
     out : Path
         The folder for the zips; older zips of the same name are replaced.
     cache : Path
@@ -86,15 +96,16 @@ def build_addon(platforms: Sequence[str], *, out: Path, cache: Path) -> list[Pat
     own_wheel = build_own_wheel(manifest["version"], cache)
     out.mkdir(parents=True, exist_ok=True)
     zips = []
-    for platform in platforms:
+    for zip_name in names:
+        platform, pythons = ZIPS[zip_name]
         members = {path.relative_to(ADDON).as_posix(): path for path in shipped_files()}
-        wheels = platform_wheels(manifest["wheels"], platform)
+        wheels = platform_wheels(manifest["wheels"], platform, pythons)
         for wheel in wheels:
             name = Path(wheel).name
             members[wheel.removeprefix("./")] = own_wheel if name == own_wheel.name else fetch_wheel(name, cache)
         contents = {name: path.read_bytes() for name, path in members.items()}
         contents[MANIFEST] = platform_manifest(text, platform, wheels).encode()
-        zips.append(out / f"{manifest['id']}-{manifest['version']}-{platform.replace('-', '_')}.zip")
+        zips.append(out / f"{manifest['id']}-{manifest['version']}-{zip_name.replace('-', '_')}.zip")
         write_zip(zips[-1], contents)
     return zips
 
@@ -105,11 +116,16 @@ def shipped_files() -> list[Path]:
     return sorted(path for path in found if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
 
 
-def platform_wheels(wheels: Sequence[str], platform: str) -> list[str]:
-    """Return the wheels of the manifest that run on a platform, for every version of Python."""
+def platform_wheels(wheels: Sequence[str], platform: str, pythons: Sequence[str] | None = None) -> list[str]:
+    """Return the wheels of the manifest that run on a platform, for some versions of Python or for every one."""
     system, machine = WHEEL_PLATFORMS[platform]
-    tags = {wheel: Path(wheel).stem.rpartition("-")[2] for wheel in wheels}
-    return [wheel for wheel, tag in tags.items() if tag == "any" or (tag.startswith(system) and tag.endswith(machine))]
+    chosen = []
+    for wheel in wheels:
+        python, _, tag = Path(wheel).stem.split("-")[-3:]
+        is_for_platform = tag.startswith(system) and tag.endswith(machine)
+        if tag == "any" or (is_for_platform and (pythons is None or python in pythons)):
+            chosen.append(wheel)
+    return chosen
 
 
 def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
@@ -184,7 +200,7 @@ def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
 def _parser() -> argparse.ArgumentParser:
     """Return the parser of the command line."""
     parser = argparse.ArgumentParser(prog="build.py", description="Build the Blender extension, one zip per platform.")
-    parser.add_argument("--platform", action="append", choices=WHEEL_PLATFORMS, help="again for more (default: all)")
+    parser.add_argument("--platform", action="append", choices=ZIPS, help="again for more (default: all)")
     parser.add_argument("--out", type=Path, default=ROOT / "dist", help="where the zips go (default: dist)")
     parser.add_argument("--cache", type=Path, default=ROOT / "build" / "wheels", help="keeps downloads (build/wheels)")
     return parser

@@ -4,11 +4,17 @@
 from __future__ import annotations
 
 import importlib
+import importlib.util
+import sys
+from functools import cache
 from types import ModuleType
 
 import bpy
 
 from .work.errors import AddonError
+
+#: What comes as wheels with the add-on, and what comes with Blender.
+_IN_WHEELS, _IN_BLENDER = ("crfnet_core", "ocio", "onnxruntime"), ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 
 def load(module: str) -> ModuleType:
@@ -22,16 +28,40 @@ def load(module: str) -> ModuleType:
     Raises
     ------
     AddonError
-        If a library cannot be imported; it says which one, and to install the add-on again.
+        If a library cannot be imported; it says which one, and what to install.
     """
-    expose = getattr(bpy.utils, "expose_bundled_modules", None)
-    if expose is not None:
-        expose()  # where Blender is a Python module, its own OpenImageIO and OpenColorIO are hidden without this
+    _expose_blenders_own()
     try:
         return importlib.import_module(module, __package__)
     except ImportError as problem:
-        missing = (problem.name or str(problem)).partition(".")[0]
-        raise AddonError(
-            f"{missing} cannot be loaded: a wheel of the add-on is missing or for another system; install the add-on"
-            " again from the zip for this system"
-        ) from problem
+        name = (problem.name or str(problem)).partition(".")[0]
+        raise AddonError(f"{name} cannot be loaded: {_remedy(name)}") from problem
+
+
+@cache
+def missing() -> str:
+    """Return, in one line, which library is missing and what to install; an empty text if all are there.
+
+    It looks for the libraries once and imports none of them, so it does not notice one that is damaged.
+    """
+    _expose_blenders_own()
+    absent = [name for name in (*_IN_WHEELS, *_IN_BLENDER) if importlib.util.find_spec(name) is None]
+    return f"{absent[0]} is missing: {_remedy(absent[0])}" if absent else ""
+
+
+def _expose_blenders_own() -> None:
+    """Make Blender's own libraries importable where Blender is a Python module, which hides them."""
+    expose = getattr(bpy.utils, "expose_bundled_modules", None)
+    if expose is not None:
+        expose()
+
+
+def _remedy(name: str) -> str:
+    """Return what to install to get a library."""
+    if name in _IN_BLENDER:
+        return "this build of Blender comes without it; use Blender from blender.org"
+    python = "{}.{}".format(*sys.version_info)
+    return (
+        f"install the add-on again, from the zip for this system and Python {python} (for Blender of a Linux"
+        " distribution, any_python)"
+    )

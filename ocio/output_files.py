@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
@@ -102,6 +103,24 @@ class OutputFiles:
 def plain_stem(photo: Path) -> str:
     """Return a file's name without its suffix, and with `_` for characters that configs and patterns interpret."""
     return re.sub(r"[$%#*?]", "_", photo.stem)
+
+
+def distinct_names(name: str, hint: str = "") -> Iterator[str]:
+    """Yield names for something that is to be called `name`, unless that is taken: the first is `name` itself.
+
+    Parameters
+    ----------
+    name : str
+        The name.
+    hint : str
+        What tells it from others of the name, such as its folder. Without a hint, numbers from 2 do.
+    """
+    yield name
+    hint = re.sub(r"[$%#*?]", "_", hint)
+    if hint:
+        yield f"{name} ({hint})"
+    for number in itertools.count(2):
+        yield f"{name} ({hint} {number})" if hint else f"{name} ({number})"
 
 
 def check_outputs(

@@ -2,10 +2,16 @@
 """What the add-on reads from Blender's data and changes in it; in Blender's own thread only.
 
 plates            which image or clip is meant, and where its code values lie on disk
-packed_images     a temporary file for an image that has no file of its own
+packed_images     the packed file or the code values of an image that has no file of its own
+decode_frames     a script for another Blender: frames of movies and images as PNG files
 stored_estimate   the estimate as a custom property of its image or clip
 apply             what a completed job changes
 node_group        the inverse response as a compositor node group
 compositor        where the node group goes in the compositor
+node_links        which nodes lie behind a node
+code_values       the copy of a plate that the compositor reads, in place of what Blender linearizes
+frame_timing      when an image sequence shows which of its files
+linear_plate      a baked linear plate as an image or clip
+comparison        the linear plate in the place of the plate, for looking only
 color_management  the OpenColorIO config that this Blender runs on
 """

@@ -9,10 +9,13 @@ import bpy
 
 from ocio.configs.installed import Installed
 
-from ..work.job import Job, RunningConfig
+from ..work.job import Job
 from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
 from . import color_management, compositor, node_group, stored_estimate
+from .code_values import code_values
+from .frame_timing import timing_of
+from .linear_plate import linear_clip, linear_image
 from .plates import Datablock, datablock_of_plate
 
 
@@ -25,16 +28,18 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         If the plate was removed, or the config lacks a colour space that the nodes need; nothing is changed then.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
-    if completed.files is None:
+    if completed.is_applied and completed.files is None:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     remember_settings(datablock, job)
+    if not completed.is_applied:
+        return "nothing else was changed"
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)
         case Installed() as installed:
-            return _set_color_space(datablock, installed, job.config)
+            return _set_color_space(datablock, installed, job)
         case Baked() as baked:
             return _show_baked(context, datablock, baked, completed.frames)
         case Exported() as exported:
@@ -61,49 +66,62 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
 
 def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:
     """Build the node group, and insert it after the plate in the compositor."""
-    data_space = node_group.data_space()
-    datablock.colorspace_settings.name = data_space
-    group = node_group.build_group(completed.job.plate.name, completed.estimate.curve, completed.stops)
-    compositor.apply_group(_tree(context), datablock, group, completed.stops, frames=completed.frames)
-    return f'node group "{group.name}" linearises it in the compositor; its colour space is now {data_space}'
+    name = completed.job.plate.name
+    group = node_group.build_group(datablock, name, completed.estimate.curve, completed.stops)
+    wanted = compositor.PlateNodes(
+        plate=datablock,
+        name=name,
+        codes=code_values(datablock),
+        group=group,
+        exposure=completed.stops,
+        timing=timing_of(context, datablock, completed.frames),
+    )
+    compositor.apply_group(_tree(context), wanted)
+    return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before'
 
 
-def _set_color_space(datablock: Datablock, installed: Installed, running: RunningConfig) -> str:
+def _set_color_space(datablock: Datablock, installed: Installed, job: Job) -> str:
     """Set the colour space if this session has it; else remember it until Blender has been restarted."""
     name, config = installed.color_space, installed.config
+    kept = _keep_nodes_right(datablock, job.plate.name)
     is_available = name in color_management.color_spaces()
     if is_available:
         datablock.colorspace_settings.name = name
     else:
         stored_estimate.set_entry(datablock, stored_estimate.PENDING_COLOR_SPACE, name)
     if is_available and not installed.is_changed:
-        return f'its colour space is "{name}"'
-    if running.is_demanded or config.parent != color_management.user_folder():
-        return f'restart Blender once with the environment variable OCIO set to {config} for "{name}"'
-    return f'save the file and restart Blender once: the colour space "{name}" is there from then on'
+        return f'its color space is "{name}"{kept}'
+    if job.config.is_demanded or config.parent != color_management.user_folder():
+        return f'restart Blender once with the environment variable OCIO set to {config} for "{name}"{kept}'
+    return f'save the file and restart Blender once: the color space "{name}" is there from then on{kept}'
+
+
+def _keep_nodes_right(datablock: Datablock, name: str) -> str:
+    """Give the code values to nodes that have the node group, so that nothing is linearised twice; return it in words.
+
+    Nodes of this version have the code values already; those of earlier versions, and those that the user has changed,
+    show the plate itself.
+    """
+    if not compositor.linearized_nodes(datablock, name):
+        return ""
+    compositor.show_code_values(datablock, name, code_values(datablock))
+    return "; in the compositor its node group still linearizes it, once"
 
 
 def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:
-    """Load the linear files, and show them in the editor that shows the plate."""
-    linear = _load(baked, is_clip=isinstance(datablock, bpy.types.MovieClip))
+    """Load the linear files, and show them in the editor that shows the plate, with its timing."""
+    timing = timing_of(context, datablock, frames)
+    linear = (
+        linear_clip(datablock, baked) if isinstance(datablock, bpy.types.MovieClip) else linear_image(datablock, baked)
+    )
     space = context.space_data
     if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
         space.image = linear
-        compositor.show_frames(space.image_user, frames)
+        if timing is not None:
+            timing.set_on(space.image_user)
     if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
         space.clip = linear
     return f'linear plate "{linear.name}" is written to {baked.files[0].parent} and loaded'
-
-
-def _load(baked: Baked, *, is_clip: bool) -> Datablock:
-    """Return the linear plate as an image or clip in linear Rec.709; one that is loaded already is read again."""
-    collection, first = (bpy.data.movieclips if is_clip else bpy.data.images), str(baked.files[0])
-    datablock = collection.load(first, check_existing=True)
-    if not is_clip:
-        datablock.source = "SEQUENCE" if baked.is_sequence else "FILE"
-        datablock.reload()
-    datablock.colorspace_settings.name = node_group.linear_rec709()
-    return datablock
 
 
 def _tree(context: bpy.types.Context) -> bpy.types.NodeTree:

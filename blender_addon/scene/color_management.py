@@ -8,6 +8,8 @@ from pathlib import Path
 
 import bpy
 
+from .. import lazy_import
+
 #: The name under which Blender looks for a config. It is `ocio.defaults.CONFIG_NAME` again, because `ocio` comes as a
 #: wheel, and the add-on has to start without it.
 CONFIG_NAME = "config.ocio"
@@ -16,6 +18,19 @@ CONFIG_NAME = "config.ocio"
 def color_spaces() -> list[str]:
     """Return the names that the colour space of an image or clip can have in this session."""
     return bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties["name"].enum_items.keys()
+
+
+def data_space() -> str:
+    """Return the name of the colour space that leaves pixels as they are; in Blender's own config, "Non-Color".
+
+    Raises
+    ------
+    ConfigError
+        If the config of this session has none, or cannot be read.
+    """
+    if "Non-Color" in color_spaces():
+        return "Non-Color"
+    return lazy_import.load("ocio.configs.files").role_name(running_config(), "data")
 
 
 def environment_config() -> str:

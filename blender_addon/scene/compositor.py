@@ -3,14 +3,49 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import bpy
 
-from .plates import Datablock, datablock_of_node
+from .frame_timing import FrameTiming
+from .node_group import is_group_of
+from .node_links import compositor_trees, neighbors_behind, nodes_behind
+from .plates import Datablock, datablock_of_node, shown_by_node
 
 #: Distance between a plate's node and its node group, in units of the node editor.
 _GAP = 60
+
+#: The width of the node of a node group, in units of the node editor.
+_WIDTH = 220
+
+
+@dataclass(frozen=True)
+class PlateNodes:
+    """A plate, and what its nodes in the compositor need.
+
+    Parameters
+    ----------
+    plate : Image or MovieClip
+        The plate.
+    name : str
+        Its name, by which earlier versions marked its node group.
+    codes : Image or MovieClip
+        Its copy whose pixels are code values.
+    group : NodeTree
+        Its node group.
+    exposure : float
+        The value of the Exposure socket, in stops.
+    timing : FrameTiming or None
+        When a node that is added shows which frame of a sequence; None for a single file.
+    """
+
+    plate: Datablock
+    name: str
+    codes: Datablock
+    group: bpy.types.NodeTree
+    exposure: float
+    timing: FrameTiming | None = None
 
 
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
@@ -28,76 +63,109 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
     return scene.compositing_node_group
 
 
-def apply_group(
-    tree: bpy.types.NodeTree,
-    datablock: Datablock,
-    group: bpy.types.NodeTree,
-    exposure: float,
-    *,
-    frames: Sequence[int] = (),
-) -> None:
-    """Insert a node group after every node of a tree that shows the plate.
+def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
+    """Linearise a plate in a compositor tree: every node that shows it shows its code values, with the group behind.
 
-    The links from the plate then start at the group. Where the group was inserted before, only its exposure is set. If
-    no node shows the plate, one is added, with a viewer.
-
-    Parameters
-    ----------
-    tree : NodeTree
-        The compositor's tree.
-    datablock : Image or MovieClip
-        The plate.
-    group : NodeTree
-        The plate's node group.
-    exposure : float
-        The value of the Exposure socket, in stops.
-    frames : sequence of int
-        The frame numbers of the plate, for a node that is added; empty for a single file.
+    The links from the plate then start at the group. Where the group follows already, whatever stands between, it is
+    brought up to date only, and so is every other node of the group in the file. If no node shows the plate, one is
+    added, with a viewer.
     """
-    sources = [node for node in tree.nodes if datablock_of_node(node) == datablock]
-    for source in sources or [_add_plate(tree, datablock, frames)]:
-        node = next(_group_nodes(source, group), None) or _insert(tree, source, group)
-        node.inputs["Exposure"].default_value = exposure
+    sources = [node for node in tree.nodes if datablock_of_node(node) == wanted.plate]
+    for source in sources or [_add_plate(tree, wanted)]:
+        _show(source, wanted.codes)
+        if next(_groups_behind(source, wanted.plate, wanted.name), None) is None:
+            _activate(_insert(tree, source, wanted.group))
+        for node in _groups_behind(source, wanted.plate, wanted.name):
+            node.node_tree = wanted.group
+            node.inputs["Exposure"].default_value = wanted.exposure
 
 
-def show_frames(user: bpy.types.ImageUser | bpy.types.CompositorNodeImage, frames: Sequence[int]) -> None:
-    """Make an image sequence show every file on the frame of its number."""
-    if frames:
-        user.frame_duration = frames[-1] - frames[0] + 1
-        user.frame_start, user.frame_offset = frames[0], frames[0] - 1
+def show_code_values(plate: Datablock, name: str, codes: Datablock) -> int:
+    """Show the code values of a plate in all nodes of the file with its node group behind; return their number.
+
+    So the plate can have a colour space of its own without being linearised twice.
+    """
+    sources = [node for node in linearized_nodes(plate, name) if shown_by_node(node) != codes]
+    for source in sources:
+        _show(source, codes)
+    return len(sources)
 
 
-def _group_nodes(source: bpy.types.Node, group: bpy.types.NodeTree) -> Iterator[bpy.types.Node]:
-    """Yield the nodes of the group that a plate's node is linked to."""
-    for link in source.outputs["Image"].links:
-        if getattr(link.to_node, "node_tree", None) == group:
-            yield link.to_node
+def linearized_nodes(plate: Datablock, name: str) -> list[bpy.types.Node]:
+    """Return the nodes of the file that show a plate or its code values, and have its node group behind them."""
+    nodes = [node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate]
+    return [node for node in nodes if next(_groups_behind(node, plate, name), None) is not None]
+
+
+def _groups_behind(source: bpy.types.Node, plate: Datablock, name: str) -> Iterator[bpy.types.Node]:
+    """Yield the nodes of a plate's group that a node leads to."""
+    for node in nodes_behind(source):
+        if is_group_of(getattr(node, "node_tree", None), plate, name):
+            yield node
+
+
+def _show(node: bpy.types.Node, codes: Datablock) -> None:
+    """Show the code values of a plate in a node; its frame settings stay."""
+    if node.type == "IMAGE":
+        node.image = codes
+    else:
+        node.clip = codes
+    node.label = node.label or codes.name.lstrip(".")
 
 
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
     """Return a new node of the group between a plate's node and the nodes that it was linked to."""
     node = tree.nodes.new("CompositorNodeGroup")
     node.node_tree = group
-    node.width = 220
+    node.width = _WIDTH
     node.location = (source.location.x + source.width + _GAP, source.location.y)
     node.parent = source.parent
+    _make_room(source, node)
     for target in [link.to_socket for link in source.outputs["Image"].links]:
         tree.links.new(node.outputs["Image"], target)
     tree.links.new(source.outputs["Image"], node.inputs["Image"])
     return node
 
 
-def _add_plate(tree: bpy.types.NodeTree, datablock: Datablock, frames: Sequence[int]) -> bpy.types.Node:
-    """Return a new node that shows the plate, below all others and linked to a viewer."""
-    bottom = min((node.location.y - node.height for node in tree.nodes), default=0)
-    if isinstance(datablock, bpy.types.Image):
+def _make_room(source: bpy.types.Node, node: bpy.types.Node) -> None:
+    """Move the nodes behind a plate's node to the right, so that a new node has room between them."""
+    behind = [other for other in neighbors_behind(source) if other != node]
+    nearest = min((_left(other) for other in behind), default=None)
+    if nearest is None:
+        return
+    missing = _left(node) + node.width + _GAP - nearest
+    if missing > 0:
+        for other in behind:
+            other.location.x += missing
+
+
+def _left(node: bpy.types.Node) -> float:
+    """Return the left edge of a node, whatever frame it is in."""
+    return node.location_absolute.x
+
+
+def _activate(node: bpy.types.Node) -> None:
+    """Select a node, and no other one of its tree."""
+    for other in node.id_data.nodes:
+        other.select = other == node
+    node.id_data.nodes.active = node
+
+
+def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
+    """Return a new node for the plate, below all others and linked to the viewer; a tree without one gets one."""
+    bottom = min((node.location_absolute.y - node.height for node in tree.nodes), default=0)
+    if isinstance(wanted.plate, bpy.types.Image):
         node = tree.nodes.new("CompositorNodeImage")
-        node.image = datablock
-        show_frames(node, frames)
+        node.image = wanted.codes
+        if wanted.timing is not None:
+            wanted.timing.set_on(node)
     else:
         node = tree.nodes.new("CompositorNodeMovieClip")
-        node.clip = datablock
-    viewer = tree.nodes.new("CompositorNodeViewer")
-    node.location, viewer.location = (0, bottom - 200), (700, bottom - 200)
+    node.location = (0, bottom - 200)
+    viewer = next((other for other in tree.nodes if other.type == "VIEWER"), None)
+    if viewer is None:
+        viewer = tree.nodes.new("CompositorNodeViewer")
+        viewer.location = (700, bottom - 200)
     tree.links.new(node.outputs["Image"], viewer.inputs["Image"])
+    tree.nodes.active = viewer
     return node

@@ -8,6 +8,8 @@ there. Curve nodes would be 50 times less exact.
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import bpy
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -18,8 +20,10 @@ from ocio.configs.files import role_name
 from ocio.configs.plate_color_space import LINEAR_REC709
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import inverse_response_lut
+from ocio.output_files import distinct_names
 
-from .color_management import color_spaces, running_config
+from .color_management import color_spaces, data_space, running_config
+from .plates import Datablock
 
 #: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
@@ -27,8 +31,9 @@ IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 #: Pixels of the LUT image. Either length has a pixel at every 8-bit code.
 LENGTH = LUT_LENGTH if IS_BLENDER_5 else 16321
 
-#: The custom property that marks the add-on's node groups and LUT images; its value is the plate's name.
-TAG = "camera_response_of"
+#: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
+#: earlier versions, the plate's name, which two plates may share.
+PLATE = "camera_response_of"
 
 #: Nodes that Blender 5.0 replaced by those of shaders.
 _MATH, _COMBINE = (
@@ -41,13 +46,15 @@ _COLUMN, _ROW = 190, -230
 _CHANNELS = ("Red", "Green", "Blue")
 
 
-def build_group(name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
-    """Return the node group "Camera Response <name>"; one that exists already is updated.
+def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
+    """Return the plate's node group "Camera Response <name>"; one that exists already is updated.
 
     Parameters
     ----------
+    plate : Image or MovieClip
+        The plate. Every plate has a group of its own, which survives renaming, saving and appending.
     name : str
-        The plate's name.
+        The plate's name. If another plate's group has it, the folder of the plate is added.
     curve : ResponseCurve
         The plate's response.
     exposure : float
@@ -59,12 +66,18 @@ def build_group(name: str, curve: ResponseCurve, exposure: float) -> bpy.types.N
         If the config has no linear Rec.709, the colour space to which the inverse response leads.
     """
     source = linear_rec709()
-    group = _tagged(bpy.data.node_groups, name) or _new_group(name)
+    group = _of_plate(bpy.data.node_groups, plate) or _new_group(plate, name)
     group.nodes.clear()
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
-    _add_nodes(group, _lut_image(name, curve), source)
+    _add_nodes(group, _lut_image(plate, f".{group.name} LUT", curve), source)
     return group
+
+
+def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "") -> bool:
+    """Return whether a node tree is a plate's node group, or one that an earlier version made for a plate of a name."""
+    owner = None if tree is None else tree.get(PLATE)
+    return owner is not None and owner in (plate, name)
 
 
 def check_config() -> None:
@@ -81,22 +94,18 @@ def linear_rec709() -> str:
     raise ConfigError("this config has no linear Rec.709 space, which the nodes need; choose another way to apply it")
 
 
-def data_space() -> str:
-    """Return the name of the colour space that leaves pixels as they are; in Blender's own config, "Non-Color"."""
-    return "Non-Color" if "Non-Color" in color_spaces() else role_name(running_config(), OCIO.ROLE_DATA)
-
-
 def working_space() -> str:
     """Return the name that the Convert Colorspace node has for the scene's working space."""
     kinds = bpy.types.CompositorNodeConvertColorSpace.bl_rna.properties["to_color_space"].enum_items
     return "scene_linear" if "scene_linear" in kinds else role_name(running_config(), OCIO.ROLE_SCENE_LINEAR)
 
 
-def _new_group(name: str) -> bpy.types.NodeTree:
+def _new_group(plate: Datablock, name: str) -> bpy.types.NodeTree:
     """Return a node group that has sockets and no nodes."""
-    group = bpy.data.node_groups.new(f"Camera Response {name}", "CompositorNodeTree")
-    group[TAG] = name
-    group.use_fake_user = True
+    names = distinct_names(f"Camera Response {name}", Path(bpy.path.abspath(plate.filepath)).parent.name)
+    free = next(name for name in names if name not in bpy.data.node_groups)
+    group = bpy.data.node_groups.new(free, "CompositorNodeTree")
+    group[PLATE] = plate
     group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
     exposure = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
@@ -105,15 +114,15 @@ def _new_group(name: str) -> bpy.types.NodeTree:
     return group
 
 
-def _lut_image(name: str, curve: ResponseCurve) -> bpy.types.Image:
-    """Return the packed image of a plate's LUT; one that exists already gets new pixels."""
-    image = _tagged(bpy.data.images, name)
+def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.Image:
+    """Return the packed image of a plate's LUT, which the leading dot of its name hides; an earlier one is updated."""
+    image = _of_plate(bpy.data.images, plate)
     if image is not None and tuple(image.size) != (LENGTH, 1):
         bpy.data.images.remove(image)
         image = None
     if image is None:
-        image = bpy.data.images.new(f"Camera Response {name} LUT", LENGTH, 1, alpha=False, float_buffer=True)
-        image[TAG] = name
+        image = bpy.data.images.new(name, LENGTH, 1, alpha=False, float_buffer=True)
+        image[PLATE] = plate
         image.colorspace_settings.name = data_space()  # before the pixels, which this would remove
     pixels = np.ones((LENGTH, 4), np.float32)
     pixels[:, :3] = inverse_response_lut(curve, length=LENGTH).values[:, None]
@@ -123,9 +132,9 @@ def _lut_image(name: str, curve: ResponseCurve) -> bpy.types.Image:
     return image
 
 
-def _tagged(collection: bpy.types.bpy_prop_collection, name: str) -> bpy.types.ID | None:
-    """Return the node group or image that was made for a plate of this name; not one linked from another file."""
-    return next((item for item in collection if item.get(TAG) == name and item.library is None), None)
+def _of_plate(collection: bpy.types.bpy_prop_collection, plate: Datablock) -> bpy.types.ID | None:
+    """Return the node group or image that was made for a plate; not one linked from another file."""
+    return next((item for item in collection if item.get(PLATE) == plate and item.library is None), None)
 
 
 def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> None:

@@ -1,44 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Write the code values of an image that has no file of its own, packed or generated, to a temporary file."""
+"""The packed file, or the code values, of an image that has no file of its own."""
 
 from __future__ import annotations
 
-import tempfile
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import bpy
 import numpy as np
-import OpenImageIO as oiio
-
-from crfnet_core.types import Uint8Array
 
 from ..work.errors import AddonError
 
+if TYPE_CHECKING:
+    from crfnet_core.types import Uint8Array
 
-def write_temporary_file(image: bpy.types.Image) -> Path:
-    """Write the code values of a packed or generated image to a file in Blender's temporary folder; return its path.
 
-    A packed file is written byte for byte. A generated 8-bit image becomes a PNG file: its pixels are code values,
-    whatever its colour space.
+#: Suffixes of encoded images that Blender reads and the estimator does not: BMP, Targa, JPEG 2000.
+DECODED_SUFFIXES = (".bmp", ".dib", ".tga", ".icb", ".vda", ".vst", ".jp2", ".j2c", ".j2k")
+
+
+def name_and_content(image: bpy.types.Image) -> tuple[Path, bytes | Uint8Array]:
+    """Return a file name for a packed or painted image, and what the file has to hold.
+
+    Returns
+    -------
+    name : Path
+        The name of the packed file, or that of the image with the suffix .png.
+    content : bytes or ndarray, uint8, shape (H, W, 3 or 4)
+        The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
+        whatever its colour space. A packed file that the estimator does not read is given as code values, too.
 
     Raises
     ------
     AddonError
-        If the image has no pixels, or the file cannot be written.
+        If the image has no pixels, or they are no code values.
     """
-    folder = Path(tempfile.mkdtemp(prefix="crf_", dir=bpy.app.tempdir or None))
-    try:
-        if image.packed_file:
-            path = folder / (Path(image.filepath.replace("\\", "/")).name or f"{Path(image.name).stem}.png")
-            path.write_bytes(image.packed_file.data)
-            return path
-        path = folder / f"{Path(bpy.path.clean_name(image.name)).stem}.png"
-        _write_png(path, _code_values(image))
-    except OSError as problem:
-        raise AddonError(
-            f"{image.name}: no temporary file can be written ({problem.strerror}); free some space"
-        ) from None
-    return path
+    name = Path(f"{Path(bpy.path.clean_name(image.name)).stem}.png")
+    if image.packed_file:
+        name = Path(Path(image.filepath.replace("\\", "/")).name or name)
+        if name.suffix.lower() not in DECODED_SUFFIXES:
+            return name, image.packed_file.data
+    if image.is_float:
+        raise AddonError(f"{image.name}: more than 8 bits are not read from a packed file of this format: unpack it")
+    return name.with_suffix(".png"), _code_values(image)
 
 
 def _code_values(image: bpy.types.Image) -> Uint8Array:
@@ -51,15 +55,3 @@ def _code_values(image: bpy.types.Image) -> Uint8Array:
     codes = np.rint(pixels * 255).astype(np.uint8).reshape(height, width, image.channels)[::-1]
     is_opaque = image.channels == 4 and bool((codes[..., 3] == 255).all())
     return np.ascontiguousarray(codes[..., :3] if is_opaque else codes)
-
-
-def _write_png(path: Path, codes: Uint8Array) -> None:
-    """Write code values unchanged: colours are not multiplied by alpha."""
-    header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once
-    output = oiio.ImageOutput.create(str(path))
-    if output is None:
-        raise AddonError(f"{path}: cannot be written ({oiio.geterror()}); install Blender again")
-    if not (output.open(str(path), header) and output.write_image(codes) and output.close()):
-        raise AddonError(f"{path}: cannot be written ({output.geterror()}); free some space")

@@ -3,48 +3,88 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import bpy
 
 from .. import lazy_import
 from ..work.errors import AddonError
-from ..work.job import Plate
+from ..work.job import BlenderDecoder, Plate
+from . import comparison
+from .packed_images import DECODED_SUFFIXES, name_and_content
 
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
 
 #: What the panel of each editor asks for while there is no plate.
 OPEN_A_PLATE = {
-    "IMAGE_EDITOR": "Open a photograph or a frame sequence first",
-    "CLIP_EDITOR": "Open a frame sequence first",
+    "IMAGE_EDITOR": "Open a photograph, sequence or movie first",
+    "CLIP_EDITOR": "Open a sequence or movie first",
     "NODE_EDITOR": "Select an Image or Movie Clip node that has a plate",
 }
+
+#: The custom property of a hidden copy whose pixels are code values, see `code_values`; its value is the plate.
+CODE_VALUES_OF = "camera_response_code_values_of"
 
 #: What a plate is in Blender's data.
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
-    """Return the image or clip that the editor shows; in the compositor, that of the active node."""
+    """Return the image or clip that the editor shows; in the compositor, that of the active node.
+
+    While an Image Editor shows the linear plate for comparison, it is the plate. If a plate's node group is active, it
+    is the plate that the group linearises.
+    """
     space = context.space_data
     if space is None:
         return None
     if space.type == "IMAGE_EDITOR":
-        return space.image
+        return comparison.plate_of(space.image) or space.image
     if space.type == "CLIP_EDITOR":
         return space.clip
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
-        return datablock_of_node(space.edit_tree.nodes.active)
+        return _plate_behind(space.edit_tree.nodes.active)
     return None
 
 
 def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the image or clip of a compositor's Image or Movie Clip node; None for any other node."""
+    """Return the plate of a compositor's Image or Movie Clip node; None for any other node.
+
+    Of a node that shows a plate's code values, it is the plate.
+    """
+    shown = shown_by_node(node)
+    return None if shown is None else shown.get(CODE_VALUES_OF) or shown
+
+
+def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
+    """Return the image or clip that an Image or Movie Clip node shows itself; None for any other node."""
     if node is None:
         return None
     return {"IMAGE": getattr(node, "image", None), "MOVIECLIP": getattr(node, "clip", None)}.get(node.type)
+
+
+def _plate_behind(node: bpy.types.Node | None) -> Datablock | None:
+    """Return the image or clip of a node; of a plate's node group that of the node that its Image input comes from."""
+    datablock, seen = datablock_of_node(node), {node}
+    if datablock is not None or not _is_response_group(node):
+        return datablock
+    while datablock is None and node is not None:
+        source = node.inputs.get("Image") or next(iter(node.inputs), None)
+        node = source.links[0].from_node if source is not None and source.links else None
+        if node in seen:
+            return None
+        seen.add(node)
+        datablock = datablock_of_node(node)
+    return datablock
+
+
+def _is_response_group(node: bpy.types.Node | None) -> bool:
+    """Return whether a node is a plate's node group, which a custom property marks."""
+    tree = getattr(node, "node_tree", None)
+    return tree is not None and any(name.startswith("camera_response") for name in tree.keys())  # noqa: SIM118
 
 
 def chosen_datablock(context: bpy.types.Context, image: str = "", clip: str = "") -> Datablock:
@@ -82,23 +122,38 @@ def datablock_of_plate(plate: Plate) -> Datablock:
 
 def obstacle(datablock: Datablock) -> str:
     """Return why no response can be estimated from an image or clip, or an empty text; reads no file."""
+    if problem := lazy_import.missing():
+        return problem
     if datablock.library is not None:
         return f"{datablock.name} is linked from another file: make it local first"
-    if datablock.source == "MOVIE":
+    if datablock.filepath.lower().endswith(".gif"):
         return (
-            "Movie files are not read: render the movie to an image sequence, without a view transform, and open that"
+            "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
-    if datablock.source == "VIEWER":
-        return "Renders have no camera response: open a photograph"
-    if datablock.source == "TILED":
-        return "Tiled images are not read: open a photograph"
-    if datablock.source == "GENERATED" and datablock.is_float:
+    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock)
+
+
+#: Why images of some sources have no response to estimate.
+_OBSTACLES = {
+    "VIEWER": "Renders have no camera response: open a photograph",
+    "TILED": "Blender took these files for UDIM tiles: set Source to Image Sequence in the Image tab, or open them"
+    " again without Detect UDIMs",
+}
+
+
+def _obstacle_in_blender(datablock: Datablock) -> str:
+    """Return why an image that was generated in Blender has no response; an empty text for any other."""
+    if datablock.source != "GENERATED":
+        return ""
+    if datablock.is_float:
         return "Float images made in Blender hold linear values, which have no camera response: open a photograph"
+    if not datablock.packed_file and not datablock.is_dirty:
+        return "Blank images and test grids have no camera response: open a photograph"
     return ""
 
 
 def plate_of(datablock: Datablock) -> Plate:
-    """Return the plate of an image or clip; pixels that are only in memory are written to a temporary file.
+    """Return the plate of an image or clip; it holds the pixels of an image that is only in memory.
 
     Raises
     ------
@@ -108,17 +163,18 @@ def plate_of(datablock: Datablock) -> Plate:
     if problem := obstacle(datablock):
         raise AddonError(problem)
     if isinstance(datablock, bpy.types.Image) and (datablock.packed_file or datablock.source == "GENERATED"):
-        path = lazy_import.load(".scene.packed_images").write_temporary_file(datablock)
-        return _plate(datablock, path, folder=None, has_metadata=bool(datablock.packed_file))
+        name, content = name_and_content(datablock)
+        return _plate(datablock, name, folder=None, has_metadata=isinstance(content, bytes), content=content)
     path = Path(bpy.path.abspath(datablock.filepath, library=datablock.library))
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
         raise AddonError(
             f"{datablock.filepath or datablock.name}: there is no such file; find it with File, External Data"
         )
-    return _plate(datablock, path, folder=path.parent)
+    decoder = _decoder(datablock, path)
+    return _plate(datablock, path, folder=path.parent, has_metadata=decoder is None, decoder=decoder)
 
 
-def _plate(datablock: Datablock, path: Path, *, folder: Path | None, has_metadata: bool = True) -> Plate:
+def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
     """Return the plate of an image or clip whose code values, or first frame, are in a file."""
     return Plate.of_file(
         path,
@@ -126,6 +182,25 @@ def _plate(datablock: Datablock, path: Path, *, folder: Path | None, has_metadat
         datablock_name=datablock.name,
         uid=datablock.session_uid,
         color_space=datablock.colorspace_settings.name,
-        folder=folder,
-        has_metadata=has_metadata,
+        **details,
     )
+
+
+def _decoder(datablock: Datablock, path: Path) -> BlenderDecoder | None:
+    """Return what decodes a movie, or an image that the estimator does not read; None for all others."""
+    is_movie = datablock.source == "MOVIE"
+    if not is_movie and path.suffix.lower() not in DECODED_SUFFIXES:
+        return None
+    return BlenderDecoder(
+        command=_blender_command(),
+        frame_count=max(1, datablock.frame_duration) if is_movie else 0,
+        is_deinterlaced=getattr(datablock, "use_deinterlace", False),
+    )
+
+
+def _blender_command() -> tuple[str, ...]:
+    """Return the command that runs the script `decode_frames` in another Blender, without a window."""
+    script = str(Path(__file__).with_name("decode_frames.py"))
+    if not bpy.app.binary_path:  # Blender is a Python module
+        return sys.executable, script
+    return bpy.app.binary_path, "--background", "--factory-startup", "--python", script, "--"

@@ -6,6 +6,7 @@ What the panel draws is read here without importing the estimator.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
@@ -29,6 +30,10 @@ LAYOUT, READABLE_LAYOUTS = 2, (1, 2)
 #: Blender has been started with the new config.
 EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
 
+#: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
+#: drawn without the estimator.
+DO_NOT_TRUST = "do not trust"
+
 
 def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
     """Store an estimate on its image or clip.
@@ -50,6 +55,16 @@ def is_stored(datablock: Datablock | None) -> bool:
     """Return whether an image or clip has a stored estimate of a layout that is read."""
     entries: Any = datablock.get(KEY) if datablock is not None else None
     return hasattr(entries, "get") and entries.get("layout") in READABLE_LAYOUTS
+
+
+def verdict(datablock: Datablock) -> str:
+    """Return the verdict of the stored estimate: "good", "usable" or `DO_NOT_TRUST`."""
+    return datablock[KEY]["verdict"]
+
+
+def expected_stops(datablock: Datablock) -> float:
+    """Return by how many stops the linear light is expected to be off; NaN in layout 1, which did not know it."""
+    return datablock[KEY].get("shape_uncertainty", math.nan)
 
 
 def lines(datablock: Datablock) -> list[str]:
@@ -77,6 +92,11 @@ def restored(datablock: Datablock) -> ResponseEstimate:
 def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     """Set one more entry of the stored estimate."""
     datablock[KEY][name] = value
+
+
+def pending_color_space(datablock: Datablock | None) -> str:
+    """Return the colour space that a plate waits for; an empty text if it waits for none."""
+    return datablock[KEY].get(PENDING_COLOR_SPACE, "") if datablock is not None and is_stored(datablock) else ""
 
 
 def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> str:

@@ -1,10 +1,16 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the user sees of the add-on, and the job that is gathered from it.
 
-operators       "Estimate Camera Response", "Apply Camera Response", "Restore OpenColorIO Config"
-panel           the sidebar panel of three editors
-plate_settings  what can be chosen for one plate
-preferences     what is chosen for every file
-handlers        what happens when a .blend file is opened
-gather          the job of a plate, from its settings and the preferences
+operators         "Estimate Camera Response", "Apply Camera Response", "Cancel"
+running           the one run that is under way, and how its progress is shown
+panel             the sidebar panel of three editors
+estimate_box      what the panel shows of an estimate
+menus             the entries of three menus
+image_tools       the Image Editor's before and after, and the eyedropper for gray
+photographs       further photographs of the same camera
+config_operators  what is in the OpenColorIO config: list it, take it out, restart
+plate_settings    what can be chosen for one plate
+preferences       what is chosen for every file
+handlers          what happens when a .blend file is opened or saved, and at undo
+gather            the job of a plate, from its settings and the preferences
 """

@@ -7,9 +7,11 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import bpy
+
 from ocio.options import EstimateOptions
 
-from ..scene import color_management, plates
+from ..scene import color_management, node_group, plates
 from ..scene.stored_estimate import restored
 from ..work.errors import AddonError
 from ..work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
@@ -17,7 +19,13 @@ from .plate_settings import CHOICES
 from .preferences import absolute, preferences
 
 
-def gather_job(datablock: plates.Datablock, *, is_estimated: bool, arguments: Mapping[str, Any]) -> Job:
+def gather_job(
+    datablock: plates.Datablock,
+    *,
+    is_estimated: bool,
+    despite_verdict: bool = False,
+    arguments: Mapping[str, Any],
+) -> Job:
     """Return the job of a plate.
 
     Parameters
@@ -26,16 +34,26 @@ def gather_job(datablock: plates.Datablock, *, is_estimated: bool, arguments: Ma
         The plate, with its settings.
     is_estimated : bool
         Whether its stored estimate is applied; otherwise its response is estimated anew.
+    despite_verdict : bool
+        Whether the response is applied even if it is not to be trusted.
     arguments : mapping
         Settings that were given as arguments of the operator, which take precedence over those of the plate.
 
     Raises
     ------
     AddonError
-        If no response can be estimated from the plate, its file is not found, or no file of the prior is chosen.
+        If no response can be estimated from the plate or a further photograph, a file is not found, no file of the
+        prior is chosen, or an estimate is to be applied and Apply As says to estimate only.
+    ConfigError
+        If the config lacks a colour space that the nodes need.
     """
-    settings, plate = datablock.camera_response_settings, plates.plate_of(datablock)
+    settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
+    if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
+        raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
+    if chosen["apply"] == ApplyMode.NODES:
+        node_group.check_config()
+    plate = plates.plate_of(datablock)
     return Job(
         plate=plate,
         estimation=Estimation(
@@ -47,9 +65,10 @@ def gather_job(datablock: plates.Datablock, *, is_estimated: bool, arguments: Ma
             ),
             is_forced=chosen["force"],
             stored=restored(datablock) if is_estimated else None,
+            photographs=() if is_estimated else _photographs(datablock),
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),
-        output=_output(plate, chosen),
+        output=_output(plate, chosen, despite_verdict=despite_verdict),
         config=RunningConfig(
             path=color_management.running_config(), is_demanded=bool(color_management.environment_config())
         ),
@@ -65,7 +84,13 @@ def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:
     return absolute(chosen["prior_file"]) or "file"
 
 
-def _output(plate: Plate, chosen: Mapping[str, Any]) -> Output:
+def _photographs(datablock: plates.Datablock) -> tuple[Plate, ...]:
+    """Return the further photographs of the plate's camera, each once; places without an image are left out."""
+    images = [item.image for item in datablock.camera_response_settings.photographs if item.image is not None]
+    return tuple(plates.plate_of(image) for image in dict.fromkeys(images) if image != datablock)
+
+
+def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:
     """Return what becomes of the response."""
     mode = ApplyMode(chosen["apply"])
     return Output(
@@ -74,13 +99,17 @@ def _output(plate: Plate, chosen: Mapping[str, Any]) -> Output:
         depth=chosen["depth"],
         lut_length=preferences().lut_length,
         overwrite=chosen["overwrite"],
+        despite_verdict=despite_verdict,
     )
 
 
 def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
-    """Return the folder for files if none was chosen for the plate: Blender's, the preferences' or the plate's own."""
-    if mode is ApplyMode.NODES:
+    """Return the folder for files if none was chosen for the plate.
+
+    It is Blender's for a colour space; else that of the preferences, the plate or the .blend file, the first there is.
+    """
+    if mode in (ApplyMode.ESTIMATE, ApplyMode.NODES):
         return None
     if mode is ApplyMode.COLORSPACE:
         return color_management.user_folder()
-    return absolute(preferences().folder) or plate.folder
+    return absolute(preferences().folder) or plate.folder or absolute("//" if bpy.data.filepath else "")

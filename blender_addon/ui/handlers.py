@@ -1,11 +1,18 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happens when a .blend file is opened: plates get the colour space for which Blender had to be restarted."""
+"""What happens when a .blend file is opened or saved, and at undo.
+
+When a file is opened, plates get the colour space for which Blender had to be restarted. Before a file is saved and
+around undo, editors that show a linear plate for comparison go back to the plate, so that it is never saved.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from typing import Any
+
 import bpy
 
-from ..scene import color_management, stored_estimate
+from ..scene import color_management, comparison, stored_estimate
 
 
 @bpy.app.handlers.persistent
@@ -17,11 +24,31 @@ def set_pending_color_spaces(_path: str = "") -> None:
             datablock.colorspace_settings.name = name
 
 
+@bpy.app.handlers.persistent
+def end_comparisons(*_arguments: Any) -> None:
+    """Show plates again where the linear plate is shown."""
+    comparison.end_all()
+
+
+#: The handlers: Blender's name of the occasion, and the function.
+_HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
+    ("load_post", set_pending_color_spaces),
+    ("load_post", end_comparisons),
+    ("save_pre", end_comparisons),
+    ("undo_pre", end_comparisons),
+    ("undo_post", end_comparisons),
+    ("redo_pre", end_comparisons),
+    ("redo_post", end_comparisons),
+)
+
+
 def register() -> None:
-    """Add the handler."""
-    bpy.app.handlers.load_post.append(set_pending_color_spaces)
+    """Add the handlers."""
+    for name, function in _HANDLERS:
+        getattr(bpy.app.handlers, name).append(function)
 
 
 def unregister() -> None:
-    """Remove the handler."""
-    bpy.app.handlers.load_post.remove(set_pending_color_spaces)
+    """Remove the handlers."""
+    for name, function in _HANDLERS:
+        getattr(bpy.app.handlers, name).remove(function)

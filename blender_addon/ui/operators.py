@@ -1,23 +1,28 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: gather a job, run it, apply what it found to the scene, report."""
+"""The operators: gather a job, run it, apply what it found to the scene, report.
+
+They have no panel "Adjust Last Operation" (REGISTER): it would show the arguments of the call instead of the plate's
+settings, and estimate the response anew, in the main thread, at every change.
+"""
 
 from typing import TYPE_CHECKING, Any, ClassVar
 
 import bpy
 
 from .. import lazy_import
-from ..scene import color_management, plates, stored_estimate
-from ..work.background import BackgroundTask
+from ..scene import comparison, plates, stored_estimate
 from ..work.errors import AddonError, CancelledError, expected_errors
-from .plate_settings import CHOICES, PlateChoices
-from .preferences import APPLY_MODES, absolute
+from ..work.wording import american, report_line
+from . import running
+from .plate_settings import CHOICES, PlateChoices, remember_applied
+from .preferences import APPLY_MODES
 
 if TYPE_CHECKING:
     from ..work.job import Job
     from ..work.run import CompletedJob
 
-#: Seconds between two checks of how far the job is.
-TICK = 0.1
+#: What is reported of an estimate that is not applied because it is not to be trusted.
+WITHHELD = "nothing was changed; to use it all the same, press Apply Anyway"
 
 
 class PlateOperator(PlateChoices):
@@ -29,12 +34,19 @@ class PlateOperator(PlateChoices):
     """
 
     image: bpy.props.StringProperty(
-        name="Image", description="Name of the image; empty for the active plate", options={"SKIP_SAVE"}
+        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
     )
     clip: bpy.props.StringProperty(
-        name="Movie Clip", description="Name of the movie clip; empty for the active plate", options={"SKIP_SAVE"}
+        name="Movie Clip",
+        description="Name of the movie clip; empty for the active plate",
+        options={"HIDDEN", "SKIP_SAVE"},
     )
-    apply: bpy.props.EnumProperty(name="Apply As", description="What becomes of the response", items=APPLY_MODES)
+    apply: bpy.props.EnumProperty(
+        name="Apply As", description="What becomes of the response", items=APPLY_MODES, default="ESTIMATE"
+    )
+    anyway: bpy.props.BoolProperty(
+        name="Anyway", description="Apply the response even if it is not to be trusted", options={"SKIP_SAVE"}
+    )
 
     #: Whether the operator uses the stored estimate instead of a new one.
     is_estimated = False
@@ -58,82 +70,84 @@ class PlateOperator(PlateChoices):
             run = lazy_import.load(".work.run").run
         except expected_errors() as problem:
             return self._fail(problem)
-        self._task: BackgroundTask[CompletedJob] = BackgroundTask(lambda progress: run(job, progress))
-        manager = context.window_manager
-        self._timer = manager.event_timer_add(TICK, window=context.window)
-        manager.progress_begin(0, 100)
-        manager.modal_handler_add(self)
-        self._show_progress(context)
-        self._task.start()
+        context.window_manager.modal_handler_add(self)
+        self._run = running.start(context, job.plate.name, lambda progress: run(job, progress))
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Show the progress; cancel the job on Esc; apply what it found when it has ended."""
         if event.type == "ESC" and event.value == "PRESS":
-            self._task.cancel()
+            self._run.cancel()
             return {"RUNNING_MODAL"}
         if event.type != "TIMER":
             return {"PASS_THROUGH"}
-        self._show_progress(context)
-        if self._task.is_running:
+        if self._run.task.is_running:
+            self._run.show()
             return {"PASS_THROUGH"}
-        self._hide_progress(context)
+        self._run.end()
         try:
-            return self._apply(context, self._task.result())
+            return self._apply(context, self._run.task.result())
         except expected_errors() as problem:
             return self._fail(problem)
 
-    def cancel(self, context: bpy.types.Context) -> None:
+    def cancel(self, _context: bpy.types.Context) -> None:
         """Cancel the job, because Blender closes or opens another file."""
-        self._task.cancel()
-        self._hide_progress(context)
+        self._run.task.cancel()
+        self._run.end()
 
     def _gather_job(self, context: bpy.types.Context) -> "Job":
         """Return the job; arguments of the call take precedence over the settings of the plate."""
         datablock = plates.chosen_datablock(context, self.image, self.clip)
-        if self.is_estimated and not stored_estimate.is_stored(datablock):
-            raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
+        if self.is_estimated:
+            self._check_stored(datablock)
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
         gather = lazy_import.load(".ui.gather")
-        return gather.gather_job(datablock, is_estimated=self.is_estimated, arguments=arguments)
+        return gather.gather_job(
+            datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
+        )
+
+    def _check_stored(self, datablock: plates.Datablock) -> None:
+        """Raise an AddonError unless the plate has an estimate that is to be trusted, or is applied anyway."""
+        if not stored_estimate.is_stored(datablock):
+            raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
+        if stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST and not self.anyway:
+            raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
 
     def _apply(self, context: bpy.types.Context, completed: "CompletedJob") -> set[str]:
         """Apply a completed job to the scene, and report what was done."""
+        comparison.end_all()
         done = lazy_import.load(".scene.apply").apply(context, completed)
-        message = f"{completed.job.plate.name}: response is {completed.estimate.verdict}; {done}"
+        if completed.is_applied:
+            remember_applied(plates.datablock_of_plate(completed.job.plate))
+        running.redraw_editors(context.window_manager)
+        if completed.problem is not None:  # the estimate is stored, so this is a step that can be undone
+            self._fail(completed.problem)
+            return {"FINISHED"}
+        message = report_line(completed.job.plate.name, completed.estimate, WITHHELD if completed.is_withheld else done)
         self.report({"WARNING"} if completed.is_doubtful else {"INFO"}, message)
         return {"FINISHED"}
 
     def _fail(self, problem: Exception) -> set[str]:
-        """Report why nothing was done."""
-        self.report({"WARNING" if isinstance(problem, CancelledError) else "ERROR"}, str(problem))
+        """Report why nothing was done; that the user canceled is no error."""
+        self.report({"INFO" if isinstance(problem, CancelledError) else "ERROR"}, american(str(problem)))
         return {"CANCELLED"}
-
-    def _show_progress(self, context: bpy.types.Context) -> None:
-        """Show the progress in the status bar and at the mouse pointer."""
-        percent = self._task.percent
-        text = "Cancelling" if self._task.is_cancelled else f"Camera response: {percent} %  |  Esc to cancel"
-        context.workspace.status_text_set(text)
-        context.window_manager.progress_update(percent)
-
-    def _hide_progress(self, context: bpy.types.Context) -> None:
-        """Remove the timer and the display of the progress."""
-        context.window_manager.event_timer_remove(self._timer)
-        context.window_manager.progress_end()
-        context.workspace.status_text_set(None)
 
 
 class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
-    """Estimate the camera's response from the active photograph or frame sequence, and apply it."""
+    """Estimate the camera's response from the active photograph, sequence or movie, and apply it as chosen."""
 
     bl_idname = "crf.estimate_response"
     bl_label = "Estimate Camera Response"
-    bl_description = "Estimate the camera's response from the photograph or frame sequence, and apply it"
-    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    bl_description = (
+        "Estimate the camera's response from the photograph, sequence or movie, and do with it what Apply As says"
+    )
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate, and tell why if not; outside the editors, a script names its plate."""
+        """Return whether there is a plate and no other run, and tell why if not; a script names its plate."""
+        if _is_busy(cls):
+            return False
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
         datablock = plates.active_datablock(context)
@@ -148,14 +162,16 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
 
     bl_idname = "crf.apply_response"
     bl_label = "Apply Camera Response"
-    bl_description = "Apply the response that was estimated for this plate again, with the present settings"
-    bl_options: ClassVar[set[str]] = {"REGISTER", "UNDO"}
+    bl_description = "Apply the response that was estimated for this plate, with the present settings"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
 
     is_estimated = True
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has an estimate, and tell so if not; a script names its plate."""
+        """Return whether the plate has an estimate and there is no run; a script names its plate."""
+        if _is_busy(cls):
+            return False
         if context.area is None or context.area.type not in plates.EDITORS:
             return True
         if stored_estimate.is_stored(plates.active_datablock(context)):
@@ -164,31 +180,34 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
         return False
 
 
-class CRF_OT_restore_config(bpy.types.Operator):
-    """Put back the OpenColorIO config that was there before the add-on added colour spaces."""
+class CRF_OT_cancel_run(bpy.types.Operator):
+    """Cancel the estimate that is running."""
 
-    bl_idname = "crf.restore_config"
-    bl_label = "Restore OpenColorIO Config"
-    bl_description = "Put back the OpenColorIO config that was there before the add-on added colour spaces"
+    bl_idname = "crf.cancel_run"
+    bl_label = "Cancel"
+    bl_description = "Cancel the run; nothing is changed then"
 
-    folder: bpy.props.StringProperty(
-        name="Folder", description="Of the config; empty for Blender's colour management folder", subtype="DIR_PATH"
-    )
+    @classmethod
+    def poll(cls, _context: bpy.types.Context) -> bool:
+        """Return whether there is a run."""
+        return running.current() is not None
 
     def execute(self, _context: bpy.types.Context) -> set[str]:
-        """Restore the config, and report what was done."""
-        folder = absolute(self.folder) or color_management.user_folder()
-        try:
-            restored = lazy_import.load("ocio.configs.installed").restore(folder)
-        except expected_errors() as problem:
-            self.report({"ERROR"}, str(problem))
-            return {"CANCELLED"}
-        done = "removed, so Blender uses its own again" if restored.is_removed else "again as it was"
-        self.report({"INFO"}, f"{restored.config} is {done}; restart Blender")
+        """Ask the run to stop; the operator that started it reports when it has."""
+        if run := running.current():
+            run.cancel()
         return {"FINISHED"}
 
 
-_CLASSES = (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_restore_config)
+def _is_busy(operator: type[bpy.types.Operator]) -> bool:
+    """Return whether a run is under way, and tell so."""
+    run = running.current()
+    if run is not None:
+        operator.poll_message_set(f"The camera response of {run.name} is running: wait for its end, or cancel it")
+    return run is not None
+
+
+_CLASSES = (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
 
 
 def register() -> None:
@@ -198,6 +217,7 @@ def register() -> None:
 
 
 def unregister() -> None:
-    """Unregister the operators."""
+    """Cancel what runs, and unregister the operators."""
+    running.stop()
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)

@@ -3,24 +3,18 @@
 
 from __future__ import annotations
 
-import textwrap
 from typing import TYPE_CHECKING
 
 import bpy
-import bpy.utils.previews
 
 from ..scene import plates, stored_estimate
-from ..work import curve_picture
-from .operators import CRF_OT_apply_response, CRF_OT_estimate_response
-
-#: The pictures of responses that were drawn, by the fingerprint of the estimate.
-_previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
-
-#: How lines begin that get an icon.
-ALARMING = ("Warning", "The estimate is not to be trusted")
-
-#: The mean width of a letter of the interface, in pixels at a scale of 1.
-_LETTER = 7
+from . import running
+from .config_operators import draw_restart
+from .estimate_box import draw_estimate, draw_text, letters_of
+from .image_tools import CRF_OT_pick_gray
+from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
+from .photographs import draw_photographs
+from .plate_settings import is_to_be_applied
 
 
 class ResponsePanel:
@@ -38,17 +32,24 @@ class ResponsePanel:
         return context.space_data.type != "NODE_EDITOR" or context.space_data.tree_type == "CompositorNodeTree"
 
     def draw(self, context: bpy.types.Context) -> None:
-        """Draw the buttons, the settings of the plate and its estimate."""
+        """Draw the button or the progress, the estimate of the plate, and the settings by which it is applied."""
         layout, datablock = self.layout, plates.active_datablock(context)
-        layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
+        draw_restart(layout)
+        if name := stored_estimate.pending_color_space(datablock):
+            draw_text(layout, f'"{name}" comes with a restart.', letters_of(context), icon="COLOR")
+        if run := running.current():
+            _draw_progress(layout, run)
+        elif obstacle := _obstacle(context, datablock):
+            draw_text(layout, obstacle, letters_of(context), icon="INFO")
+        else:
+            layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
         if datablock is None:
-            layout.label(text=plates.OPEN_A_PLATE[context.area.type], icon="INFO")
             return
-        _draw_settings(layout, datablock.camera_response_settings)
-        if stored_estimate.is_stored(datablock):
-            layout.operator(CRF_OT_apply_response.bl_idname, icon="FILE_REFRESH")
-            letter = _LETTER * (context.preferences.system.ui_scale or 1)  # 0 without a screen
-            _draw_estimate(layout, datablock, letters=max(20, int(context.region.width / letter)))
+        is_stored = stored_estimate.is_stored(datablock)
+        if is_stored:
+            draw_estimate(layout, context, datablock)
+        if is_stored or not plates.obstacle(datablock):
+            _draw_settings(layout, context, datablock)
 
 
 class CRF_PT_image(ResponsePanel, bpy.types.Panel):
@@ -72,76 +73,90 @@ class CRF_PT_node(ResponsePanel, bpy.types.Panel):
     bl_category = "Node"
 
 
-def _draw_settings(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw the settings that matter for the chosen way to apply the response."""
-    column = layout.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
+def _obstacle(context: bpy.types.Context, datablock: plates.Datablock | None) -> str:
+    """Return why no response can be estimated here, or an empty text."""
+    return plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
+
+
+def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
+    """Draw how far the run is, with a button that cancels it."""
+    row = layout.row(align=True)
+    row.progress(factor=run.task.percent / 100, text=run.text)
+    row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
+
+
+def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the settings that matter for the chosen way to apply the response, and the button that does it."""
+    settings = datablock.camera_response_settings
+    column = _split_column(layout)
     column.prop(settings, "apply")
     column.prop(settings, "anchor")
     if settings.anchor == "GRAY":
-        column.prop(settings, "gray", slider=True)
-    column.prop(settings, "exposure")
+        row = column.row(align=True)
+        row.prop(settings, "gray", slider=True)
+        if context.space_data.type == "IMAGE_EDITOR":
+            row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
+    row = column.row(align=True)
+    row.prop(settings, "exposure")
+    row.label(text="stops")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
-    if settings.apply != "NODES":
-        column.prop(settings, "folder")
+    if settings.apply not in ("ESTIMATE", "NODES"):
+        column.prop(settings, "folder", placeholder="Beside the plate" if settings.apply != "COLORSPACE" else "")
     if settings.apply in ("BAKE", "EXPORT"):
         column.prop(settings, "overwrite")
-    column.prop(settings, "force")
+    if stored_estimate.is_stored(datablock):
+        _draw_apply(layout, context, datablock)
+    draw_photographs(layout, settings)
     _draw_advanced(layout, settings)
 
 
+def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the button that applies the estimate, or what to choose first; say if settings wait to be applied."""
+    if datablock.camera_response_settings.apply == "ESTIMATE":
+        draw_text(layout, "Choose under Apply As what to make of the response.", letters_of(context))
+        return
+    is_trusted = stored_estimate.verdict(datablock) != stored_estimate.DO_NOT_TRUST
+    column = layout.column(align=True)
+    column.alert = not is_trusted
+    text, icon = ("Apply", "CHECKMARK") if is_trusted else ("Apply Anyway", "ERROR")
+    column.operator(CRF_OT_apply_response.bl_idname, text=text, icon=icon).anyway = not is_trusted
+    if is_to_be_applied(datablock):
+        draw_text(layout, "Changed settings count once they are applied.", letters_of(context), icon="INFO")
+
+
 def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw what few plates need, closed at first: which responses to expect, and whether metadata counts."""
+    """Draw what few plates need, closed at first: which responses to expect, metadata, and log or linear plates."""
     header, body = layout.panel("CRF_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
         return
-    column = body.column()
-    column.use_property_split = True
-    column.use_property_decorate = False
+    column = _split_column(body)
     column.prop(settings, "prior")
     if settings.prior == "file":
         column.prop(settings, "prior_file")
     column.prop(settings, "ignore_metadata")
+    column.prop(settings, "force")
 
 
-def _draw_estimate(layout: bpy.types.UILayout, datablock: plates.Datablock, *, letters: int) -> None:
-    """Draw the response, and the verdict and warnings wrapped to a number of letters."""
-    box = layout.box()
-    box.template_icon(icon_value=curve_icon(datablock), scale=9)
-    box.label(text="Response, 90 % credible band; gamma 2.2 dashed")
-    for line in stored_estimate.lines(datablock):
-        first, others = ("ERROR", "BLANK1") if line.startswith(ALARMING) else ("NONE", "NONE")
-        for number, part in enumerate(textwrap.wrap(line, letters)):
-            box.label(text=part, icon=others if number else first)
-
-
-def curve_icon(datablock: plates.Datablock) -> int:
-    """Return the icon of the picture of a stored response, which is drawn at the first call."""
-    key = stored_estimate.fingerprint(datablock)
-    if key not in _previews:
-        preview = _previews.new(key)
-        preview.image_size = (curve_picture.SIZE, curve_picture.SIZE)
-        pixels = curve_picture.draw_response(*stored_estimate.curve_and_band(datablock))
-        preview.image_pixels_float.foreach_set(pixels.ravel())
-    return _previews[key].icon_id
+def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
+    """Return a column whose properties stand beside their names."""
+    column = layout.column()
+    column.use_property_split = True
+    column.use_property_decorate = False
+    return column
 
 
 _CLASSES = (CRF_PT_image, CRF_PT_clip, CRF_PT_node)
 
 
 def register() -> None:
-    """Register the panels, and start with no picture drawn."""
-    global _previews
-    _previews = bpy.utils.previews.new()
+    """Register the panels."""
     for kind in _CLASSES:
         bpy.utils.register_class(kind)
 
 
 def unregister() -> None:
-    """Unregister the panels, and free their pictures."""
+    """Unregister the panels."""
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)
-    bpy.utils.previews.remove(_previews)

@@ -3,12 +3,13 @@
 
 import bpy
 
+from ..scene import stored_estimate
 from .preferences import APPLY_MODES, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
 ANCHORS = (
-    ("WHITE", "White", "The plate's white, code value 1, becomes a linear 1"),
-    ("GRAY", "Middle Gray", "The brightness given becomes a linear 0.18"),
+    ("WHITE", "White", "Code value 1 becomes a linear 1"),
+    ("GRAY", "Middle Gray", "The gray brightness below becomes a linear 0.18"),
 )
 
 #: The samples of linear EXR files.
@@ -28,20 +29,24 @@ PRIORS = (
 #: wheel, and the add-on has to start without it.
 MAX_EXPOSURE = 15
 
-#: The number of each way to apply a response, as its enumeration property stores it.
+#: The number of each way to apply a response, as its enumeration property stores it, and the way of each number.
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
+_MODES = {number: name for name, number in _NUMBERS.items()}
+
+#: The entry of a stored estimate with the settings that were applied last, and their names.
+APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
 
 
 class PlateChoices:
     """The choices for a plate that the panel offers and the operators take as arguments."""
 
     anchor: bpy.props.EnumProperty(
-        name="Exposure Anchor",
-        description="Which brightness gets a fixed linear value. A response does not tell the exposure",
+        name="Anchor",
+        description="Which brightness gets a fixed linear value: a response alone leaves the exposure open",
         items=ANCHORS,
     )
     gray: bpy.props.FloatProperty(
-        name="Gray Brightness",
+        name="Gray",
         description="The encoded brightness, as seen in the plate, of something that reflects 18 % of the light",
         default=118 / 255,
         min=0.01,
@@ -50,7 +55,7 @@ class PlateChoices:
     )
     exposure: bpy.props.FloatProperty(
         name="Exposure",
-        description="Stops added on top of the anchor",
+        description="Stops added on top of the anchor. Applying sets the Exposure of the node group, too",
         soft_min=-6,
         soft_max=6,
         min=-MAX_EXPOSURE,
@@ -58,14 +63,17 @@ class PlateChoices:
     )
     folder: bpy.props.StringProperty(
         name="Folder",
-        description="Folder for files. Empty: the folder from the preferences, else the plate's own; for Color Space,"
-        " Blender's",
+        description="Folder for new files. Empty: that of the preferences, else that of the plate, else that of the"
+        " .blend file; for Color Space, Blender's own",
         subtype="DIR_PATH",
     )
-    depth: bpy.props.EnumProperty(name="Depth", description="Of the baked files", items=DEPTHS)
-    overwrite: bpy.props.BoolProperty(name="Overwrite", description="Replace files of an earlier run")
+    depth: bpy.props.EnumProperty(name="Depth", description="Samples of the baked EXR files", items=DEPTHS)
+    overwrite: bpy.props.BoolProperty(
+        name="Overwrite", description="Replace files of an earlier run; is asked anew each time"
+    )
     force: bpy.props.BoolProperty(
-        name="Estimate Anyway", description="Estimate even if the color space or the metadata says log or linear"
+        name="Estimate Anyway",
+        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear",
     )
     prior: bpy.props.EnumProperty(
         name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS
@@ -75,7 +83,7 @@ class PlateChoices:
     )
     ignore_metadata: bpy.props.BoolProperty(
         name="Ignore Metadata",
-        description="Leave out what the file says of its camera and of programs that changed it",
+        description="Do not use what the file says of its camera and of programs that changed it",
     )
 
 
@@ -83,22 +91,56 @@ class PlateChoices:
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
+class CRF_Photograph(bpy.types.PropertyGroup):
+    """A further photograph of the camera that took the plate."""
+
+    image: bpy.props.PointerProperty(
+        name="Photograph",
+        description="Another photograph of the same camera with the same settings",
+        type=bpy.types.Image,
+    )
+
+
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
     """The settings of one plate; until `apply` is set, it is that of the preferences."""
 
+    photographs: bpy.props.CollectionProperty(type=CRF_Photograph)
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
     apply: bpy.props.EnumProperty(
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
         get=lambda self: _NUMBERS[self.chosen or preferences().apply],
-        set=lambda self, number: setattr(self, "chosen", APPLY_MODES[number][0]),
+        set=lambda self, number: setattr(self, "chosen", _MODES[number]),
     )
+
+
+def remember_applied(datablock: bpy.types.ID) -> None:
+    """Remember on a plate with an estimate that its present settings have been applied."""
+    stored_estimate.set_entry(datablock, APPLIED, _comparable(datablock.camera_response_settings))
+
+
+def is_to_be_applied(datablock: bpy.types.ID) -> bool:
+    """Return whether settings of a plate with an estimate have been changed since they were applied."""
+    applied = datablock[stored_estimate.KEY].get(APPLIED)
+    return applied is not None and applied.to_dict() != _comparable(datablock.camera_response_settings)
+
+
+def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
+    """Return the settings that change what is applied."""
+    names = [*APPLIED_SETTINGS]
+    names += ["gray"] if settings.anchor == "GRAY" else []
+    names += ["depth"] if settings.apply == "BAKE" else []
+    return {name: getattr(settings, name) for name in names}
+
+
+_CLASSES = (CRF_Photograph, CRF_PlateSettings)
 
 
 def register() -> None:
     """Add the settings to images and clips."""
-    bpy.utils.register_class(CRF_PlateSettings)
+    for kind in _CLASSES:
+        bpy.utils.register_class(kind)
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
 
@@ -107,4 +149,5 @@ def unregister() -> None:
     """Remove the settings from images and clips."""
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         del kind.camera_response_settings
-    bpy.utils.unregister_class(CRF_PlateSettings)
+    for kind in reversed(_CLASSES):
+        bpy.utils.unregister_class(kind)

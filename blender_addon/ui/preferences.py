@@ -12,12 +12,26 @@ ADDON = __package__.rpartition(".")[0]
 #: add-on has to start without it.
 LUT_LENGTH = 4081
 
-#: The ways to apply a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files.
+#: What becomes of a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files.
 APPLY_MODES = (
-    ("NODES", "Compositor Nodes", "A node group that linearises the plate in the compositor, at once", "NODETREE", 0),
-    ("COLORSPACE", "Color Space", "A colour space in Blender's list, after one restart", "COLOR", 1),
-    ("BAKE", "Bake", "Linear EXR files beside the plate, loaded into Blender", "FILE_IMAGE", 2),
-    ("EXPORT", "Export Only", "LUT files and an OpenColorIO config for other programs", "EXPORT", 3),
+    ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 4),
+    (
+        "NODES",
+        "Nodes",
+        "At once: a node group linearizes the plate in the compositor",
+        "NODETREE",
+        0,
+    ),
+    (
+        "COLORSPACE",
+        "Color Space",
+        "After a restart: a color space in Blender's list. It is written into your own OpenColorIO config and stays"
+        " there if the add-on is removed; the add-on's preferences list it and remove it",
+        "COLOR",
+        1,
+    ),
+    ("BAKE", "Bake", "Write linear EXR files beside the plate, and load them", "FILE_IMAGE", 2),
+    ("EXPORT", "Export", "Write LUT files and an OpenColorIO config for other programs", "EXPORT", 3),
 )
 
 
@@ -28,11 +42,11 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
 
     model: bpy.props.StringProperty(
         name="Model",
-        description="Folder with model.onnx and model.json; empty for the one in the add-on",
+        description="Folder of another model, with model.onnx and model.json. Empty: the model in the add-on",
         subtype="DIR_PATH",
     )
     threads: bpy.props.IntProperty(
-        name="Threads", description="Processor threads of the estimate; 0 for all", min=0, max=256
+        name="Threads", description="Processor threads of the estimate. 0: all", min=0, max=256
     )
     lut_length: bpy.props.IntProperty(
         name="LUT Length",
@@ -43,18 +57,29 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     )
     folder: bpy.props.StringProperty(
         name="Output Folder",
-        description="Where baked and exported files go; empty for the plate's own folder",
+        description="Folder for baked and exported files. Empty: the plate's own folder",
         subtype="DIR_PATH",
     )
-    apply: bpy.props.EnumProperty(name="Apply As", description="What the first estimate does", items=APPLY_MODES)
+    apply: bpy.props.EnumProperty(
+        name="Apply As",
+        description="What becomes of the first response of a plate",
+        items=APPLY_MODES,
+        default="ESTIMATE",
+    )
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the choices, and the button that restores an earlier OpenColorIO config."""
+        """Draw the choices, and what the add-on has put into the OpenColorIO config, with the buttons to remove it."""
+        from .config_operators import draw_installed
+
         layout = self.layout
         layout.use_property_split = True
-        for name in ("model", "threads", "lut_length", "folder", "apply"):
-            layout.prop(self, name)
-        layout.operator("crf.restore_config", icon="LOOP_BACK")
+        layout.use_property_decorate = False
+        layout.prop(self, "apply")
+        layout.prop(self, "folder", placeholder="The plate's own folder")
+        layout.prop(self, "model", placeholder="The add-on's own model")
+        layout.prop(self, "threads", text="Threads (0: All)")
+        layout.prop(self, "lut_length")
+        draw_installed(layout)
 
 
 def preferences() -> CRF_AddonPreferences:

@@ -79,7 +79,7 @@ class BackgroundTask(Generic[Returned]):
         """Keep the progress, and stop the function if it was cancelled; runs in the function's thread."""
         self.done, self.total = done, total
         if self.is_cancelled:
-            raise CancelledError("Cancelled; nothing was changed")
+            raise CancelledError("Canceled; nothing was changed")
 
     def _run(self) -> None:
         """Call the function and keep what it returns or raises, whatever that is, for the other thread."""

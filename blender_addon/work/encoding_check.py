@@ -47,9 +47,11 @@ def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     AddonError
         If the plate is logarithmic or linear.
     """
-    remedy = "there is no response to estimate: choose its colour space in Blender, or tick Estimate Anyway"
+    remedy = (
+        "there is no response to estimate: choose its color space in Blender, or tick Estimate Anyway under Advanced"
+    )
     if not _is_guess(plate, file) and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
-        raise AddonError(f"{plate.name}: its colour space, {plate.color_space}, is logarithmic or linear, so {remedy}")
+        raise AddonError(f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so {remedy}")
     if claim := _claim(file):
         raise AddonError(f"{file.name}: calls itself {claim}, so {remedy}")
 

@@ -7,13 +7,14 @@ Nothing here refers to Blender's data, so a job may travel between threads, and 
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from enum import StrEnum
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
+    from crfnet_core.types import Uint8Array
     from ocio.options import EstimateOptions
 
 #: A file name without suffix, split around its last number, which is the frame number.
@@ -21,8 +22,9 @@ _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
 
 
 class ApplyMode(StrEnum):
-    """The ways to apply a response: in the compositor, as a colour space, as linear EXR files, as files to hand on."""
+    """What becomes of a response: nothing yet, or nodes, a colour space, linear EXR files, files to hand on."""
 
+    ESTIMATE = "ESTIMATE"
     NODES = "NODES"
     COLORSPACE = "COLORSPACE"
     BAKE = "BAKE"
@@ -34,6 +36,25 @@ class Anchor(StrEnum):
 
     WHITE = "WHITE"
     GRAY = "GRAY"
+
+
+@dataclass(frozen=True, kw_only=True)
+class BlenderDecoder:
+    """Another Blender, which decodes the frames of a plate that the estimator does not read itself.
+
+    Parameters
+    ----------
+    command : tuple of str
+        The command that starts it; the arguments of `scene.decode_frames` follow.
+    frame_count : int
+        The number of frames of a movie, which are numbered from 1; 0 for image files.
+    is_deinterlaced : bool
+        Whether the fields of a movie are to be deinterlaced, as its image in Blender is.
+    """
+
+    command: tuple[str, ...]
+    frame_count: int = 0
+    is_deinterlaced: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -57,7 +78,11 @@ class Plate:
     folder : Path or None
         The folder for new files unless the user chooses one; None for a plate without a file of its own.
     has_metadata : bool
-        Whether the file may say how it was made; not if it was written from pixels in Blender.
+        Whether the file may say how it was made; not if it was written from pixels in Blender, or by its decoder.
+    content : bytes, ndarray of uint8 with shape (H, W, 3 or 4), or None
+        The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
+    decoder : BlenderDecoder or None
+        What decodes the file, or the frames of a sequence or movie, if the estimator does not read it itself.
     """
 
     name: str
@@ -68,6 +93,13 @@ class Plate:
     color_space: str
     folder: Path | None
     has_metadata: bool = True
+    content: bytes | Uint8Array | None = field(default=None, repr=False, compare=False)
+    decoder: BlenderDecoder | None = None
+
+    @property
+    def has_frames(self) -> bool:
+        """Whether the plate is a sequence or a movie."""
+        return self.is_sequence or (self.decoder is not None and self.decoder.frame_count > 0)
 
     @classmethod
     def of_file(
@@ -80,6 +112,8 @@ class Plate:
         color_space: str,
         folder: Path | None,
         has_metadata: bool = True,
+        content: bytes | Uint8Array | None = None,
+        decoder: BlenderDecoder | None = None,
     ) -> Plate:
         """Return the plate of a file, or of the sequence that the file belongs to.
 
@@ -102,6 +136,8 @@ class Plate:
             color_space=color_space,
             folder=folder,
             has_metadata=has_metadata,
+            content=content,
+            decoder=decoder,
         )
 
 
@@ -117,11 +153,14 @@ class Estimation:
         Whether it is estimated even if the plate is said to be logarithmic or linear.
     stored : ResponseEstimate or None
         An earlier estimate, which is used instead of a new one.
+    photographs : tuple of Plate
+        Further photographs of the same camera with the same settings, which share the response.
     """
 
     options: EstimateOptions
     is_forced: bool
     stored: ResponseEstimate | None = None
+    photographs: tuple[Plate, ...] = ()
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -159,6 +198,8 @@ class Output:
         The entries of LUT files.
     overwrite : bool
         Whether existing files may be replaced.
+    despite_verdict : bool
+        Whether a response is applied that is not to be trusted.
     """
 
     mode: ApplyMode
@@ -166,6 +207,7 @@ class Output:
     depth: str
     lut_length: int
     overwrite: bool
+    despite_verdict: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

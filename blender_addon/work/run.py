@@ -3,19 +3,32 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 
 from crfnet_core import ResponseEstimate
+from crfnet_core.errors import CRFNetError
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress
-from ocio.pipeline import anchored_exposure, estimate_frames, load_network, load_prior, response_lut
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.pipeline import (
+    anchored_exposure,
+    estimate_frames,
+    estimate_photographs,
+    load_network,
+    load_prior,
+    response_lut,
+)
+from ocio.plates.frames import FrameSequence
 from ocio.report import verdict_lines
 
 from . import writers
 from .encoding_check import check_is_encoded
+from .errors import AddonError, CancelledError
+from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
+from .target_check import check_targets
+from .wording import panel_line
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
@@ -37,9 +50,11 @@ class CompletedJob:
     stops : float
         The stops to add after the inverse response.
     frames : tuple of int
-        The frame numbers of a sequence that Blender is to show; empty for a single file.
+        The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
     files : Baked, Exported, Installed or None
-        What was written; None for nodes, which need no file.
+        What was written; None for nodes, which need no file, and if the response is not applied.
+    problem : AddonError, CRFNetError or None
+        Why the response could be estimated, but not applied.
     """
 
     job: Job
@@ -47,11 +62,23 @@ class CompletedJob:
     stops: float
     frames: tuple[int, ...]
     files: writers.Written | None
+    problem: AddonError | CRFNetError | None = None
 
     @property
     def lines(self) -> tuple[str, ...]:
         """The verdict and the warnings in words, one line each."""
-        return tuple(verdict_lines(self.estimate))
+        return tuple(map(panel_line, verdict_lines(self.estimate)))
+
+    @property
+    def is_withheld(self) -> bool:
+        """Whether the response is not applied because it is not to be trusted, and the user has not said otherwise."""
+        is_wanted = self.job.output.mode is not ApplyMode.ESTIMATE
+        return is_wanted and self.estimate.verdict is Verdict.DO_NOT_TRUST and not self.job.output.despite_verdict
+
+    @property
+    def is_applied(self) -> bool:
+        """Whether the response is to be applied to the scene; otherwise only the estimate is stored."""
+        return not (self.job.output.mode is ApplyMode.ESTIMATE or self.is_withheld or self.problem)
 
     @property
     def is_doubtful(self) -> bool:
@@ -72,35 +99,69 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     Raises
     ------
     CRFNetError, AddonError
-        If the plate, the model or a folder cannot be used; files that the job has written are removed again.
+        If the plate, the model or a folder cannot be used. If that shows only when a new estimate is being applied, it
+        is the `problem` of the completed job, so that the estimate is not lost. Files that the job has written are
+        removed again.
     """
-    sequence = cache(partial(find_frames, job.plate.file))  # looks for the frames at most once, and only if needed
+    sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
+    check_targets(job, sequence)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
+    try:
+        return _completed(job, estimate, sequence, progress)
+    except CancelledError:
+        raise
+    except (AddonError, CRFNetError) as problem:
+        if job.estimation.stored is not None:
+            raise
+        return CompletedJob(job, estimate, job.exposure.stops, (), None, problem)
+
+
+def _completed(
+    job: Job, estimate: ResponseEstimate, sequence: Callable[[], FrameSequence], progress: Progress | None
+) -> CompletedJob:
+    """Return the job with its estimate, after writing its files."""
     gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
     stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
-    shows_frames = job.plate.is_sequence and job.output.mode in _SHOWING_FRAMES
+    completed = CompletedJob(job, estimate, stops, (), None)
+    if not completed.is_applied:
+        return completed
+    shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
         lut = response_lut(estimate, length=job.output.lut_length)
         files = writers.write(job, lut, stops, sequence, progress)
-    return CompletedJob(job, estimate, stops, sequence().numbers if shows_frames else (), files)
+    return replace(completed, frames=sequence().numbers if shows_frames else (), files=files)
 
 
 def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> ResponseEstimate:
-    """Return the response of a plate, estimated from its file or from several of its frames.
+    """Return the response of a plate, estimated from its file or several of its frames, and from further photographs.
 
     Raises
     ------
     AddonError
-        If the plate is logarithmic or linear and the job does not force the estimate.
+        If the plate or a photograph is logarithmic or linear and the job does not force the estimate.
     CRFNetError
         If a file, the model or the prior cannot be read.
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
-    if not job.estimation.is_forced:
-        check_is_encoded(job.plate, sample_frames(sequence)[0], job.config.path)
-    options = job.estimation.options
-    prior, network = load_prior(options), _load_network(options)
-    options = replace(options, use_metadata=options.use_metadata and job.plate.has_metadata)
-    return estimate_frames(sequence, network, prior, options, progress=progress)
+    plates = (job.plate, *job.estimation.photographs)
+    sequences = (sequence, *map(frames_of, job.estimation.photographs))
+    options, is_decoded = job.estimation.options, any(plate.decoder is not None for plate in plates)
+    decoding, estimating = (_part(progress, 0), _part(progress, 1)) if is_decoded else (progress, progress)
+    with sampled_files(list(zip(plates, sequences, strict=True)), decoding) as files:
+        if not job.estimation.is_forced:
+            for plate, frames in zip(plates, files, strict=True):
+                check_is_encoded(plate, frames.paths[0], job.config.path)
+        prior, network = load_prior(options), _load_network(options)
+        has_metadata = all(plate.has_metadata for plate in plates)
+        options = replace(options, use_metadata=options.use_metadata and has_metadata)
+        if len(plates) == 1:
+            return estimate_frames(files[0], network, prior, options, progress=estimating)
+        paths = [path for frames in files for path in frames.paths]
+        return estimate_photographs(paths, network, prior, options, progress=estimating).estimate
+
+
+def _part(progress: Progress | None, part: int) -> Progress | None:
+    """Return a callback for one of two parts of a job, 0 or 1, that takes half of the progress."""
+    return None if progress is None else lambda done, total: progress(part * total + done, 2 * total)

@@ -3,22 +3,34 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import hashlib
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from crfnet_core.files import check_target
 from crfnet_core.types import Progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
-from ocio.output_files import OutputFiles, plain_stem
+from ocio.output_files import (
+    OutputFiles,
+    check_folder,
+    new_files_removed_on_failure,
+    output_folder,
+    plain_stem,
+)
 from ocio.pipeline import bake_plates, export_luts
 from ocio.plates.frames import FramePattern, FrameSequence
-from ocio.plates.linear import linear_targets
+from ocio.plates.linear import linear_targets, linearize_plates
 
 from .errors import AddonError
+from .frame_files import FrameReader, counted_from, frame_reader
 from .job import ApplyMode, Job, Plate
+
+#: Decoded frames that are on the disk at a time; 4K frames of 8 bits take up to 25 MB each.
+FRAMES_DECODED = 8
 
 
 @dataclass(frozen=True)
@@ -85,8 +97,36 @@ def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: 
     """Write the linear plate, or all its frames; a cancelled or failed job leaves no new file."""
     targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
     options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite)
-    bake_plates(sequence, targets, lut, options, progress=progress)
-    return Baked(targets, job.plate.is_sequence)
+    with frame_reader(job.plate) as read:
+        if job.plate.decoder is None:
+            bake_plates(read(sequence, progress), targets, lut, options, progress=progress)
+        else:
+            _bake_decoded(read, sequence, targets, lut, options, progress)
+    return Baked(targets, job.plate.has_frames)
+
+
+def _bake_decoded(
+    read: FrameReader,
+    sequence: FrameSequence,
+    targets: Sequence[Path],
+    lut: Lut1D,
+    options: PlateOptions,
+    progress: Progress | None,
+) -> None:
+    """Do as `bake_plates`, with a few decoded frames on the disk at a time."""
+    folder = targets[0].parent
+    check_folder(folder)
+    with output_folder(folder):
+        for target in targets:
+            check_target(target, overwrite=options.overwrite)
+        with new_files_removed_on_failure(targets):
+            for start in range(0, len(targets), FRAMES_DECODED):
+                part = slice(start, start + FRAMES_DECODED)
+                frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
+                so_far = counted_from(progress, start, len(targets))
+                linearize_plates(read(frames, so_far), targets[part], lut, options)
+    if progress is not None:
+        progress(len(targets), len(targets))
 
 
 def export(job: Job, lut: Lut1D, stops: float) -> Exported:
@@ -101,7 +141,16 @@ def install_color_space(job: Job, lut: Lut1D, stops: float) -> Installed:
     """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
     folder = _folder(job)
     space = color_space(job.plate, output_files(job.plate, folder), stops)
-    return install(folder, job.config.path, space, lut)
+    hint = job.plate.folder.name if job.plate.folder else ""
+    return install(folder, job.config.path, space, lut, plate=identity(job.plate), hint=hint)
+
+
+def identity(plate: Plate) -> str:
+    """Return what a plate is known by in the config: its full path; without a file of its own, what it contains."""
+    if plate.content is None:
+        return str(plate.file.resolve())
+    content = plate.content if isinstance(plate.content, bytes) else plate.content.tobytes()
+    return f"sha256 {hashlib.sha256(content).hexdigest()}"
 
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
@@ -110,15 +159,20 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float) -> PlateColorSpace:
-    """Return the plate's colour space, with a file rule for all its files."""
+    """Return the plate's colour space, with a file rule for all its files, which an installed config leaves out."""
     return files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
 
 
 def baked_name(plate: Plate) -> str:
-    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate."""
+    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate.
+
+    The frames of a movie get the four digits that Blender gives to frames.
+    """
     stem = plain_stem(Path(plate.name + ".exr"))
+    if not plate.has_frames:
+        return f"{stem}_linear.exr"
     pattern = FramePattern.parse(plate.file) if plate.is_sequence else None
-    return f"{stem}_linear.exr" if pattern is None else f"{stem}_linear.%0{pattern.width}d.exr"
+    return f"{stem}_linear.%0{4 if pattern is None else pattern.width}d.exr"
 
 
 def _photo(plate: Plate) -> Path:

@@ -6,27 +6,35 @@ not match the record was written by somebody else: it is copied to a backup befo
 
 from __future__ import annotations
 
-import hashlib
-import json
 import shutil
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
-from dataclasses import asdict, dataclass, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from crfnet_core.files import atomic_write_text
 from ocio.configs.files import load_config, write_config
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from ocio.configs.installation_record import (
+    FOLDER,
+    RECORD_NAME,
+    InstallationRecord,
+    digest,
+    read_record,
+    write_record,
+)
+from ocio.configs.plate_color_space import (
+    FAMILY,
+    PlateColorSpace,
+    add_plate_color_space,
+    without_plate_color_space,
+    without_plate_rules,
+)
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_folder, new_files_removed_on_failure, output_folder
-
-#: The folder of our own beside the config, and the record in it.
-FOLDER, RECORD_NAME = "camera_response", "installed.json"
+from ocio.output_files import check_folder, distinct_names, new_files_removed_on_failure, output_folder
 
 #: Name of the copy of an earlier config, and of further copies.
 BACKUP_NAME, NUMBERED_BACKUP = "config.before-camera-response.ocio", "config.before-camera-response-{}.ocio"
@@ -73,30 +81,16 @@ class Restored:
     is_removed: bool
 
 
-@dataclass(frozen=True)
-class _Record:
-    """What was done to a config.
-
-    Parameters
-    ----------
-    sha256 : str
-        The hash of the config as it was written.
-    backup : str or None
-        The file name of the earlier config's copy.
-    folders : tuple of str
-        The LUT folders that were copied beside the config.
-    """
-
-    sha256: str
-    backup: str | None
-    folders: tuple[str, ...]
-
-
-def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) -> Installed:
+def install(
+    folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D, *, plate: str, hint: str = ""
+) -> Installed:
     """Write a plate's LUT, and its colour space into the config of `folder`.
 
     The colour space is added to the config in the folder. If there is none, the new config is `base` with the colour
     space added, and the LUT folders of `base` are copied, so that the folder is complete in itself.
+
+    The config gets no file rule, and loses those of earlier versions: it holds for every project of its user, and rules
+    know a file by its name alone. The program has to choose the colour space for the plate itself.
 
     Parameters
     ----------
@@ -105,9 +99,14 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
     base : str or Path
         The config to build on if the folder has none.
     space : PlateColorSpace
-        The colour space; its LUT goes into `FOLDER`.
+        The colour space; its LUT goes into `FOLDER`. If the config has a space of this name for another plate, the
+        hint or a number is added to the name.
     lut : Lut1D
         The inverse response.
+    plate : str
+        What the plate is known by, such as its full path: only a colour space of the same plate is replaced.
+    hint : str
+        What tells the plate from others of its name, such as its folder.
 
     Raises
     ------
@@ -115,12 +114,15 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
         If the folder cannot be written to, or OpenColorIO refuses the config, which is then as it was.
     """
     check_folder(folder)
-    config, lut_file = folder / CONFIG_NAME, folder / FOLDER / space.lut_file
-    before = (_digest(config), _digest(lut_file))
-    record = _read_record(folder)
+    config = folder / CONFIG_NAME
+    record = read_record(folder)
+    plates = dict(record.plates) if record else {}
     try:
         is_new = not config.exists()
-        source = load_config(base if is_new else config)
+        source = without_plate_rules(load_config(base if is_new else config))
+        space = replace(space.renamed(_free_name(source, space.name, plates, plate, hint)), file_pattern=None)
+        lut_file = folder / FOLDER / space.lut_file
+        before = (digest(config), digest(lut_file))
         with (
             output_folder(folder / FOLDER),
             _copied_folders(source, folder, Path(base).parent if is_new else None) as copied,
@@ -131,10 +133,10 @@ def install(folder: Path, base: str | Path, space: PlateColorSpace, lut: Lut1D) 
             backup = _backup(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
-            _write_record(folder, _Record(_digest(config), backup, folders))
+            write_record(folder, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}))
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be written ({problem.strerror}); choose another folder") from problem
-    is_changed = before != (_digest(config), _digest(lut_file))
+    is_changed = before != (digest(config), digest(lut_file))
     return Installed(config, space.name, is_changed, folder / backup if backup else None)
 
 
@@ -146,10 +148,12 @@ def restore(folder: Path) -> Restored:
     ConfigError
         If nothing was installed there, or somebody else has changed the config since.
     """
-    record, config = _read_record(folder), folder / CONFIG_NAME
+    record, config = read_record(folder), folder / CONFIG_NAME
+    if record is None and _remove_if_empty(folder):
+        return Restored(config, is_removed=True)
     if record is None:
         raise ConfigError(f"{folder}: holds no config with an installed camera response; there is nothing to restore")
-    if config.exists() and _digest(config) != record.sha256:
+    if config.exists() and digest(config) != record.sha256:
         raise ConfigError(f"{config}: was changed by another program since; edit or remove it yourself")
     try:
         if record.backup:
@@ -159,9 +163,86 @@ def restore(folder: Path) -> Restored:
             config.unlink(missing_ok=True)
             for name in (*record.folders, FOLDER):
                 shutil.rmtree(folder / name, ignore_errors=True)
+            _remove_if_empty(folder)
     except OSError as problem:
         raise ConfigError(f"{config}: cannot be restored ({problem.strerror}); check the folder") from problem
     return Restored(config, is_removed=not record.backup)
+
+
+def installed_color_spaces(folder: Path) -> tuple[str, ...]:
+    """Return the names of the colour spaces that were installed into the config of `folder`, in its order.
+
+    They are those whose LUT lies in `FOLDER`. There are none if nothing was installed there.
+
+    Raises
+    ------
+    ConfigError
+        If OpenColorIO refuses the config.
+    """
+    config = folder / CONFIG_NAME
+    if read_record(folder) is None or not config.exists():
+        return ()
+    return tuple(space.getName() for space in load_config(config).getColorSpaces() if _installed_lut(space))
+
+
+def uninstall(folder: Path, name: str) -> None:
+    """Take an installed colour space, its file rules and its LUT out of the config of `folder`.
+
+    After the last one has been taken out, the config is as before the first: see `restore`.
+
+    Raises
+    ------
+    ConfigError
+        If no such colour space was installed there, somebody else has changed the config since, or it cannot be
+        written.
+    """
+    record, config = read_record(folder), folder / CONFIG_NAME
+    names = installed_color_spaces(folder)
+    if record is None or name not in names:
+        raise ConfigError(f"{config}: has no installed colour space {name!r}; check the name")
+    if digest(config) != record.sha256:
+        raise ConfigError(f"{config}: was changed by another program since; edit it yourself")
+    if names == (name,):
+        restore(folder)
+        return
+    loaded = load_config(config)
+    lut_file = _installed_lut(loaded.getColorSpace(name))
+    write_config(config, without_plate_color_space(loaded, name), check={}, overwrite=True)
+    try:
+        plates = {space: plate for space, plate in record.plates.items() if space != name}
+        write_record(folder, replace(record, sha256=digest(config), plates=plates))
+        (folder / lut_file).unlink(missing_ok=True)
+    except OSError as problem:
+        raise ConfigError(f"{folder}: cannot be changed ({problem.strerror}); check the folder") from problem
+
+
+def _installed_lut(space: OCIO.ColorSpace) -> str:
+    """Return the LUT file of a colour space that was installed, relative to the config; else an empty text."""
+    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    first = next(iter(transform), None) if isinstance(transform, OCIO.GroupTransform) else transform
+    source = first.getSrc() if isinstance(first, OCIO.FileTransform) else ""
+    return source if space.getFamily() == FAMILY and source.startswith(f"{FOLDER}/") else ""
+
+
+def _free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: str, hint: str) -> str:
+    """Return a name for a plate's colour space that the config does not use for another plate."""
+    for candidate in distinct_names(name, hint):
+        found = config.getColorSpace(candidate)
+        if found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate:
+            return candidate
+    raise AssertionError("there are names without end")
+
+
+def _remove_if_empty(folder: Path) -> bool:
+    """Remove a folder if it is empty, and return whether it was.
+
+    Blender takes an empty folder for the user's, finds no config in it, and runs without AgX.
+    """
+    try:
+        folder.rmdir()
+    except OSError:
+        return False
+    return True
 
 
 @contextmanager
@@ -188,33 +269,13 @@ def _copied_folders(config: OCIO.Config, folder: Path, home: Path | None) -> Ite
         raise
 
 
-def _backup(config: Path, record: _Record | None) -> str | None:
+def _backup(config: Path, record: InstallationRecord | None) -> str | None:
     """Return the file name of the earlier config's copy, after making the copy unless the record names one."""
     if not config.exists():
         return None
-    if record is not None and _digest(config) == record.sha256:
+    if record is not None and digest(config) == record.sha256:
         return record.backup
     names = (BACKUP_NAME, *map(NUMBERED_BACKUP.format, range(2, MAX_BACKUPS + 1)))
     name = next(name for name in names if not config.with_name(name).exists())
     shutil.copy2(config, config.with_name(name))
     return name
-
-
-def _digest(path: Path) -> str:
-    """Return a file's SHA-256, or an empty text if there is no file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
-
-
-def _read_record(folder: Path) -> _Record | None:
-    """Return what was done in a folder, or None if nothing was or the record is damaged."""
-    try:
-        entries = json.loads((folder / FOLDER / RECORD_NAME).read_text(encoding="utf-8"))
-        return _Record(entries["sha256"], entries["backup"], tuple(entries["folders"]))
-    except (OSError, ValueError, KeyError, TypeError):
-        return None
-
-
-def _write_record(folder: Path, record: _Record) -> None:
-    """Write down what was done in a folder."""
-    text = json.dumps(asdict(record), indent=1) + "\n"
-    atomic_write_text(folder / FOLDER / RECORD_NAME, text, overwrite=True, error=ConfigError)

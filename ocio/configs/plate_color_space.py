@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import copy
 import re
-from dataclasses import dataclass
-from pathlib import PureWindowsPath
+from dataclasses import dataclass, replace
+from pathlib import PurePosixPath, PureWindowsPath
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -85,6 +85,40 @@ class PlateColorSpace:
         if set(self.lut_file) & set("$%"):
             raise ConfigError(f"{self.name}: OpenColorIO takes $ and % in {self.lut_file!r} for variables; rename it")
 
+    def renamed(self, name: str) -> PlateColorSpace:
+        """Return the same colour space under another name, which its aliases and its LUT file follow.
+
+        The name has to begin with the present one: what comes after it is appended to the aliases and the LUT file.
+        """
+        if not name.startswith(self.name):
+            raise ConfigError(f"{name}: does not begin with {self.name!r}; choose a name that does")
+        added, lut_file = name[len(self.name) :], PurePosixPath(self.lut_file)
+        plain = re.sub(r"\W+", "_", added).rstrip("_").lower()
+        return replace(
+            self,
+            name=name,
+            lut_file=str(lut_file.with_name(f"{lut_file.stem}{added}{lut_file.suffix}")),
+            aliases=tuple(alias + plain for alias in self.aliases),
+        )
+
+
+def without_plate_rules(config: OCIO.Config) -> OCIO.Config:
+    """Return a copy of `config` without the file rules that lead to a plate's colour space.
+
+    A rule knows a file by its name alone, so in a config that many projects share it would also catch files of other
+    cameras.
+    """
+    config = copy.deepcopy(config)
+    if config.getMajorVersion() < 2:
+        return config
+    rules = config.getFileRules()
+    for index in reversed(range(rules.getNumEntries() - 1)):  # the last one is the default, which cannot be removed
+        space = config.getColorSpace(rules.getColorSpace(index))
+        if space is not None and space.getFamily() == FAMILY:
+            rules.removeRule(index)
+    config.setFileRules(rules)
+    return config
+
 
 def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Config:
     """Return a copy of `config` with a plate's colour space, and with its file rule before all other rules.
@@ -132,6 +166,13 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
     return config
 
 
+def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:
+    """Return a copy of `config` without a plate's colour space and its file rules; all else stays."""
+    config = copy.deepcopy(config)
+    _remove(config, name)
+    return config
+
+
 def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
     """Remove an earlier version of a plate's space and its rule; raise a ConfigError if the name is used otherwise."""
     earlier = config.getColorSpace(space.name)
@@ -139,10 +180,15 @@ def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
         return
     if earlier.getFamily() != FAMILY or earlier.getName().casefold() != space.name.casefold():
         raise ConfigError(f"{space.name}: the config uses this name for {earlier.getName()!r}; choose another name")
-    config.removeColorSpace(earlier.getName())
+    _remove(config, earlier.getName())
+
+
+def _remove(config: OCIO.Config, name: str) -> None:
+    """Remove a colour space of a config, and the file rules of its name."""
+    config.removeColorSpace(name)
     rules = config.getFileRules()
     for index in reversed(range(rules.getNumEntries())):
-        if rules.getName(index).casefold() == space.name.casefold():
+        if rules.getName(index).casefold() == name.casefold():
             rules.removeRule(index)
     config.setFileRules(rules)
 

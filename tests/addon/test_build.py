@@ -59,18 +59,24 @@ def test_every_wheel_has_its_hash(manifest, hashes):
 
 def test_every_platform_of_the_manifest_is_built(manifest):
     assert list(build.WHEEL_PLATFORMS) == manifest["platforms"]
-    assert set().union(*(build.platform_wheels(manifest["wheels"], name) for name in manifest["platforms"])) == set(
-        manifest["wheels"]
-    )
+    assert {platform for platform, _ in build.ZIPS.values()} == set(manifest["platforms"])
+    wheels = set().union(*(build.platform_wheels(manifest["wheels"], *parts) for parts in build.ZIPS.values()))
+    assert wheels == set(manifest["wheels"])
 
 
 @pytest.mark.parametrize("name", ["linux-x64", "macos-arm64", "windows-x64"])
-def test_a_platform_has_wheels_for_both_pythons(manifest, name):
-    assert pythons(build.platform_wheels(manifest["wheels"], name)) == ["cp311", "cp313", "py3"]
+def test_a_platform_has_wheels_for_both_pythons_of_official_blenders(manifest, name):
+    assert pythons(build.platform_wheels(manifest["wheels"], *build.ZIPS[name])) == ["cp311", "cp313", "py3"]
 
 
 def test_intel_macs_have_one_for_the_last_blender_there(manifest):
-    assert pythons(build.platform_wheels(manifest["wheels"], "macos-x64")) == ["cp311", "py3"]
+    assert pythons(build.platform_wheels(manifest["wheels"], *build.ZIPS["macos-x64"])) == ["cp311", "py3"]
+
+
+def test_one_zip_is_for_the_pythons_of_linux_distributions(manifest):
+    wheels = build.platform_wheels(manifest["wheels"], *build.ZIPS["linux-x64-any-python"])
+    assert pythons(wheels) == ["cp311", "cp312", "cp313", "cp314", "py3"]
+    assert all("manylinux" in name for name in names(wheels) if name.startswith("onnxruntime"))
 
 
 def test_a_zips_manifest_lists_what_is_in_it(manifest, manifest_text):

@@ -43,7 +43,9 @@ def check(make_job, running_config, plate_file):
 
 
 def test_a_space_that_the_config_calls_linear_is_refused(check):
-    with pytest.raises(AddonError, match=r"^plate: its colour space, scene_linear, .* tick Estimate Anyway$"):
+    with pytest.raises(
+        AddonError, match=r"^plate: its color space, scene_linear, .* tick Estimate Anyway under Advanced$"
+    ):
         check("scene_linear")
 
 

@@ -10,7 +10,22 @@ import pytest
 ESTIMATOR = {"crfnet_core", "ocio", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
 
 #: Modules of `work` that Blender imports when it enables the add-on.
-LIGHT = ("background", "curve_picture", "errors", "job")
+LIGHT = ("background", "curve_picture", "errors", "job", "wording")
+
+#: Modules of `ui` that Blender imports when it enables the add-on.
+REGISTERED = (
+    "config_operators",
+    "estimate_box",
+    "handlers",
+    "image_tools",
+    "menus",
+    "operators",
+    "panel",
+    "photographs",
+    "plate_settings",
+    "preferences",
+    "running",
+)
 
 IMPORT_WORK = """
 import importlib, pkgutil, sys
@@ -84,7 +99,7 @@ def test_what_blender_imports_of_work_at_its_start_is_light(root):
     assert not {name.partition(".")[0] for name in loaded_by(IMPORT_LIGHT, root)} & ESTIMATOR
 
 
-@pytest.mark.parametrize("module", ["handlers", "operators", "panel", "plate_settings", "preferences"])
+@pytest.mark.parametrize("module", REGISTERED)
 def test_what_is_registered_imports_no_estimator(addon_folder, module):
     names = imported_with(f"blender_addon.ui.{module}", addon_folder)
     assert "bpy" in names

@@ -6,13 +6,14 @@ import shutil
 import numpy as np
 import pytest
 
+from blender_addon.work import frame_files, writers
 from blender_addon.work import run as run_module
-from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet_core.errors import CRFNetError, ModelError, PlateError, PriorError
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.posterior import Verdict
 from tests.helpers.images import write_image
 
 
@@ -70,7 +71,7 @@ def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
 
 
 def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, sequence_file):
-    scans, luts = calls(run_module, "find_frames"), calls(run_module, "response_lut")
+    scans, luts = calls(frame_files, "find_frames"), calls(run_module, "response_lut")
     completed = run(make_job(sequence_file, is_sequence=True))
     assert (len(scans), len(luts)) == (1, 1)
     assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
@@ -110,9 +111,78 @@ def test_a_gray_anchor_becomes_018(make_job):
     assert completed.estimate.curve.inverse(0.4) * 2 ** (completed.stops - 1) == pytest.approx(0.18)
 
 
-def test_a_gray_that_is_black_is_refused(make_job):
+def test_a_gray_that_is_black_is_told_and_the_estimate_kept(make_job, plate_file, estimate):
+    completed = run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.0))
+    assert "is black in this response" in str(completed.problem)
+    assert not completed.is_applied
+    assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
     with pytest.raises(CRFNetError, match="is black in this response"):
-        run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.0))
+        run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.0, stored=completed.estimate))
+
+
+def test_estimate_only_writes_nothing(make_job, tmp_path):
+    completed = run(make_job(mode=ApplyMode.ESTIMATE, folder=tmp_path / "out"))
+    assert (completed.files, completed.frames, completed.is_applied, completed.is_withheld) == (None, (), False, False)
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
+def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
+    run(make_job(mode=mode))
+    loads = calls(run_module, "_load_network")
+    with pytest.raises(AddonError, match=r"exists already in .*; tick Overwrite or choose another Folder"):
+        run(make_job(mode=mode))
+    assert loads == []
+    assert run(make_job(mode=mode, overwrite=True)).files is not None
+
+
+def test_a_missing_folder_is_told_before_the_estimate(make_job, calls):
+    loads = calls(run_module, "_load_network")
+    with pytest.raises(AddonError, match="choose one under Folder"):
+        run(make_job(folder=None))
+    assert loads == []
+
+
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT, ApplyMode.COLORSPACE])
+def test_the_estimate_is_kept_if_its_files_cannot_be_written(make_job, plate_file, estimate, monkeypatch, mode):
+    def refuse(*_arguments):
+        raise PlateError("the disk is full")
+
+    monkeypatch.setattr(writers, "write", refuse)
+    completed = run(make_job(mode=mode))
+    assert (str(completed.problem), completed.files, completed.is_applied) == ("the disk is full", None, False)
+    assert completed.estimate.uncertainty == estimate(plate_file).uncertainty
+
+
+@pytest.fixture
+def untrusted(estimate, plate_file):
+    return dataclasses.replace(estimate(plate_file), verdict=Verdict.DO_NOT_TRUST)
+
+
+@pytest.mark.parametrize("mode", list(ApplyMode)[1:])
+def test_what_is_not_to_be_trusted_is_applied_at_the_users_word_only(make_job, untrusted, tmp_path, mode):
+    job = make_job(mode=mode, stored=untrusted)
+    completed = run(job)
+    assert (completed.is_withheld, completed.is_applied, completed.files) == (True, False, None)
+    assert not (tmp_path / "out").exists()
+    insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
+    assert (insisted.is_withheld, insisted.is_applied) == (False, True)
+
+
+def test_several_photographs_are_estimated_together(make_job, plate_file, codes, tmp_path, estimate):
+    second = write_image(tmp_path / "second.png", np.roll(codes, 40, axis=1))
+    job, other = make_job(mode=ApplyMode.ESTIMATE), make_job(second).plate
+    job = dataclasses.replace(job, estimation=dataclasses.replace(job.estimation, photographs=(other,)))
+    completed = run(job)
+    assert completed.estimate.photos == ("plate.png", "second.png")
+    np.testing.assert_array_equal(completed.estimate.weights, estimate(plate_file, second).weights)
+
+
+def test_a_further_photograph_that_is_linear_is_refused(make_job, plate_file):
+    other = dataclasses.replace(make_job().plate, name="other", color_space="lin_rec709_scene")
+    job = make_job(mode=ApplyMode.ESTIMATE)
+    with pytest.raises(AddonError, match=r"^other: .* is logarithmic or linear"):
+        run(dataclasses.replace(job, estimation=dataclasses.replace(job.estimation, photographs=(other,))))
 
 
 def test_a_doubtful_estimate_is_one_with_warnings(make_job, tmp_path):

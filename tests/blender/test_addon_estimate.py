@@ -61,6 +61,7 @@ def test_with_the_packaged_model(addon, plate):
 
 def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
+    image.use_fake_user = True
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
     image = bpy.data.images["plate.png"]
@@ -218,26 +219,43 @@ def test_a_model_that_is_not_there(image, addon, tmp_path):
         bpy.ops.crf.estimate_response(image=image.name)
 
 
-MISSING_WHEEL = """
+MISSING = """
 import sys
 import bpy
-sys.modules["onnxruntime"] = None
+sys.modules[sys.argv[-1]] = None
 import addon_utils
 assert addon_utils.enable("blender_addon", default_set=True)
-image = bpy.data.images.load(sys.argv[-1])
+from blender_addon.scene.plates import obstacle
+image = bpy.data.images.load(sys.argv[-2])
+print("PANEL", obstacle(image))
 try:
     bpy.ops.crf.estimate_response(image=image.name)
 except RuntimeError as problem:
     print("FOUND", problem)
 assert "camera_response" not in image
+addon_utils.disable("blender_addon", default_set=True)
+assert not hasattr(bpy.types, "CRF_OT_estimate_response")
 """
 
 
-def test_a_missing_wheel_is_told_when_it_is_needed(plate, root, tmp_path):
-    command = [sys.executable, "-c", f"import sys; sys.path.insert(0, {str(root)!r})\n{MISSING_WHEEL}", str(plate)]
+@pytest.mark.parametrize(
+    ("library", "remedy"),
+    [
+        ("onnxruntime", "install the add-on again, from the zip for this system and Python"),
+        ("ocio", "install the add-on again"),
+        ("crfnet_core", "install the add-on again"),
+        ("PyOpenColorIO", "use Blender from blender.org"),
+    ],
+)
+def test_without_a_library_it_is_enabled_and_says_what_is_missing(plate, root, tmp_path, library, remedy):
+    code = f"import sys; sys.path.insert(0, {str(root)!r})\n{MISSING}"
+    command = [sys.executable, "-c", code, str(plate), library]
     done = subprocess.run(command, capture_output=True, text=True, timeout=300, check=False, cwd=tmp_path)
     assert done.returncode == 0, done.stderr
-    assert "onnxruntime cannot be loaded" in done.stdout
+    for beginning in ("PANEL", "FOUND"):
+        (line,) = (line for line in done.stdout.splitlines() if line.startswith(beginning))
+        assert library in line
+        assert remedy in line
     assert "Traceback" not in done.stdout + done.stderr
 
 
@@ -258,7 +276,7 @@ def test_blenders_own_libraries_are_used():
 
 
 def test_the_preferences_come_first_until_a_plate_is_set(addon):
-    assert addon.apply == "NODES"
+    assert addon.apply == "ESTIMATE"
     addon.apply = "EXPORT"
     image = bpy.data.images.new("new", 8, 8)
     assert image.camera_response_settings.apply == "EXPORT"

@@ -119,7 +119,7 @@ def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate
         assert group.inputs["Image"].links[0].from_node == plate
         assert group.inputs["Exposure"].default_value == exposure
         assert [g.name for g in bpy.data.node_groups if g.name.startswith("Camera")] == ["Camera Response plate"]
-        assert len([image for image in bpy.data.images if image.name.startswith("Camera")]) == 1
+        assert len([image for image in bpy.data.images if image.name.endswith("LUT")]) == 1
 
 
 def test_a_new_compositor_hands_the_render_through(load, plate_file):
@@ -137,7 +137,7 @@ def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
     with in_editor("NODE_EDITOR") as space:
         space.node_tree = tree
         assert bpy.ops.crf.estimate_response.poll()
-        assert bpy.ops.crf.estimate_response() == {"FINISHED"}
+        assert bpy.ops.crf.estimate_response(apply="NODES") == {"FINISHED"}
     assert node.outputs["Image"].links[0].to_node.node_tree.name == "Camera Response plate"
 
 
@@ -145,7 +145,9 @@ def test_a_clip(addon, plate_file, composited, codes, estimate):
     clip = bpy.data.movieclips.load(str(plate_file))
     assert bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES") == {"FINISHED"}
     group = next(node for node in scene_tree().nodes if node.type == "GROUP")
-    assert group.inputs["Image"].links[0].from_node.clip == clip
+    shown = group.inputs["Image"].links[0].from_node.clip
+    assert (shown.filepath, shown.colorspace_settings.name) == (clip.filepath, "Non-Color")
+    assert clip.colorspace_settings.name == "sRGB"
     expected = estimate(plate_file).curve.inverse(codes / 255)
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 

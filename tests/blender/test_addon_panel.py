@@ -36,25 +36,80 @@ class Panel:
         self.layout = Layout()
 
 
-@pytest.mark.parametrize("mode", ["NODES", "COLORSPACE", "BAKE", "EXPORT"])
-def test_it_draws_every_mode(image, in_editor, mode):
+def drawn_in(image, in_editor):
+    """What the panel of an Image Editor draws for an image."""
     from blender_addon.ui.panel import ResponsePanel
 
-    image.camera_response_settings.apply = mode
     panel = Panel()
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image
         ResponsePanel.draw(panel, bpy.context)
-    texts = " ".join(str(part) for entry in panel.layout.drawn for part in entry[1:] if part not in ("NONE", "BLANK1"))
-    words = " ".join(entry[1] for entry in panel.layout.drawn if entry[0] == "label")
+    return panel.layout.drawn
+
+
+def labels(drawn):
+    return [entry[1] for entry in drawn if entry[0] == "label"]
+
+
+def operators(drawn):
+    return [entry[1:3] for entry in drawn if entry[0] == "operator"]
+
+
+@pytest.mark.parametrize("mode", ["ESTIMATE", "NODES", "COLORSPACE", "BAKE", "EXPORT"])
+def test_it_draws_every_mode(image, in_editor, mode):
+    image.camera_response_settings.apply = mode
+    drawn = drawn_in(image, in_editor)
+    properties = [entry[2] for entry in drawn if entry[0] == "prop"]
+    words = " ".join(labels(drawn))
     assert "windows agree" in words
-    assert "E_est" in words
+    assert "E_est" not in words
+    assert "Expected error 0." in words
     assert "The estimate is" in words
     assert "Most likely" in words
-    assert " stop " in words
-    assert "ignore_metadata" in texts
-    assert "crf.apply_response" in texts
-    assert ("overwrite" in texts) == (mode in ("BAKE", "EXPORT"))
+    assert "stops" in labels(drawn)
+    assert "ignore_metadata" in properties
+    assert (("crf.apply_response", "Apply") in operators(drawn)) == (mode != "ESTIMATE")
+    assert ("Choose under" in words) == (mode == "ESTIMATE")
+    assert ("overwrite" in properties) == (mode in ("BAKE", "EXPORT"))
+    assert ("folder" in properties) == (mode in ("COLORSPACE", "BAKE", "EXPORT"))
+
+
+@pytest.mark.parametrize(
+    ("verdict", "word", "icon"),
+    [("good", "Good", "CHECKMARK"), ("usable", "Usable: check it", "INFO"), ("do not trust", "Do not trust", "ERROR")],
+)
+def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdict, word, icon):
+    image["camera_response"]["verdict"] = verdict
+    image.camera_response_settings.apply = "NODES"
+    drawn = drawn_in(image, in_editor)
+    assert next(entry for entry in drawn if entry[0] == "label") == ("label", word, icon)
+    button = "Apply Anyway" if verdict == "do not trust" else "Apply"
+    assert [text for name, text in operators(drawn) if name == "crf.apply_response"] == [button]
+    assert ("Nothing else was changed." in " ".join(labels(drawn))) == (verdict == "do not trust")
+
+
+def test_every_line_fits_the_sidebar(image, in_editor):
+    """20 letters, with an icon 17, is the least; only the verdict and buttons are longer words of their own."""
+    image["camera_response"]["lines"] += "\nWarning: this photograph is gray, so the edges say nothing of the response."
+    drawn = drawn_in(image, in_editor)
+    for entry in drawn:
+        if entry[0] == "label" and len(entry) > 2:
+            assert len(entry[1]) <= (20 if entry[2] == "NONE" else 17), entry
+    assert "so the edges say nothing" in " ".join(labels(drawn))
+
+
+def test_an_obstacle_is_drawn_and_not_only_a_gray_button(addon, in_editor):
+    image = bpy.data.images.new("linear", 8, 8, float_buffer=True)
+    drawn = drawn_in(image, in_editor)
+    assert "no camera response" in " ".join(labels(drawn))
+    assert not [entry for entry in drawn if entry[0] in ("prop", "operator")]
+
+
+def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
+    assert "Changed settings" not in " ".join(labels(drawn_in(image, in_editor)))
+    image.camera_response_settings.exposure = 1
+    assert "Changed settings" in " ".join(labels(drawn_in(image, in_editor)))
 
 
 def test_every_property_that_it_draws_exists(image, in_editor):
@@ -91,14 +146,16 @@ def test_it_says_what_to_do_without_a_plate(addon, in_editor, editor):
     with in_editor(editor):
         assert ResponsePanel.poll(bpy.context)
         ResponsePanel.draw(panel, bpy.context)
-    assert ("label", OPEN_A_PLATE[editor], "INFO") in panel.layout.drawn
+    assert " ".join(labels(panel.layout.drawn)) == OPEN_A_PLATE[editor]
+    assert operators(panel.layout.drawn) == []
 
 
 def test_the_icon_is_drawn_once_per_estimate(image):
-    from blender_addon.ui import panel
+    from blender_addon.ui import estimate_box
+    from blender_addon.work.curve_picture import SIZE
 
-    panel.curve_icon(image)
-    panel.curve_icon(image)
-    (preview,) = panel._previews.values()
-    assert tuple(preview.image_size) == (256, 256)
+    estimate_box.curve_icon(image)
+    estimate_box.curve_icon(image)
+    (preview,) = estimate_box._previews.values()
+    assert tuple(preview.image_size) == (SIZE, SIZE)
     assert np.ptp(preview.image_pixels_float[:]) > 0.5

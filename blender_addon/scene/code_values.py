@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The code values of a plate for the compositor: a hidden copy of its image or clip, which Blender does not linearize.
+
+The node group needs code values, but an Image node delivers what the image's colour space makes of them. So the nodes
+that are linearised read a copy whose colour space is Non-Color, and the plate itself stays as it is in every editor.
+Whatever colour space the plate gets later, the nodes are right.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+import bpy
+import numpy as np
+
+from . import stored_estimate
+from .color_management import data_space
+from .plates import CODE_VALUES_OF, Datablock
+
+
+def code_values(plate: Datablock) -> Datablock:
+    """Return the copy of a plate whose pixels are code values; one that exists is brought up to date.
+
+    It is an image or a clip like the plate, with the same files. The copy of a packed or painted image is packed.
+    """
+    earlier = next(_copies(plate), None)
+    if earlier is not None and _is_current(earlier, plate):
+        earlier.colorspace_settings.name = data_space()
+        return earlier
+    copy = _painted_copy(plate) if _is_painted(plate) else _file_copy(plate)
+    if earlier is not None:
+        earlier.user_remap(copy)
+        _collection(plate).remove(earlier)
+    copy.name = f".{plate.name} code values"  # the leading dot hides it in menus
+    copy[CODE_VALUES_OF] = plate
+    return copy
+
+
+def _copies(plate: Datablock) -> Iterator[Datablock]:
+    """Yield the copies of a plate, of which there is at most one unless the user has duplicated it."""
+    yield from (copy for copy in _collection(plate) if copy.get(CODE_VALUES_OF) == plate)
+
+
+def _is_current(copy: Datablock, plate: Datablock) -> bool:
+    """Return whether a copy reads the same files as its plate; packed pixels may have changed."""
+    if isinstance(plate, bpy.types.Image) and (plate.packed_file or _is_painted(plate)):
+        return False
+    return (copy.filepath, copy.source) == (plate.filepath, plate.source)
+
+
+def _file_copy(plate: Datablock) -> Datablock:
+    """Return a copy of an image or clip that is a file, packed or not."""
+    copy = plate.copy()
+    copy.pop(stored_estimate.KEY, None)
+    copy.property_unset("camera_response_settings")
+    copy.colorspace_settings.name = data_space()
+    return copy
+
+
+def _painted_copy(image: bpy.types.Image) -> bpy.types.Image:
+    """Return a packed copy of an image that was painted in Blender: its 8-bit pixels are code values."""
+    copy = bpy.data.images.new(image.name, *image.size, alpha=image.channels == 4)
+    copy.colorspace_settings.name = data_space()  # before the pixels, which this would remove
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    copy.pixels.foreach_set(pixels)
+    copy.alpha_mode = image.alpha_mode
+    copy.update()
+    copy.pack()
+    return copy
+
+
+def _is_painted(plate: Datablock) -> bool:
+    """Return whether a plate is an image that was painted in Blender and has no file, not even a packed one."""
+    return isinstance(plate, bpy.types.Image) and plate.source == "GENERATED" and not plate.packed_file
+
+
+def _collection(plate: Datablock) -> bpy.types.bpy_prop_collection:
+    """Return all images, or all clips."""
+    return bpy.data.images if isinstance(plate, bpy.types.Image) else bpy.data.movieclips

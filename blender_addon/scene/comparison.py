@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Show the linear plate instead of the plate in an Image Editor, and go back.
+
+The linear plate is a hidden float image in memory. The plate itself is not touched, and the float image is removed
+before the file is saved, before undo, and when the last editor goes back to the plate.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import bpy
+import numpy as np
+
+from .. import lazy_import
+from ..work.errors import AddonError
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseCurve
+    from crfnet_core.types import Float32Array
+
+#: The custom property that marks a linear plate that is only shown; its value is the plate.
+PLATE = "camera_response_plate"
+
+#: The name of these images; a leading dot hides them in menus.
+_NAME = ".Camera Response Linear"
+
+#: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
+_LARGEST = 65535
+
+#: Rows that are converted at a time: few enough to stay in the processor's cache.
+_ROWS = 16
+
+
+def plate_of(image: bpy.types.Image | None) -> bpy.types.Image | None:
+    """Return the plate of which an image is the linear one that is only shown; None for any other image."""
+    return None if image is None else image.get(PLATE)
+
+
+def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str) -> None:
+    """Show the linear plate in an editor that shows the plate.
+
+    Parameters
+    ----------
+    space : SpaceImageEditor
+        The editor.
+    pixels : ndarray, float32, shape (H, W, 4)
+        The linear plate, multiplied by alpha, the bottom row first.
+    color_space : str
+        The name of its colour space.
+    """
+    plate = space.image
+    height, width = pixels.shape[:2]
+    linear = bpy.data.images.new(_NAME, width, height, alpha=True, float_buffer=True)
+    linear[PLATE] = plate
+    linear.colorspace_settings.name = color_space  # before the pixels, which this would remove
+    linear.pixels.foreach_set(pixels.ravel())
+    linear.update()
+    space.image = linear
+
+
+def end(space: bpy.types.SpaceImageEditor) -> None:
+    """Show the plate again in an editor that shows its linear one, which is removed unless another editor shows it."""
+    linear, plate = space.image, plate_of(space.image)
+    if linear is None or PLATE not in linear:
+        return
+    space.image = plate
+    if all(other.image != linear for other in _image_editors()):
+        bpy.data.images.remove(linear)
+
+
+def end_all() -> None:
+    """Show the plates again everywhere, and remove all linear plates that were only shown."""
+    for space in _image_editors():
+        if space.image is not None and PLATE in space.image:
+            space.image = plate_of(space.image)
+    for image in [image for image in bpy.data.images if PLATE in image]:
+        bpy.data.images.remove(image)
+
+
+def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
+    """Return the code values of an image, those of the frame that an editor shows.
+
+    Returns
+    -------
+    ndarray, float32, shape (H, W, 3 or 4)
+        In [0, 1], the bottom row first, colours not multiplied by alpha.
+
+    Raises
+    ------
+    AddonError
+        If Blender cannot read the image.
+    PhotoError
+        If its file cannot be read.
+    """
+    width, height = image.size
+    if not width * height:
+        raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
+    if image.is_float and not image.packed_file:  # its pixels are linear light by the color space, not code values
+        read_photo = lazy_import.load("crfnet_core.image_io").read_photo
+        return read_photo(Path(image.filepath_from_user(image_user=user))).pixels[::-1]
+    flat = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(flat)
+    pixels = flat.reshape(height, width, image.channels)
+    return pixels if image.channels >= 3 else pixels[..., :1].repeat(3, axis=2)
+
+
+def linear_pixels(codes: Float32Array, curve: ResponseCurve, stops: float) -> Float32Array:
+    """Return the linear plate of code values.
+
+    Parameters
+    ----------
+    codes : ndarray, float32, shape (H, W, 3 or 4)
+        Code values, as `code_values` returns them.
+    curve : ResponseCurve
+        The plate's response.
+    stops : float
+        Stops added after the inverse response.
+
+    Returns
+    -------
+    ndarray, float32, shape (H, W, 4)
+        In linear Rec.709, multiplied by alpha.
+    """
+    table = (curve.inverse(np.arange(_LARGEST + 1) / _LARGEST) * 2**stops).astype(np.float32)
+    linear = np.empty((*codes.shape[:2], 4), np.float32)
+    for start in range(0, len(codes), _ROWS):
+        rows = slice(start, start + _ROWS)
+        index = (codes[rows] * _LARGEST + 0.5).astype(np.uint16)  # with alpha, too: one run of memory is faster
+        linear[rows, :, :3] = np.take(table, index)[..., :3]
+        linear[rows, :, 3:] = codes[rows, :, 3:] if codes.shape[2] == 4 else 1
+        if linear[rows, :, 3].min() < 1:
+            linear[rows, :, :3] *= linear[rows, :, 3:]
+    return linear
+
+
+def _image_editors() -> Iterator[bpy.types.SpaceImageEditor]:
+    """Yield all Image Editors, those of other workspaces included."""
+    for screen in bpy.data.screens:
+        for area in screen.areas:
+            yield from (space for space in area.spaces if space.type == "IMAGE_EDITOR")

@@ -1,0 +1,128 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the panel shows of an estimate: the verdict in a word, the curve, warnings, and the details on request."""
+
+from __future__ import annotations
+
+import math
+import textwrap
+
+import bpy
+import bpy.utils.previews
+
+from ..scene import comparison, plates, stored_estimate
+from ..work import curve_picture
+from .image_tools import CRF_OT_compare
+
+#: The pictures of responses that were drawn, by the fingerprint of the estimate.
+_previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
+
+#: Each verdict in a word or two, with its icon.
+VERDICTS = {
+    "good": ("Good", "CHECKMARK"),
+    "usable": ("Usable: check it", "INFO"),
+    stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR"),
+}
+
+#: How a warning begins among the lines of an estimate.
+WARNING = "Warning: "
+
+#: The mean width of a letter of the interface, what the panel and a box take beside a line, and the width of an icon:
+#: pixels at a scale of 1.
+_LETTER, _BORDER, _ICON = 6, 52, 20
+
+#: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
+_SMALLEST, _LARGEST = 9, 18
+
+#: The distance of lines that belong together, against that of buttons.
+_LINE = 0.75
+
+
+def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw the stored estimate of a plate in one box."""
+    letters = letters_of(context)
+    word, icon = VERDICTS[stored_estimate.verdict(datablock)]
+    box = layout.box()
+    column = box.column(align=True)
+    row = column.row()
+    row.alert = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
+    row.label(text=word, icon=icon)
+    if row.alert:
+        draw_text(column, "Nothing else was changed.", letters)
+    stops = stored_estimate.expected_stops(datablock)
+    if math.isfinite(stops):
+        column.label(text=f"Expected error {stops:.2f} stop")
+    box.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_SMALLEST, _width(context) / _ICON)))
+    if context.space_data.type == "IMAGE_EDITOR":
+        _draw_comparison(box, context.space_data)
+    first, *others = stored_estimate.lines(datablock)
+    warnings = [line.removeprefix(WARNING) for line in others if line.startswith(WARNING)]
+    if warnings:
+        draw_paragraphs(box, warnings, letters, icon="ERROR")
+    header, body = layout.panel("CRF_details", default_closed=True)
+    header.label(text="Details")
+    if body is not None:
+        lines = [first, *(line for line in others if not line.startswith(WARNING))]
+        draw_paragraphs(body, [*lines, LEGEND], letters)
+
+
+#: What the picture of the curve shows.
+LEGEND = "Curve: code value over light in stops below white; orange the response, blue its 90 % band, dashed gamma 2.2."
+
+
+def draw_paragraphs(layout: bpy.types.UILayout, lines: list[str], letters: int, *, icon: str = "NONE") -> None:
+    """Draw lines as paragraphs in one column, each with an icon if one is given."""
+    column = layout.column(align=True)
+    for number, line in enumerate(lines):
+        if number:
+            column.separator(factor=0.5)
+        draw_text(column, line, letters, icon=icon)
+
+
+def draw_text(layout: bpy.types.UILayout, text: str, letters: int, *, icon: str = "NONE") -> None:
+    """Draw a text in lines that fit; an icon goes before the first, and the others are indented by as much."""
+    column = layout.column(align=True)
+    column.scale_y = _LINE
+    width = letters - (_ICON // _LETTER if icon != "NONE" else 0)
+    for number, part in enumerate(textwrap.wrap(text, width)):
+        column.label(text=part, icon=icon if not number or icon == "NONE" else "BLANK1")
+
+
+def letters_of(context: bpy.types.Context) -> int:
+    """Return how many letters fit into a line of a box in the region; at least 20."""
+    return max(20, int(_width(context) / _LETTER))
+
+
+def _width(context: bpy.types.Context) -> float:
+    """Return the width inside a box in the region, in pixels at a scale of 1."""
+    scale = context.preferences.system.ui_scale or 1  # 0 without a screen
+    return context.region.width / scale - _BORDER
+
+
+def curve_icon(datablock: plates.Datablock) -> int:
+    """Return the icon of the picture of a stored response, which is drawn at the first call."""
+    key = stored_estimate.fingerprint(datablock)
+    if key not in _previews:
+        preview = _previews.new(key)
+        preview.image_size = (curve_picture.SIZE, curve_picture.SIZE)
+        pixels = curve_picture.draw_response(*stored_estimate.curve_and_band(datablock))
+        preview.image_pixels_float.foreach_set(pixels.ravel())
+    return _previews[key].icon_id
+
+
+def _draw_comparison(layout: bpy.types.UILayout, space: bpy.types.SpaceImageEditor) -> None:
+    """Draw the switch between the plate and the linear plate."""
+    is_after = comparison.plate_of(space.image) is not None
+    row = layout.row(align=True)
+    row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
+    row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True
+
+
+def register() -> None:
+    """Start with no picture drawn."""
+    global _previews
+    _previews = bpy.utils.previews.new()
+
+
+def unregister() -> None:
+    """Free the pictures."""
+    bpy.utils.previews.remove(_previews)

@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The tools of the Image Editor: look at the plate before and after, and pick the brightness of gray in it."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, ClassVar
+
+import bpy
+
+from .. import lazy_import
+from ..scene import comparison, plates, stored_estimate
+from ..work.errors import AddonError, expected_errors
+from ..work.wording import american
+
+if TYPE_CHECKING:
+    from crfnet_core.types import Float32Array
+
+#: Half the side of the square of pixels whose mean is picked.
+REACH = 2
+
+#: What the status bar says while gray is picked.
+PICK_HINT = "Click on something gray in the plate  |  Esc to cancel"
+
+
+class CRF_OT_compare(bpy.types.Operator):
+    """Show the plate, or the linear plate with the present exposure; nothing but the editor changes."""
+
+    bl_idname = "crf.compare"
+    bl_label = "Compare Plate and Linear Plate"
+    bl_description = "Show the plate as it is, or as linear light with the present exposure; only the view changes"
+
+    is_after: bpy.props.BoolProperty(name="After", description="Show the linear plate", options={"SKIP_SAVE"})
+
+    @classmethod
+    def description(cls, _context: bpy.types.Context, properties: bpy.types.OperatorProperties) -> str:
+        """Return the tooltip of one of the two buttons."""
+        if properties.is_after:
+            return "Show the linear plate with the present exposure. Nothing but the view changes"
+        return "Show the plate as it is in the file"
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether an Image Editor shows a plate with an estimate."""
+        return _is_image_editor(context) and stored_estimate.is_stored(plates.active_datablock(context))
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Show the one or the other."""
+        space = context.space_data
+        comparison.end(space)
+        if not self.is_after:
+            return {"FINISHED"}
+        try:
+            node_group = lazy_import.load(".scene.node_group")
+            comparison.begin(space, _linear_pixels(space), node_group.linear_rec709())
+        except expected_errors() as problem:
+            self.report({"ERROR"}, american(str(problem)))
+            return {"CANCELLED"}
+        return {"FINISHED"}
+
+
+class CRF_OT_pick_gray(bpy.types.Operator):
+    """Pick the brightness of middle gray in the plate."""
+
+    bl_idname = "crf.pick_gray"
+    bl_label = "Pick Gray"
+    bl_description = "Click on something in the plate that reflects 18 % of the light, such as a gray card"
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether an Image Editor shows a plate."""
+        return _is_image_editor(context) and plates.active_datablock(context) is not None
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Wait for the click, with the plate as it is in the editor."""
+        comparison.end(context.space_data)
+        self._workspace = context.workspace
+        context.window.cursor_modal_set("EYEDROPPER")
+        context.workspace.status_text_set(PICK_HINT)
+        context.window_manager.modal_handler_add(self)
+        return {"RUNNING_MODAL"}
+
+    def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
+        """Pick the pixels under the mouse at the click; let the mouse wheel and the middle button move the view."""
+        if event.type in ("ESC", "RIGHTMOUSE") and event.value == "PRESS":
+            self.cancel(context)
+            return {"CANCELLED"}
+        if event.type != "LEFTMOUSE" or event.value != "PRESS":
+            return {"PASS_THROUGH"}
+        self.cancel(context)
+        region = next(region for region in context.area.regions if region.type == "WINDOW")
+        place = region.view2d.region_to_view(event.mouse_x - region.x, event.mouse_y - region.y)
+        try:
+            gray = self._pick(context.space_data, place)
+        except expected_errors() as problem:
+            self.report({"ERROR"}, american(str(problem)))
+            return {"CANCELLED"}
+        self.report({"INFO"}, f"Gray is {gray:.3f}")
+        return {"FINISHED"}
+
+    def cancel(self, context: bpy.types.Context) -> None:
+        """Give the mouse pointer and the status bar back."""
+        context.window.cursor_modal_restore()
+        self._workspace.status_text_set(None)
+
+    def _pick(self, space: bpy.types.SpaceImageEditor, place: tuple[float, float]) -> float:
+        """Set the anchor of the plate to the brightness at a place, from (0, 0) bottom left to (1, 1); return it."""
+        codes = comparison.code_values(space.image, space.image_user)
+        settings = space.image.camera_response_settings
+        settings.gray = mean_around(codes, place)
+        settings.anchor = "GRAY"
+        return settings.gray
+
+
+def mean_around(codes: Float32Array, place: tuple[float, float]) -> float:
+    """Return the mean brightness of red, green and blue in a square of pixels.
+
+    Parameters
+    ----------
+    codes : ndarray, float32, shape (H, W, 3 or more)
+        Code values in [0, 1].
+    place : tuple of float
+        The centre of the square: from (0, 0), the corner of the first row and column, to (1, 1).
+
+    Raises
+    ------
+    AddonError
+        If the place is outside the picture.
+    """
+    height, width = codes.shape[:2]
+    column, row = int(place[0] * width // 1), int(place[1] * height // 1)
+    if not (0 <= column < width and 0 <= row < height):
+        raise AddonError("There is no pixel: click inside the plate")
+    square = codes[max(0, row - REACH) : row + REACH + 1, max(0, column - REACH) : column + REACH + 1, :3]
+    return float(square.mean())
+
+
+def _is_image_editor(context: bpy.types.Context) -> bool:
+    """Return whether an Image Editor is active."""
+    return context.space_data is not None and context.space_data.type == "IMAGE_EDITOR"
+
+
+def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
+    """Return the linear plate of what an editor shows, by the stored response and the present exposure."""
+    settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
+    gray = settings.gray if settings.anchor == "GRAY" else None
+    stops = lazy_import.load("ocio.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
+    return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
+
+
+_CLASSES = (CRF_OT_compare, CRF_OT_pick_gray)
+
+
+def register() -> None:
+    """Register the tools."""
+    for kind in _CLASSES:
+        bpy.utils.register_class(kind)
+
+
+def unregister() -> None:
+    """Show the plates again, and unregister the tools."""
+    comparison.end_all()
+    for kind in reversed(_CLASSES):
+        bpy.utils.unregister_class(kind)

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The one run that is under way: a job in another thread, and how its progress is shown.
+
+Every display makes Blender draw parts of its window, which takes processor time from the job. So the progress is shown
+only if it has changed, at most every `REDRAW` seconds, and more seldom where drawing is slow; whether the job has ended
+is looked at more often.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from contextlib import suppress
+from typing import Any
+
+import bpy
+
+from ..scene.plates import EDITORS
+from ..work.background import BackgroundTask
+
+#: Seconds between two checks of whether the job has ended.
+TICK = 0.1
+
+#: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
+REDRAW, LONGEST, DRAWING_SHARE = 0.5, 5.0, 0.1
+
+_current: Run | None = None
+
+
+class Run:
+    """A job in another thread, with its timer and the display of its progress.
+
+    Parameters
+    ----------
+    context : Context
+        Where the run starts: its window gets the timer, its workspace the text in the status bar.
+    name : str
+        The name of the plate.
+    function : callable
+        The job; see `BackgroundTask`.
+    """
+
+    def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any]) -> None:
+        self.name = name
+        self.task: BackgroundTask[Any] = BackgroundTask(function)
+        self._manager, self._workspace = context.window_manager, context.workspace
+        self._timer = self._manager.event_timer_add(TICK, window=context.window)
+        self._manager.progress_begin(0, 100)
+        self._shown, self._shown_at = "", 0.0
+        self._pause: float | None = 0.0  # seconds until the next display; None until it is known how long drawing took
+
+    @property
+    def text(self) -> str:
+        """How far the job is, in words."""
+        return "Canceling" if self.task.is_cancelled else f"{self.name}: {self.task.percent} %"
+
+    def cancel(self) -> None:
+        """Ask the job to stop, and show that it was asked."""
+        self.task.cancel()
+        self._pause = 0.0
+        self.show()
+
+    def show(self) -> None:
+        """Show the progress in the status bar, at the mouse pointer and in the panel, unless it was shown just now.
+
+        The call after a display comes late by the time that drawing took.
+        """
+        since = time.monotonic() - self._shown_at
+        if self._pause is None:
+            self._pause = min(LONGEST, max(REDRAW, (since - TICK) / DRAWING_SHARE))
+        text = self.text if self.task.is_cancelled else f"Camera response of {self.text}  |  Esc to cancel"
+        if text == self._shown or since < self._pause:
+            return
+        self._shown, self._shown_at, self._pause = text, time.monotonic(), None
+        self._set_status(text)
+        self._manager.progress_update(self.task.percent)
+        redraw_editors(self._manager, regions=("UI",))
+
+    def end(self) -> None:
+        """Remove the timer and the display; there is no current run then."""
+        global _current
+        _current = None
+        self._manager.event_timer_remove(self._timer)
+        self._manager.progress_end()
+        self._set_status(None)
+        redraw_editors(self._manager)
+
+    def _set_status(self, text: str | None) -> None:
+        """Set the text of the status bar in the workspace of the start, which may have been removed meanwhile."""
+        with suppress(ReferenceError):
+            self._workspace.status_text_set(text)
+
+
+def current() -> Run | None:
+    """Return the run that is under way, or None."""
+    return _current
+
+
+def start(context: bpy.types.Context, name: str, function: Callable[..., Any]) -> Run:
+    """Return a run that has just been started; there must be no other."""
+    global _current
+    _current = Run(context, name, function)
+    _current.show()
+    _current.task.start()
+    return _current
+
+
+def stop() -> None:
+    """Cancel the run that is under way, if any, and remove its display without waiting for its end."""
+    if _current is not None:
+        _current.task.cancel()
+        _current.end()
+
+
+def redraw_editors(manager: bpy.types.WindowManager, *, regions: tuple[str, ...] = ()) -> None:
+    """Have the editors that show the panel drawn again in all windows, or only some types of their regions."""
+    for window in manager.windows:
+        for area in window.screen.areas:
+            if area.type in EDITORS:
+                for region in area.regions:
+                    if not regions or region.type in regions:
+                        region.tag_redraw()

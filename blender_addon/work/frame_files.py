@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The frames of a plate as files that the estimator reads: its own, or temporary ones that are removed afterwards."""
+
+from __future__ import annotations
+
+import tempfile
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import ExitStack, contextmanager
+from dataclasses import replace
+from functools import partial
+from pathlib import Path
+from typing import TypeAlias
+
+import OpenImageIO as oiio
+
+from crfnet_core.types import Progress, Uint8Array
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+
+from .decoding import running_decoder
+from .errors import AddonError
+from .job import Plate
+
+#: Returns frames as files that can be read; a temporary file is there until the next call.
+FrameReader: TypeAlias = Callable[[FrameSequence, Progress | None], FrameSequence]
+
+
+def frames_of(plate: Plate) -> FrameSequence:
+    """Return the frames of a plate; those of a movie, and an image without a file, have a name but no file yet.
+
+    Raises
+    ------
+    PlateError
+        If the plate has files, and they are not found.
+    """
+    if plate.content is not None:
+        return FrameSequence((plate.file,))
+    count = 0 if plate.decoder is None else plate.decoder.frame_count
+    if not count:
+        return find_frames(plate.file)
+    numbers = tuple(range(1, count + 1))
+    return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
+
+
+def sample(sequence: FrameSequence) -> FrameSequence:
+    """Return the frames of a sequence that the response is estimated from, with their numbers."""
+    chosen = sample_frames(sequence)
+    numbers = dict(zip(sequence.paths, sequence.numbers, strict=True)) if sequence.numbers else {}
+    return FrameSequence(chosen, tuple(numbers[path] for path in chosen if numbers))
+
+
+@contextmanager
+def frame_reader(plate: Plate) -> Iterator[FrameReader]:
+    """Yield what returns frames of a plate as files that can be read; temporary files are removed at the end.
+
+    Raises
+    ------
+    AddonError
+        If temporary files cannot be written, or Blender cannot decode a frame.
+    """
+    if _has_own_files(plate):
+        yield _own_files
+        return
+    with _temporary_folder(plate) as folder, _reader(plate, folder) as read:
+        yield read
+
+
+def _own_files(sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
+    """Return the plate's own files."""
+    return sequence
+
+
+@contextmanager
+def sampled_files(
+    plates: Sequence[tuple[Plate, FrameSequence]], progress: Progress | None = None
+) -> Iterator[tuple[FrameSequence, ...]]:
+    """Yield, for each plate, the files that the response is estimated from; temporary ones are removed at the end.
+
+    Parameters
+    ----------
+    plates : sequence of (Plate, FrameSequence)
+        The plates with their frames, as `frames_of` returns them.
+    progress : callable or None
+        Called with (done, total) while frames are decoded; what it raises ends the wait.
+
+    Raises
+    ------
+    AddonError
+        See `frame_reader`.
+    """
+    chosen = [sample(frames) for _, frames in plates]
+    total, files = sum(len(frames.paths) for frames in chosen), list(chosen)
+    with ExitStack() as stack:
+        for index, (plate, _) in enumerate(plates):
+            done = sum(len(frames.paths) for frames in chosen[:index])
+            if not _has_own_files(plate):
+                folder = stack.enter_context(_temporary_folder(plate))
+                with _reader(plate, folder) as read:  # the other Blender ends before the next one starts
+                    files[index] = read(chosen[index], counted_from(progress, done, total))
+        yield tuple(files)
+
+
+def counted_from(progress: Progress | None, start: int, total: int) -> Progress | None:
+    """Return a callback for a part of the frames, which counts those before it as done."""
+    return None if progress is None else lambda done, _total: progress(start + done, total)
+
+
+def _has_own_files(plate: Plate) -> bool:
+    """Return whether the estimator can read the plate's own files."""
+    return plate.content is None and plate.decoder is None
+
+
+@contextmanager
+def _reader(plate: Plate, folder: Path) -> Iterator[FrameReader]:
+    """Yield what returns frames as temporary files in a folder."""
+    if plate.decoder is None:
+        yield partial(_written, plate, folder)
+    else:
+        with running_decoder(plate, plate.decoder, folder) as decoder:
+            yield decoder.read
+
+
+@contextmanager
+def _temporary_folder(plate: Plate) -> Iterator[Path]:
+    """Yield a temporary folder, and remove it at the end."""
+    try:
+        temporary = tempfile.TemporaryDirectory(prefix="crf_", ignore_cleanup_errors=True)
+    except OSError as problem:
+        raise AddonError(
+            f"{plate.name}: no temporary file can be written ({problem.strerror}); free some space"
+        ) from None
+    with temporary as folder:
+        yield Path(folder)
+
+
+def _written(plate: Plate, folder: Path, sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
+    """Return the file of an image that has none of its own: the packed one byte for byte, or a PNG of its codes."""
+    path = folder / plate.file.name
+    try:
+        if isinstance(plate.content, bytes):
+            path.write_bytes(plate.content)
+        elif plate.content is not None:
+            _write_png(path, plate.content)
+    except OSError as problem:
+        raise AddonError(
+            f"{plate.name}: no temporary file can be written ({problem.strerror}); free some space"
+        ) from None
+    return replace(sequence, paths=(path,))
+
+
+def _write_png(path: Path, codes: Uint8Array) -> None:
+    """Write code values unchanged: colours are not multiplied by alpha."""
+    header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
+    header.attribute("oiio:UnassociatedAlpha", 1)
+    header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice
+    output = oiio.ImageOutput.create(str(path))
+    if output is None:
+        raise AddonError(f"{path}: cannot be written ({oiio.geterror()}); install Blender again")
+    if not (output.open(str(path), header) and output.write_image(codes) and output.close()):
+        raise AddonError(f"{path}: cannot be written ({output.geterror()}); free some space")

@@ -1,0 +1,70 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Check that the files of a job can be written, before a response is estimated for them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+from ocio.configs.files import load_config
+from ocio.defaults import CONFIG_NAME
+from ocio.output_files import check_folder
+from ocio.plates.frames import FrameSequence
+from ocio.plates.linear import linear_targets
+
+from .errors import AddonError
+from .job import ApplyMode, Job
+from .writers import baked_name, output_files
+
+#: The modes that write no file.
+_WITHOUT_FILES = (ApplyMode.ESTIMATE, ApplyMode.NODES)
+
+
+def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
+    """Check that the files of a job can be written; create nothing.
+
+    Parameters
+    ----------
+    job : Job
+        In any mode.
+    sequence : callable
+        Returns the frames of the plate; called only for a bake.
+
+    Raises
+    ------
+    AddonError
+        If the job has no folder, or a file exists and may not be replaced.
+    CRFNetError
+        If the folder cannot be written to, or holds a config that OpenColorIO refuses.
+    """
+    if job.output.mode in _WITHOUT_FILES:
+        return
+    if job.output.folder is None:
+        raise AddonError(
+            f"{job.plate.name}: has no folder of its own; choose one under Folder, or save the .blend file"
+        )
+    check_folder(job.output.folder)
+    if job.output.mode is ApplyMode.COLORSPACE:
+        config = job.output.folder / CONFIG_NAME
+        load_config(config if config.exists() else job.config.path)
+    elif not job.output.overwrite:
+        _check_absent(_targets(job, job.output.folder, sequence))
+
+
+def _targets(job: Job, folder: Path, sequence: Callable[[], FrameSequence]) -> tuple[Path, ...]:
+    """Return the files that a bake or an export writes."""
+    if job.output.mode is ApplyMode.BAKE:
+        return linear_targets(folder / baked_name(job.plate), sequence())
+    files = output_files(job.plate, folder)
+    return (*files.luts, files.config)
+
+
+def _check_absent(targets: tuple[Path, ...]) -> None:
+    """Raise an AddonError if a file exists."""
+    existing = [path for path in targets if path.exists()]
+    if existing:
+        more = f" (and {len(existing) - 1} more)" if existing[1:] else ""
+        folder = existing[0].parent
+        raise AddonError(
+            f"{existing[0].name} exists already in {folder}{more}; tick Overwrite or choose another Folder"
+        )

@@ -1,0 +1,59 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the add-on says of an estimate, in the American English of Blender's interface."""
+
+from __future__ import annotations
+
+import re
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseEstimate
+
+#: British spellings in the messages of `crfnet_core` and `ocio`, and the American ones.
+_AMERICAN = {
+    "colour": "color",
+    "grey": "gray",
+    "linearise": "linearize",
+    "linearisation": "linearization",
+    "analyse": "analyze",
+    "cancelled": "canceled",
+    "centre": "center",
+}
+
+_BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
+
+#: What shows that a word is part of a path, a file name or a quoted name.
+_NAME = re.compile(r"[/\\\"']|\.\w")
+
+#: The estimation error in the units of the literature, which the panel leaves out.
+_ESTIMATION_ERROR = re.compile(r" \(E_est [\d.]+\)")
+
+#: Each verdict as a sentence about the response, for one-line reports.
+_SENTENCES = {
+    "good": "the response is good",
+    "usable": "the response is usable",
+    "do not trust": "the response is not to be trusted",
+}
+
+
+def american(text: str) -> str:
+    """Return a message in American spelling; words that belong to a file or a quoted name stay as they are."""
+    return " ".join(word if _NAME.search(word) else _BRITISH.sub(_spelled, word) for word in text.split(" "))
+
+
+def panel_line(line: str) -> str:
+    """Return a line of the report as the panel says it: in American spelling, without E_est."""
+    return american(_ESTIMATION_ERROR.sub("", line))
+
+
+def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
+    """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done."""
+    first, *others = estimate.warnings or ("",)
+    warning = f" (warning: {first}{f', and {len(others)} more' if others else ''})" if first else ""
+    return american(f"{name}: {_SENTENCES[estimate.verdict.value]}{warning}; {done}")
+
+
+def _spelled(match: re.Match[str]) -> str:
+    """Return the American spelling of a British one, with its capital letter."""
+    american_word = _AMERICAN[match[0].lower()]
+    return american_word.capitalize() if match[0][0].isupper() else american_word

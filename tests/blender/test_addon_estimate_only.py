@@ -1,0 +1,152 @@
+"""Nothing in the scene changes without the user's word: Estimate Only, verdicts, problems, and no redo panel."""
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def untrusted(image, monkeypatch):
+    """The image, whose estimates are not to be trusted."""
+    from blender_addon.work import run
+    from crfnet_core.posterior import Verdict
+
+    estimate = run.estimate_frames
+    monkeypatch.setattr(
+        run,
+        "estimate_frames",
+        lambda *arguments, **options: dataclasses.replace(
+            estimate(*arguments, **options), verdict=Verdict.DO_NOT_TRUST
+        ),
+    )
+    return image
+
+
+def scene_state():
+    """What others see of the scene: names of data, colour spaces, compositors."""
+    return (
+        {image.name: (image.colorspace_settings.name, image.source, image.filepath) for image in bpy.data.images},
+        [clip.name for clip in bpy.data.movieclips],
+        [group.name for group in bpy.data.node_groups],
+        bpy.context.scene.use_nodes if bpy.app.version < (5, 0, 0) else bpy.context.scene.compositing_node_group,
+    )
+
+
+def test_estimate_only_comes_first_and_changes_nothing_but_the_estimate(addon, image):
+    assert addon.apply == image.camera_response_settings.apply == "ESTIMATE"
+    before = scene_state()
+    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
+    assert scene_state() == before
+    assert "camera_response" in image
+    with pytest.raises(RuntimeError, match="choose what to make of the response"):
+        bpy.ops.crf.apply_response(image=image.name)
+
+
+@pytest.mark.parametrize("mode", ["NODES", "COLORSPACE", "BAKE", "EXPORT"])
+def test_do_not_trust_is_not_applied_without_the_users_word(untrusted, tmp_path, mode):
+    folder = tmp_path / "out"
+    before = scene_state()
+    choices = {"image": untrusted.name, "apply": mode, "folder": str(folder)}
+    assert bpy.ops.crf.estimate_response(**choices) == {"FINISHED"}
+    assert scene_state() == before
+    assert not folder.exists()
+    assert "camera_response" in untrusted
+    with pytest.raises(RuntimeError, match=r"the response is not to be trusted; .* press Apply Anyway"):
+        bpy.ops.crf.apply_response(**choices)
+    assert scene_state() == before
+    assert bpy.ops.crf.apply_response(**choices, anyway=True) == {"FINISHED"}
+    assert folder.exists() or scene_state() != before
+
+
+def test_there_is_no_redo_panel_and_no_choice_is_left_for_the_next_plate(image, plate_file, codes, tmp_path):
+    """The panel would show the arguments of the call, not what was done, and do something else at a change."""
+    other = bpy.data.images.load(str(write_image(plate_file.with_name("other.png"), codes)))
+    choices = {"apply": "EXPORT", "folder": str(tmp_path / "out"), "overwrite": True, "exposure": 1}
+    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+        operator("EXEC_DEFAULT", True, image=image.name, **choices)
+        assert bpy.context.active_operator is None
+    bpy.ops.crf.estimate_response("EXEC_DEFAULT", True, image=other.name)
+    assert (other.camera_response_settings.apply, other.camera_response_settings.exposure) == ("ESTIMATE", 0)
+
+
+def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypatch):
+    from blender_addon.work import writers
+    from crfnet_core.errors import PlateError
+
+    def refuse(*_arguments):
+        raise PlateError("the disk is full, colour and all")
+
+    monkeypatch.setattr(writers, "write", refuse)
+    before = scene_state()
+    with pytest.raises(RuntimeError, match="the disk is full, color and all"):
+        bpy.ops.crf.estimate_response(image=image.name, apply="EXPORT", folder=str(tmp_path / "out"))
+    assert "camera_response" in image
+    assert scene_state() == before
+    monkeypatch.undo()
+    assert bpy.ops.crf.apply_response(image=image.name, apply="EXPORT", folder=str(tmp_path / "out")) == {"FINISHED"}
+
+
+def test_a_packed_image_goes_beside_a_saved_blend(image, plate_file, tmp_path):
+    image.pack()
+    plate_file.unlink()
+    (tmp_path / "project").mkdir()
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
+    assert bpy.ops.crf.estimate_response(image=image.name, apply="BAKE") == {"FINISHED"}
+    assert (tmp_path / "project" / "plate_linear.exr").is_file()
+
+
+def test_changed_settings_are_known_until_they_are_applied(image):
+    from blender_addon.ui.plate_settings import is_to_be_applied
+
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert not is_to_be_applied(image)  # nothing has been applied yet
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=0.3)
+    assert not is_to_be_applied(image)
+    image.camera_response_settings.exposure = 1
+    assert is_to_be_applied(image)
+    bpy.ops.crf.apply_response(image=image.name)
+    assert not is_to_be_applied(image)
+    image.camera_response_settings.gray = 0.3  # the anchor is white
+    assert not is_to_be_applied(image)
+
+
+def test_photographs_of_the_same_camera_are_estimated_together(image, plate_file, codes, tmp_path, estimate, in_editor):
+    from blender_addon.scene.stored_estimate import restored
+
+    second = write_image(tmp_path / "second.png", np.roll(codes, 40, axis=1))
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        for _ in range(2):  # each once
+            bpy.ops.crf.add_photographs(directory=str(tmp_path), files=[{"name": "second.png"}])
+        assert [item.image.name for item in image.camera_response_settings.photographs] == ["second.png"]
+        bpy.ops.crf.estimate_response()
+        np.testing.assert_array_equal(restored(image).weights, estimate(plate_file, second).weights)
+        bpy.ops.crf.remove_photograph(index=0)
+        assert not image.camera_response_settings.photographs
+        bpy.ops.crf.estimate_response()
+    np.testing.assert_array_equal(restored(image).weights, estimate(plate_file).weights)
+    assert "second.png" in bpy.data.images
+
+
+def test_menus_have_the_operators(addon):
+    """So that Blender's search finds them."""
+    from blender_addon.ui import menus
+
+    from .test_addon_panel import Panel
+
+    for name in menus.MENUS:
+        assert menus.draw_entries in getattr(bpy.types, name)._dyn_ui_initialize()
+    panel = Panel()
+    menus.draw_entries(panel, bpy.context)
+    drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
+    assert drawn == ["crf.estimate_response", "crf.apply_response"]

@@ -1,0 +1,175 @@
+"""Before and after in the Image Editor, and the eyedropper for gray: what is seen, and what never changes."""
+
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name)
+    return image
+
+
+def pixels_of(image):
+    """The pixels of a float image, the top row first."""
+    width, height = image.size
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    return pixels.reshape(height, width, 4)[::-1]
+
+
+def show(after):
+    assert bpy.ops.crf.compare(is_after=after) == {"FINISHED"}
+
+
+def names():
+    return [image.name for image in bpy.data.images]
+
+
+def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes, estimate, in_editor):
+    from blender_addon.scene.plates import active_datablock
+
+    before = names()
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        show(after=True)
+        assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
+        assert space.image.colorspace_settings.name == "Linear Rec.709"
+        assert active_datablock(bpy.context) == image  # the panel still shows the plate
+        assert image.colorspace_settings.name == "sRGB"
+        image.camera_response_settings.exposure = 1
+        show(after=True)  # anew
+        assert np.abs(pixels_of(space.image)[..., :3] - 2 * expected).max() < 2e-6
+        assert len(names()) == len(before) + 1
+        show(after=False)
+        assert space.image == image
+    assert names() == before
+
+
+def test_16_bits_and_alpha(addon, tmp_path, estimate, in_editor):
+    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 4)).astype(np.uint16)
+    path = write_image(tmp_path / "deep.png", samples, oiio__UnassociatedAlpha=1)
+    image = bpy.data.images.load(str(path))
+    bpy.ops.crf.estimate_response(image=image.name)
+    expected = estimate(path).curve.inverse(samples[..., :3] / 65535)
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        show(after=True)
+        found = pixels_of(space.image)[..., :3]
+        show(after=False)
+    alpha = samples[..., 3:] / 65535
+    assert min(np.abs(found - expected).max(), np.abs(found - expected * alpha).max()) < 1e-5
+
+
+@pytest.mark.parametrize("occasion", ["save", "undo", "disable"])
+def test_it_never_reaches_the_file(image, in_editor, tmp_path, occasion):
+    import addon_utils
+
+    bpy.ops.ed.undo_push(message="before")
+    bpy.ops.ed.undo_push(message="after")
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        show(after=True)
+        if occasion == "save":
+            bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+        elif occasion == "undo":
+            bpy.ops.ed.undo()
+        else:
+            addon_utils.disable("blender_addon")
+            addon_utils.enable("blender_addon")
+    assert names() == ["plate.png"]
+    if occasion != "undo":
+        assert space.image.name == "plate.png"
+
+
+def test_the_switch_is_drawn_in_the_image_editor_only(image, in_editor):
+    from blender_addon.ui.panel import ResponsePanel
+
+    from .test_addon_panel import Panel, operators
+
+    for editor in ("IMAGE_EDITOR", "CLIP_EDITOR"):
+        panel = Panel()
+        with in_editor(editor) as space:
+            if editor == "IMAGE_EDITOR":
+                space.image = image
+            else:
+                space.clip = bpy.data.movieclips.load(image.filepath)
+                bpy.ops.crf.estimate_response()
+            ResponsePanel.draw(panel, bpy.context)
+        switch = [text for name, text in operators(panel.layout.drawn) if name == "crf.compare"]
+        assert switch == (["Plate", "Linear"] if editor == "IMAGE_EDITOR" else [])
+
+
+def test_gray_is_the_mean_of_a_few_pixels():
+    from blender_addon.ui.image_tools import mean_around
+    from blender_addon.work.errors import AddonError
+
+    codes = np.zeros((100, 200, 4), np.float32)
+    codes[50:, 100:, :3] = (0.4, 0.5, 0.6)
+    codes[..., 3] = 1
+    assert mean_around(codes, (0.75, 0.75)) == pytest.approx(0.5)
+    assert mean_around(codes, (0.25, 0.75)) == 0
+    assert mean_around(codes, (0.9999, 0.9999)) == pytest.approx(0.5)  # at a corner
+    for place in ((-0.001, 0.5), (0.5, 1.0), (2, 2)):
+        with pytest.raises(AddonError, match="click inside the plate"):
+            mean_around(codes, place)
+
+
+class Picking:
+    """Stands for the context of an Image Editor whose view shows the picture on 100 x 100 pixels of the screen."""
+
+    def __init__(self, image):
+        self.space_data = SimpleNamespace(image=image, image_user=None, type="IMAGE_EDITOR")
+        view = SimpleNamespace(region_to_view=lambda x, y: (x / 100, y / 100))
+        region = SimpleNamespace(type="WINDOW", x=40, y=20, view2d=view)
+        self.area = SimpleNamespace(regions=[region])
+        self.window = self.workspace = self.window_manager = self
+        self.calls = []
+
+    def __getattr__(self, name):
+        return lambda *arguments: self.calls.append((name, *arguments))
+
+
+@pytest.fixture
+def picker(addon):
+    from blender_addon.ui.image_tools import CRF_OT_pick_gray
+
+    class Driven:
+        invoke, modal, cancel, _pick = (vars(CRF_OT_pick_gray)[name] for name in ("invoke", "modal", "cancel", "_pick"))
+
+        def __init__(self):
+            self.reports = []
+
+        def report(self, kind, text):
+            self.reports.append((*kind, text))
+
+    return Driven()
+
+
+def test_a_click_picks_gray(picker, image, codes):
+    context = Picking(image)
+    assert picker.invoke(context, None) == {"RUNNING_MODAL"}
+    assert picker.modal(context, SimpleNamespace(type="MOUSEMOVE", value="NOTHING")) == {"PASS_THROUGH"}
+    click = SimpleNamespace(type="LEFTMOUSE", value="PRESS", mouse_x=40 + 25, mouse_y=20 + 75)
+    assert picker.modal(context, click) == {"FINISHED"}
+    settings = image.camera_response_settings
+    column, row = 64, 255 - 192  # three quarters from the bottom
+    assert settings.gray == pytest.approx(codes[row - 2 : row + 3, column - 2 : column + 3].mean() / 255, abs=1e-6)
+    assert settings.anchor == "GRAY"
+    assert context.calls[-2:] == [("cursor_modal_restore",), ("status_text_set", None)]
+
+
+def test_esc_picks_nothing(picker, image):
+    context = Picking(image)
+    picker.invoke(context, None)
+    assert picker.modal(context, SimpleNamespace(type="ESC", value="PRESS")) == {"CANCELLED"}
+    assert image.camera_response_settings.anchor == "WHITE"
+    assert ("status_text_set", None) in context.calls

@@ -1,0 +1,88 @@
+"""Which image or clip is meant, and which are refused, with what to do instead."""
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def compositor(addon, plate_file, in_editor):
+    """An estimated plate in the compositor; gives the image, the nodes and the function that finds the active plate."""
+    from blender_addon.scene.compositor import compositor_tree
+    from blender_addon.scene.plates import active_datablock
+
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    tree = compositor_tree(bpy.context.scene)
+
+    def active(node):
+        tree.nodes.active = node
+        with in_editor("NODE_EDITOR") as space:
+            if bpy.app.version >= (5, 0, 0):
+                space.node_tree = tree
+            return active_datablock(bpy.context)
+
+    return image, tree, active
+
+
+def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
+    image, tree, active = compositor
+    (group,) = (node for node in tree.nodes if node.type == "GROUP")
+    (source,) = (node for node in tree.nodes if node.type == "IMAGE")
+    assert active(source) == image
+    assert active(group) == image
+    first, second = tree.nodes.new("NodeReroute"), tree.nodes.new("NodeReroute")
+    tree.links.new(source.outputs["Image"], first.inputs[0])
+    tree.links.new(first.outputs[0], second.inputs[0])
+    tree.links.new(second.outputs[0], group.inputs["Image"])
+    assert active(group) == image
+    tree.links.remove(group.inputs["Image"].links[0])
+    assert active(group) is None
+
+
+def test_other_nodes_stand_for_no_plate(compositor):
+    _, tree, active = compositor
+    (source,) = (node for node in tree.nodes if node.type == "IMAGE")
+    blur, other = tree.nodes.new("CompositorNodeBlur"), tree.nodes.new("CompositorNodeGroup")
+    other.node_tree = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
+    assert active(blur) is None
+    assert active(other) is None
+    assert active(None) is None
+
+
+def test_a_gif_is_called_a_gif(addon, tmp_path):
+    (tmp_path / "few.gif").write_bytes(b"GIF89a")
+    image = bpy.data.images.load(str(tmp_path / "few.gif"))
+    with pytest.raises(RuntimeError, match="GIF files hold at most 256 colors"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes):
+    from blender_addon.scene.plates import obstacle, plate_of
+    from blender_addon.work.frame_files import frames_of
+
+    names = [write_image(tmp_path / f"shot.{n}.png", codes).name for n in range(1001, 1006)]
+    files = [{"name": name} for name in names]
+    first = str(tmp_path / names[0])
+    bpy.ops.image.open(filepath=first, directory=str(tmp_path), files=files, use_udim_detecting=True)
+    (image,) = (image for image in bpy.data.images if image.source == "TILED")
+    assert "set Source to Image Sequence" in obstacle(image)
+    image.source = "SEQUENCE"
+    assert obstacle(image) == ""
+    assert frames_of(plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
+
+
+@pytest.mark.parametrize("kind", ["BLANK", "UV_GRID", "COLOR_GRID"])
+def test_what_blender_generates_is_refused_until_it_is_painted(addon, codes, kind):
+    image = bpy.data.images.new("made", 256, 256)
+    image.generated_type = kind
+    with pytest.raises(RuntimeError, match="Blank images and test grids have no camera response"):
+        bpy.ops.crf.estimate_response(image=image.name)
+    pixels = np.ones((256, 256, 4), np.float32)
+    pixels[..., :3] = codes / 255
+    image.pixels.foreach_set(pixels.ravel())
+    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}

@@ -1,0 +1,296 @@
+"""Every plate has its own response, nothing is linearised twice, and nothing that others see changes."""
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+CODES = 1e-6
+
+
+@pytest.fixture
+def tree(addon):
+    """The scene's compositor tree, with nothing in it but an output."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    tree = compositor_tree(bpy.context.scene)
+    for node in [node for node in tree.nodes if node.type not in ("GROUP_OUTPUT", "COMPOSITE")]:
+        tree.nodes.remove(node)
+    return tree
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def twins(addon, tmp_path, codes):
+    """Two photographs of one file name in two folders."""
+    found = []
+    for folder in ("a", "b"):
+        (tmp_path / folder).mkdir()
+        path = write_image(tmp_path / folder / "IMG_0001.png", codes)
+        found.append(bpy.data.images.load(str(path)))
+    return found
+
+
+def add_node(tree, image, kind="CompositorNodeImage"):
+    node = tree.nodes.new(kind)
+    node.image = image
+    return node
+
+
+def apply(image, mode="NODES", **choices):
+    assert bpy.ops.crf.estimate_response(image=image.name, apply=mode, **choices) == {"FINISHED"}
+
+
+def groups(tree):
+    return [node for node in tree.nodes if node.type == "GROUP"]
+
+
+def first_group_behind(socket):
+    return next(node for link in socket.links for node in (link.to_node,) if node.type == "GROUP")
+
+
+def group_with(tree, image):
+    """The group node whose Image input comes straight from a node that shows the plate's files."""
+    for node in groups(tree):
+        source = node.inputs["Image"].links[0].from_node
+        if source.image.filepath == image.filepath:
+            return node
+    raise AssertionError(f"no group for {image.name}")
+
+
+class TestTwoPlatesOfOneName:
+    def test_they_have_two_groups_and_two_luts(self, twins, tree, composited, codes, monkeypatch):
+        """The second response does not touch the first plate."""
+        from blender_addon.scene import node_group
+        from crfnet_core import ResponseCurve
+
+        curves = {image: ResponseCurve.gamma(gamma) for image, gamma in zip(twins, (2.6, 1.8), strict=True)}
+        build = node_group.build_group
+        monkeypatch.setattr(
+            node_group, "build_group", lambda plate, name, _curve, stops: build(plate, name, curves[plate], stops)
+        )
+        for image in twins:
+            apply(image)
+        found = [group_with(tree, image) for image in twins]
+        assert [node.node_tree.name for node in found] == ["Camera Response IMG_0001", "Camera Response IMG_0001 (b)"]
+        for image, node in zip(twins, found, strict=True):
+            expected = curves[image].inverse(codes / 255)
+            assert np.abs(composited(node.outputs[0])[..., :3] - expected).max() < CODES
+
+    def test_they_stay_apart_after_renaming_saving_and_appending(self, twins, tree, tmp_path):
+        for image in twins:
+            apply(image)
+        names = {group_with(tree, image).node_tree.name for image in twins}
+        twins[1].name = "renamed"
+        saved = str(tmp_path / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=saved)
+        bpy.ops.wm.open_mainfile(filepath=saved)
+        before = {group.name for group in bpy.data.node_groups}
+        apply(bpy.data.images["renamed"], exposure=1)
+        assert {group.name for group in bpy.data.node_groups} == before
+        bpy.ops.wm.read_factory_settings(use_empty=True)
+        with bpy.data.libraries.load(saved) as (source, target):
+            target.node_groups = [name for name in source.node_groups if name in names]
+        plates = {group["camera_response_of"].filepath for group in target.node_groups}
+        assert len(plates) == 2
+
+    def test_they_have_two_color_spaces(self, twins, tmp_path):
+        import PyOpenColorIO as OCIO
+
+        for image in (*twins, twins[1]):
+            apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
+        assert [image["camera_response"]["pending_color_space"] for image in twins] == [
+            "CRF IMG_0001",
+            "CRF IMG_0001 (b)",
+        ]
+        config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
+        names = [name for name in config.getColorSpaceNames() if name.startswith("CRF")]
+        assert names == ["CRF IMG_0001", "CRF IMG_0001 (b)"]
+        luts = sorted(path.name for path in (tmp_path / "config" / "camera_response").glob("*.spi1d"))
+        assert luts == ["IMG_0001 (b).spi1d", "IMG_0001.spi1d"]
+
+    def test_packed_ones_have_two_color_spaces(self, addon, tmp_path, codes):
+        """Without a file of its own, a plate is known by its content."""
+        folder = str(tmp_path / "config")
+        images = []
+        for index in range(2):
+            path = write_image(tmp_path / "packed.png", np.roll(codes, index, axis=0))
+            images.append(bpy.data.images.load(str(path)))
+            images[-1].pack()
+        for image in (*images, images[0]):
+            apply(image, "COLORSPACE", folder=folder)
+        pending = [image["camera_response"]["pending_color_space"] for image in images]
+        assert pending == ["CRF packed", "CRF packed (2)"]
+
+
+def test_a_config_in_blender_knows_no_file_by_its_name(addon, tmp_path, codes):
+    """Frames that are named by numbers alone would make every such file of the machine a plate."""
+    import PyOpenColorIO as OCIO
+
+    paths = [write_image(tmp_path / f"{number:04d}.png", codes) for number in range(1, 4)]
+    image = bpy.data.images.load(str(paths[0]))
+    image.source = "SEQUENCE"
+    apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
+    config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
+    for path in ("/elsewhere/holiday.png", "/elsewhere/0001.png", str(paths[0])):
+        assert not config.getColorSpaceFromFilepath(path)[0].startswith("CRF")
+
+
+class TestNothingIsLinearizedTwice:
+    @pytest.mark.parametrize(
+        "between",
+        [
+            ["NodeReroute"],
+            ["NodeReroute", "NodeReroute"],
+            ["CompositorNodeScale"],
+            ["CompositorNodeDenoise", "NodeReroute", "CompositorNodeBlur"],
+        ],
+        ids="-".join,
+    )
+    def test_whatever_stands_between(self, image, tree, between):
+        source = add_node(tree, image)
+        apply(image)
+        (group,) = groups(tree)
+        socket = source.outputs["Image"]
+        for kind in between:
+            node = tree.nodes.new(kind)
+            tree.links.new(socket, node.inputs["Image"] if "Image" in node.inputs else node.inputs[0])
+            socket = node.outputs[0]
+        tree.links.new(socket, group.inputs["Image"])
+        apply(image, exposure=1)
+        assert groups(tree) == [group]
+        assert group.inputs["Exposure"].default_value == 1
+
+    @pytest.mark.parametrize("is_outside", [True, False])
+    def test_in_or_behind_a_group_of_the_user(self, image, tree, is_outside):
+        """Either the response's group is in the user's, or the plate's node is."""
+        apply(image)
+        (group,) = groups(tree)
+        source = group.inputs["Image"].links[0].from_node
+        mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+        mine.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        mine.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
+        start, end = mine.nodes.new("NodeGroupInput"), mine.nodes.new("NodeGroupOutput")
+        holder = tree.nodes.new("CompositorNodeGroup")
+        holder.node_tree = mine
+        if is_outside:  # the plate's node is in the user's group
+            inner = add_node(mine, source.image)
+            mine.links.new(inner.outputs["Image"], end.inputs[0])
+            tree.links.new(holder.outputs[0], group.inputs["Image"])
+            tree.nodes.remove(source)
+            edited, expected = mine, 0
+        else:
+            inner = mine.nodes.new("CompositorNodeGroup")
+            inner.node_tree = group.node_tree
+            mine.links.new(start.outputs[0], inner.inputs["Image"])
+            mine.links.new(inner.outputs[0], end.inputs[0])
+            tree.links.new(source.outputs["Image"], holder.inputs[0])
+            tree.nodes.remove(group)
+            edited, expected = tree, 1  # the user's own
+        from blender_addon.scene import compositor
+
+        wanted = compositor.PlateNodes(
+            plate=image,
+            name="plate",
+            codes=bpy.data.images[".plate.png code values"],
+            group=bpy.data.node_groups["Camera Response plate"],
+            exposure=1,
+        )
+        compositor.apply_group(edited, wanted)
+        assert len(groups(edited)) == expected
+
+    def test_a_file_of_an_earlier_version(self, image, tree):
+        """There the plate itself was Non-Color, and the group was marked with the plate's name."""
+        old = bpy.data.node_groups.new("Camera Response plate", "CompositorNodeTree")
+        old.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
+        old.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
+        old["camera_response_of"] = "plate"
+        source = add_node(tree, image)
+        image.colorspace_settings.name = "Non-Color"
+        node = tree.nodes.new("CompositorNodeGroup")
+        node.node_tree = old
+        tree.links.new(source.outputs["Image"], node.inputs[0])
+        apply(image)
+        assert groups(tree) == [node]
+        assert node.node_tree["camera_response_of"] == image
+
+    def test_nodes_first_then_the_color_space(self, image, tree, composited, codes, estimate, plate_file, tmp_path):
+        """Whatever colour space the plate gets, its nodes are as they were."""
+        apply(image)
+        apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
+        expected = estimate(plate_file).curve.inverse(codes / 255)
+        for space in ("Linear Rec.709", "AgX Base sRGB"):  # stand for the plate's own, which needs a restart
+            image.colorspace_settings.name = space
+            (group,) = groups(tree)
+            assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
+
+    def test_the_color_space_first_then_nodes(self, image, tree, composited, codes, estimate, plate_file):
+        image.colorspace_settings.name = "Rec.1886"
+        apply(image)
+        expected = estimate(plate_file).curve.inverse(codes / 255)
+        assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
+        assert image.colorspace_settings.name == "Rec.1886"
+
+    def test_nodes_that_show_the_plate_itself_get_its_code_values(self, image, tree, tmp_path):
+        """So it was in earlier versions, and so it is if the user chooses the plate in its node again."""
+        apply(image)
+        (group,) = groups(tree)
+        source = group.inputs["Image"].links[0].from_node
+        codes = source.image
+        source.image = image
+        apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
+        assert source.image == codes
+
+
+class TestTheRestStaysAsItIs:
+    def test_the_plate_keeps_its_color_space(self, image, tree):
+        users = image.users
+        apply(image)
+        assert image.colorspace_settings.name == "sRGB"
+        assert image.users > users  # its copy and its group know it
+        assert not image.is_dirty
+
+    @pytest.mark.parametrize("space", ["AgX Base sRGB", "Display P3", "Rec.2020"])
+    @pytest.mark.parametrize("depth", ["uint8", "uint16"])
+    def test_in_every_color_space(self, addon, tree, tmp_path, composited, codes, estimate, space, depth):
+        """Some limit their values, so that what an Image node delivers could not be undone."""
+        path = write_image(tmp_path / "plate.png", codes.astype(depth) * (257 if depth == "uint16" else 1))
+        image = bpy.data.images.load(str(path))
+        image.colorspace_settings.name = space
+        apply(image)
+        expected = estimate(path).curve.inverse(codes / 255)
+        assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
+        assert image.colorspace_settings.name == space
+
+    def test_a_painted_image(self, addon, tree, composited, codes, estimate, tmp_path):
+        image = bpy.data.images.new("painted", 256, 256)
+        pixels = np.ones((256, 256, 4), np.float32)
+        pixels[..., :3] = codes[::-1] / 255
+        image.pixels.foreach_set(pixels.ravel())
+        apply(image)
+        expected = estimate(write_image(tmp_path / "painted.png", codes), use_metadata=False).curve.inverse(codes / 255)
+        assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
+        assert np.abs(np.array(image.pixels[:]) - pixels.ravel()).max() < 1e-6
+
+    def test_only_the_group_is_in_the_menus(self, image, tree):
+        """A leading dot hides the copy of the plate and the LUT; neither outlives its user."""
+        apply(image)
+        others = [other for other in bpy.data.images if other != image and other.type == "IMAGE"]
+        assert len(others) == 2
+        assert all(other.name.startswith(".") for other in others)
+        assert not any(datablock.use_fake_user for datablock in (*others, *bpy.data.node_groups))
+
+    def test_the_copy_follows_the_plate(self, image, tree, codes, tmp_path):
+        apply(image)
+        image.filepath = str(write_image(tmp_path / "other.png", codes[::-1]))
+        image.reload()
+        apply(image)
+        (group,) = groups(tree)
+        assert group.inputs["Image"].links[0].from_node.image.filepath == image.filepath
+        assert len([other for other in bpy.data.images if other.name.endswith("code values")]) == 1
