@@ -98,7 +98,7 @@ endef
 $(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio tests/bench.py tests/blender_window/make_files.py -name '*.pyc' -o -type f -print)
 	$(MAKE) $(ADDON)/ready $(PLOT)/ready
 	rm -rf $(WINDOW)
-	$(ADDON)/bin/python blender_addon/build.py --platform linux-x64 --out $(WINDOW)/zip
+	$(ADDON)/bin/python blender_addon/build.py --platform linux-x64-any-python --out $(WINDOW)/zip
 	$(PLOT)/bin/python -m tests.blender_window.make_files $(WINDOW)
 	touch $@
 
