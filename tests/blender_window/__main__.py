@@ -6,6 +6,7 @@ import argparse
 import os
 import shutil
 import sys
+import traceback
 import unittest
 from pathlib import Path
 
@@ -25,6 +26,23 @@ HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
 
 
+class _Result(unittest.TextTestResult):
+    """Tells what failed at once, because the last case ends long after the first."""
+
+    def addError(self, test, err):
+        super().addError(test, err)
+        self.stream.writeln(self.errors[-1][1])
+
+    def addFailure(self, test, err):
+        super().addFailure(test, err)
+        self.stream.writeln(self.failures[-1][1])
+
+    def addSubTest(self, test, subtest, err):
+        super().addSubTest(test, subtest, err)
+        if err is not None:
+            self.stream.writeln("".join(traceback.format_exception(*err)))
+
+
 def main() -> int:
     """Run the cases that the command line names, all by default; return 0 if none failed, or if they are skipped."""
     options = _parser().parse_args()
@@ -40,7 +58,7 @@ def main() -> int:
         cases = loader.loadTestsFromNames([f"tests.blender_window.{name}" for name in options.only])
     else:
         cases = loader.discover(str(HERE), top_level_dir=str(ROOT))
-    result = unittest.TextTestRunner(verbosity=2).run(cases)
+    result = unittest.TextTestRunner(verbosity=2, resultclass=_Result).run(cases)
     print(f"The pictures are in {options.pictures}: look at them")
     if options.readme:
         _copy_pictures(options.pictures, options.readme)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from tests.blender_window.screen import Box, Picture
-from tests.blender_window.session import Blender
+from tests.blender_window.session import LAST, Blender
 
 #: The buttons of the panel, as Blender writes their Python commands.
 ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response("
@@ -20,7 +20,7 @@ BUTTON = 16
 COLUMNS = (0.5, 0.3, 0.75)
 
 #: Seconds that a run and everything else may take.
-RUN, MOMENT = 120, 20
+RUN, MOMENT = 300, 60
 
 
 class Artist:
@@ -119,5 +119,5 @@ class Artist:
         deadline = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > deadline:
-                raise TimeoutError(f"waited {seconds} s: {what}")
+                raise TimeoutError(f"waited {seconds} s: {what}; Blender says: {self.blender.printed[-LAST:]}")
             time.sleep(0.05)

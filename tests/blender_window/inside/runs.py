@@ -11,8 +11,8 @@ import editors
 #: The add-on's identifier, and its module once it is installed.
 IDENTIFIER, MODULE = "crf_response", "bl_ext.user_default.crf_response"
 
-#: Seconds between two looks at whether a run has ended.
-INTERVAL = 0.01
+#: Seconds between two looks at whether a run has ended: at every turn of Blender's main loop, so that none is missed.
+INTERVAL = 0.0
 
 #: When the run that was watched was first and last seen, and when it was seen to have ended, by `time.monotonic`.
 _times: dict[str, float] = {}
