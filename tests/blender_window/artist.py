@@ -12,6 +12,8 @@ from tests.blender_window.session import LAST, Blender
 
 #: The buttons of the panel, as Blender writes their Python commands.
 ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response("
+SHOW_LINEAR, RESTART = "bpy.ops.crf.compare(is_after=True", "bpy.ops.crf.save_and_restart("
+CANCEL = "bpy.ops.crf.cancel_run("
 
 #: Height of a button in pixels at a scale of 1, at least; the mouse looks for buttons in half of it.
 BUTTON = 16
@@ -65,9 +67,9 @@ class Artist:
                 return
             before = shown
 
-    def sidebar(self) -> Box:
-        """Return where the sidebar of the Image Editor is."""
-        return Box(*self.call("editors.box", "IMAGE_EDITOR", "UI"))
+    def sidebar(self, editor: str = "IMAGE_EDITOR") -> Box:
+        """Return where the sidebar of an editor is."""
+        return Box(*self.call("editors.box", editor, "UI"))
 
     def status_bar(self) -> Box:
         """Return where the status bar has hints and messages; its right end has the version."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from tests.blender_window.artist import APPLY, ESTIMATE
+from tests.blender_window.artist import APPLY, CANCEL, ESTIMATE, RESTART
 from tests.blender_window.base import WindowTest
 
 #: Fraction of the sidebar's pixels that may differ where nothing is to be drawn: the highlight of a button.
@@ -56,7 +56,7 @@ class TestRunning(WindowTest):
     def test_the_panel_offers_the_restart_that_is_due(self):
         artist, name = self.start_with("plate.jpg", apply="COLORSPACE")
         artist.run()
-        artist.find("bpy.ops.crf.save_and_restart(")
+        artist.find(RESTART)
         file = self.save(artist)
         artist.blender.quit()
         artist = self.start(file)
@@ -65,7 +65,7 @@ class TestRunning(WindowTest):
         artist.call("editors.show_tab", "IMAGE_EDITOR")
         artist.settle()
         with self.assertRaises(LookupError):
-            artist.find("bpy.ops.crf.save_and_restart(")
+            artist.find(RESTART)
 
     def test_the_status_bar_is_as_before_after_a_change_of_workspace(self):
         artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"), alone=False)
@@ -99,7 +99,7 @@ class TestRunning(WindowTest):
     def test_the_cancel_button_of_the_panel_cancels(self):
         artist, name = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
         artist.start()
-        artist.press("bpy.ops.crf.cancel")
+        artist.press(CANCEL)
         artist.wait_for_end()
         self.assertIsNone(artist.call("plates.stored", name))
 

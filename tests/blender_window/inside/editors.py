@@ -69,6 +69,18 @@ def show_tab(kind: str) -> None:
     area(kind).tag_redraw()
 
 
+def show_all_nodes() -> None:
+    """Fit all nodes of the scene's compositor into the node editor, with its first group active."""
+    space = area("NODE_EDITOR").spaces.active
+    scene = bpy.context.scene
+    tree = scene.compositing_node_group if bpy.app.version >= (5, 0, 0) else scene.node_tree
+    if bpy.app.version >= (5, 0, 0):
+        space.node_tree = tree
+    tree.nodes.active = next(node for node in tree.nodes if node.type == "GROUP")
+    with context("NODE_EDITOR"):
+        bpy.ops.node.view_all()
+
+
 def redraw() -> None:
     """Redraw the whole window at the next event."""
     for found in window().screen.areas:
