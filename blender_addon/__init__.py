@@ -33,7 +33,6 @@ def _registered() -> tuple[ModuleType, ...]:
         estimate_box,
         handlers,
         image_tools,
-        menus,
         operators,
         panel,
         photographs,
@@ -42,4 +41,4 @@ def _registered() -> tuple[ModuleType, ...]:
     )
 
     tools = (operators, image_tools, photographs, config_operators)
-    return (preferences, plate_settings, *tools, estimate_box, panel, menus, handlers)
+    return (preferences, plate_settings, *tools, estimate_box, panel, handlers)

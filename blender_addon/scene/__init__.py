@@ -10,8 +10,5 @@ node_group        the inverse response as a compositor node group
 compositor        where the node group goes in the compositor
 node_links        which nodes lie behind a node
 code_values       the copy of a plate that the compositor reads, in place of what Blender linearizes
-frame_timing      when an image sequence shows which of its files
-linear_plate      a baked linear plate as an image or clip
-comparison        the linear plate in the place of the plate, for looking only
 color_management  the OpenColorIO config that this Blender runs on
 """

@@ -14,8 +14,6 @@ from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
 from . import color_management, compositor, node_group, stored_estimate
 from .code_values import code_values
-from .frame_timing import timing_of
-from .linear_plate import linear_clip, linear_image
 from .plates import Datablock, datablock_of_plate
 
 
@@ -74,7 +72,7 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         codes=code_values(datablock),
         group=group,
         exposure=completed.stops,
-        timing=timing_of(context, datablock, completed.frames),
+        timing=compositor.timing_of(context, datablock, completed.frames),
     )
     compositor.apply_group(_tree(context), wanted)
     return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before'
@@ -110,9 +108,11 @@ def _keep_nodes_right(datablock: Datablock, name: str) -> str:
 
 def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:
     """Load the linear files, and show them in the editor that shows the plate, with its timing."""
-    timing = timing_of(context, datablock, frames)
+    timing = compositor.timing_of(context, datablock, frames)
     linear = (
-        linear_clip(datablock, baked) if isinstance(datablock, bpy.types.MovieClip) else linear_image(datablock, baked)
+        _linear_clip(datablock, baked)
+        if isinstance(datablock, bpy.types.MovieClip)
+        else _linear_image(datablock, baked)
     )
     space = context.space_data
     if space is not None and space.type == "IMAGE_EDITOR" and isinstance(linear, bpy.types.Image):
@@ -122,6 +122,56 @@ def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, 
     if space is not None and space.type == "CLIP_EDITOR" and isinstance(linear, bpy.types.MovieClip):
         space.clip = linear
     return f'linear plate "{linear.name}" is written to {baked.files[0].parent} and loaded'
+
+
+def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
+    """Return the linear plate as an image in linear Rec.709; one that is loaded already is read again."""
+    image = bpy.data.images.load(str(baked.files[0]), check_existing=True)
+    image.source = "SEQUENCE" if baked.is_sequence else "FILE"
+    image.filepath = _path_like(plate, image.filepath)
+    image.reload()
+    image.colorspace_settings.name = node_group.linear_rec709()
+    return image
+
+
+def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieClip:
+    """Return the linear plate as a clip in linear Rec.709, with the plate's timing, tracks and camera.
+
+    A clip of these files that is loaded already keeps its own tracks and camera.
+    """
+    first = str(baked.files[0])
+    clip = next((clip for clip in bpy.data.movieclips if bpy.path.abspath(clip.filepath) == first), None)
+    if clip is None and plate.source == "MOVIE":  # a copy of it would take the frames for a movie
+        clip = bpy.data.movieclips.load(first)
+        _copy_tracking(plate.tracking, clip.tracking)
+    elif clip is None:
+        clip = plate.copy()
+        clip.name = baked.files[0].name
+        clip.pop(stored_estimate.KEY, None)
+        clip.property_unset("camera_response_settings")
+        clip.use_proxy = False  # its proxies show the plate
+    clip.filepath = _path_like(plate, first)  # reads the files again
+    clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset
+    clip.colorspace_settings.name = node_group.linear_rec709()
+    return clip
+
+
+def _copy_tracking(source: bpy.types.MovieTracking, target: bpy.types.MovieTracking) -> None:
+    """Copy the camera's settings, and the tracks of the camera, from one clip to another."""
+    for setting in source.camera.bl_rna.properties:
+        if not setting.is_readonly:
+            setattr(target.camera, setting.identifier, getattr(source.camera, setting.identifier))
+    for track in source.tracks:
+        copy = target.tracks.new(name=track.name, frame=track.markers[0].frame)
+        for marker in track.markers:
+            kept = copy.markers.insert_frame(marker.frame, co=marker.co)
+            kept.pattern_corners, kept.mute = marker.pattern_corners, marker.mute
+            kept.search_min, kept.search_max = marker.search_min, marker.search_max
+
+
+def _path_like(plate: Datablock, path: str) -> str:
+    """Return a path relative to the .blend file if that of the plate is, else as it is."""
+    return bpy.path.relpath(path) if plate.filepath.startswith("//") and bpy.data.filepath else path
 
 
 def _tree(context: bpy.types.Context) -> bpy.types.NodeTree:

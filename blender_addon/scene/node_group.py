@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The inverse response as a compositor node group, which looks the code values up in an image of the LUT.
 
-A Map UV node reads the LUT image, N x 1 pixels, at u = B (N - 1) / N + 0.5 / N, which is the centre of the pixel of
-brightness B. Blender 5.0 and later interpolate between the pixels; 4.5 takes the nearest one, so the image is longer
-there. Curve nodes would be 50 times less exact.
+A Map UV node for each channel reads the LUT image at the pixel of brightness B. Blender 5.0 and later interpolate
+between the pixels of a LUT of the usual length, N x 1 pixels, at u = B (N - 1) / N + 0.5 / N. Blender 4.5 takes the
+nearest one, so there the image has a pixel for each 16-bit code, 256 x 256 of them: with t = (65535 B + 0.5) / 256, it
+is at u = t - floor(t), v = (floor(t) + 0.5) / 256.
 """
 
 from __future__ import annotations
@@ -28,8 +29,8 @@ from .plates import Datablock
 #: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
-#: Pixels of the LUT image. Either length has a pixel at every 8-bit code.
-LENGTH = LUT_LENGTH if IS_BLENDER_5 else 16321
+#: Width and height of the LUT image.
+SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
 
 #: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
 #: earlier versions, the plate's name, which two plates may share.
@@ -117,15 +118,16 @@ def _new_group(plate: Datablock, name: str) -> bpy.types.NodeTree:
 def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.Image:
     """Return the packed image of a plate's LUT, which the leading dot of its name hides; an earlier one is updated."""
     image = _of_plate(bpy.data.images, plate)
-    if image is not None and tuple(image.size) != (LENGTH, 1):
+    if image is not None and tuple(image.size) != SIZE:
         bpy.data.images.remove(image)
         image = None
     if image is None:
-        image = bpy.data.images.new(name, LENGTH, 1, alpha=False, float_buffer=True)
+        image = bpy.data.images.new(name, *SIZE, alpha=False, float_buffer=True)
         image[PLATE] = plate
         image.colorspace_settings.name = data_space()  # before the pixels, which this would remove
-    pixels = np.ones((LENGTH, 4), np.float32)
-    pixels[:, :3] = inverse_response_lut(curve, length=LENGTH).values[:, None]
+    count = SIZE[0] * SIZE[1]
+    pixels = np.ones((count, 4), np.float32)
+    pixels[:, :3] = inverse_response_lut(curve, length=LUT_LENGTH).apply(np.linspace(0, 1, count))[:, None]
     image.pixels.foreach_set(pixels.ravel())
     image.update()
     image.pack()
@@ -138,36 +140,33 @@ def _of_plate(collection: bpy.types.bpy_prop_collection, plate: Datablock) -> bp
 
 
 def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> None:
-    """Add the nodes: a look-up for each channel, exposure, conversion to the working space, multiplication by alpha.
+    """Add the nodes: a look-up for each channel, exposure, multiplication by alpha, conversion to the working space.
 
     The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored.
     """
     grid = _NodeGrid(group)
     start = grid.node("NodeGroupInput", 0)
-    table = grid.node("CompositorNodeImage", 1, row=-1)
+    table = grid.node("CompositorNodeImage", 3, row=-1)
     table.image = lut
     split = grid.node("CompositorNodeSeparateColor", 1)
     grid.link(start.outputs["Image"], split.inputs[0])
-    join = grid.node("CompositorNodeCombineColor", 7)
+    join = grid.node("CompositorNodeCombineColor", 6)
     grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     for row, channel in enumerate(_CHANNELS):
-        irradiance = _look_up(grid, split.outputs[channel], table.outputs["Image"], row)
-        grid.link(irradiance, join.inputs[channel])
-    exposed = grid.node("CompositorNodeExposure", 8)
+        position = _position(grid, split.outputs[channel], row)
+        grid.link(_look_up(grid, table.outputs["Image"], position, row), join.inputs[channel])
+    exposed = grid.node("CompositorNodeExposure", 7)
     grid.link(join.outputs[0], exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
-    converted = _convert_to_working_space(grid, source, exposed.outputs[0], 9)
-    end = grid.node("NodeGroupOutput", 11)
-    grid.link(_multiply_by_alpha(grid, converted, 10), end.inputs["Image"])
+    premultiplied = _multiply_by_alpha(grid, exposed.outputs[0], 8)  # before the conversion, which is a matrix: faster
+    end = grid.node("NodeGroupOutput", 10)
+    grid.link(_convert_to_working_space(grid, source, premultiplied, 9), end.inputs["Image"])
 
 
 def _look_up(
-    grid: _NodeGrid, brightness: bpy.types.NodeSocket, table: bpy.types.NodeSocket, row: int
+    grid: _NodeGrid, table: bpy.types.NodeSocket, position: bpy.types.NodeSocket, row: int
 ) -> bpy.types.NodeSocket:
-    """Return the socket of a channel's irradiance, which is read from the LUT image at the channel's brightness."""
-    vector = grid.node(_COMBINE, 4, row=row)
-    grid.link(_coordinate(grid, brightness, row), vector.inputs["X"])
-    vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
+    """Return the socket of a channel's irradiance, gray as the LUT image, which is read at a position in [0, 1]."""
     look_up = grid.node("CompositorNodeMapUV", 5, row=row)
     if IS_BLENDER_5:
         look_up.inputs["Interpolation"].default_value = "Bilinear"
@@ -175,23 +174,38 @@ def _look_up(
     else:
         look_up.filter_type = "NEAREST"
     grid.link(table, look_up.inputs["Image"])
-    grid.link(vector.outputs[0], look_up.inputs["UV"])
-    split = grid.node("CompositorNodeSeparateColor", 6, row=row)
-    grid.link(look_up.outputs[0], split.inputs[0])
-    return split.outputs["Red"]
+    grid.link(position, look_up.inputs["UV"])
+    return look_up.outputs[0]
 
 
-def _coordinate(grid: _NodeGrid, brightness: bpy.types.NodeSocket, row: int) -> bpy.types.NodeSocket:
-    """Return the socket of u = B (N - 1) / N + 0.5 / N, for a brightness B clamped to [0, 1]."""
-    clamped = grid.node(_MATH, 2, row=row)
-    clamped.operation, clamped.use_clamp = "ADD", True
-    grid.link(brightness, clamped.inputs[0])
-    clamped.inputs[1].default_value = 0
-    coordinate = grid.node(_MATH, 3, row=row)
-    coordinate.operation = "MULTIPLY_ADD"
-    grid.link(clamped.outputs[0], coordinate.inputs[0])
-    coordinate.inputs[1].default_value, coordinate.inputs[2].default_value = (LENGTH - 1) / LENGTH, 0.5 / LENGTH
-    return coordinate.outputs[0]
+def _position(grid: _NodeGrid, brightness: bpy.types.NodeSocket, row: int) -> bpy.types.NodeSocket:
+    """Return the socket of the position (u, v) of a brightness, clamped to [0, 1], in the LUT image."""
+    clamped = _math(grid, "ADD", 2, row, brightness, 0)
+    clamped.node.use_clamp = True
+    vector = grid.node(_COMBINE, 4, row=row)
+    vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
+    if IS_BLENDER_5:
+        length = SIZE[0]
+        u = _math(grid, "MULTIPLY_ADD", 3, row, clamped, (length - 1) / length, 0.5 / length)
+    else:
+        scaled = _math(grid, "MULTIPLY_ADD", 2.5, row, clamped, 65535 / 256, 0.5 / 256)
+        u = _math(grid, "FRACT", 3, row, scaled)
+        line = _math(grid, "FLOOR", 3, row + 0.5, scaled)
+        grid.link(_math(grid, "MULTIPLY_ADD", 3.5, row + 0.5, line, 1 / 256, 0.5 / 256), vector.inputs["Y"])
+    grid.link(u, vector.inputs["X"])
+    return vector.outputs[0]
+
+
+def _math(
+    grid: _NodeGrid, operation: str, column: float, row: float, value: bpy.types.NodeSocket, *numbers: float
+) -> bpy.types.NodeSocket:
+    """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
+    node = grid.node(_MATH, column, row=row)
+    node.operation = operation
+    grid.link(value, node.inputs[0])
+    for place, number in enumerate(numbers, 1):
+        node.inputs[place].default_value = number
+    return node.outputs[0]
 
 
 def _convert_to_working_space(
@@ -222,7 +236,7 @@ class _NodeGrid:
     def __init__(self, tree: bpy.types.NodeTree) -> None:
         self._tree = tree
 
-    def node(self, kind: str, column: int, *, row: int = 0) -> bpy.types.Node:
+    def node(self, kind: str, column: float, *, row: float = 0) -> bpy.types.Node:
         """Return a new node."""
         node = self._tree.nodes.new(kind)
         node.location = (_COLUMN * column, _ROW * row)

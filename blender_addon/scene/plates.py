@@ -12,7 +12,6 @@ import bpy
 from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import BlenderDecoder, Plate
-from . import comparison
 from .packed_images import DECODED_SUFFIXES, name_and_content
 
 #: The editors that have the panel.
@@ -28,6 +27,9 @@ OPEN_A_PLATE = {
 #: The custom property of a hidden copy whose pixels are code values, see `code_values`; its value is the plate.
 CODE_VALUES_OF = "camera_response_code_values_of"
 
+#: The custom property that marks a linear plate that is only shown for comparison; its value is the plate.
+COMPARED_PLATE = "camera_response_plate"
+
 #: What a plate is in Blender's data.
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
@@ -42,12 +44,17 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
     if space is None:
         return None
     if space.type == "IMAGE_EDITOR":
-        return comparison.plate_of(space.image) or space.image
+        return compared_plate(space.image) or space.image
     if space.type == "CLIP_EDITOR":
         return space.clip
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
         return _plate_behind(space.edit_tree.nodes.active)
     return None
+
+
+def compared_plate(image: bpy.types.Image | None) -> bpy.types.Image | None:
+    """Return the plate of which an image is the linear one that is only shown; None for any other image."""
+    return None if image is None else image.get(COMPARED_PLATE)
 
 
 def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
@@ -130,7 +137,7 @@ def obstacle(datablock: Datablock) -> str:
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
-    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock)
+    return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
 
 
 #: Why images of some sources have no response to estimate.
@@ -149,6 +156,14 @@ def _obstacle_in_blender(datablock: Datablock) -> str:
         return "Float images made in Blender hold linear values, which have no camera response: open a photograph"
     if not datablock.packed_file and not datablock.is_dirty:
         return "Blank images and test grids have no camera response: open a photograph"
+    return ""
+
+
+def _obstacle_unsaved(datablock: Datablock) -> str:
+    """Return that an image was painted on since its file was read or packed; an empty text for any other."""
+    is_kept = datablock.source != "GENERATED" or datablock.packed_file
+    if is_kept and getattr(datablock, "is_dirty", False):
+        return f"{datablock.name} has unsaved changes: save, pack or reload it in the Image menu first"
     return ""
 
 

@@ -36,7 +36,7 @@ DO_NOT_TRUST = "do not trust"
 
 
 def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
-    """Store an estimate on its image or clip.
+    """Store an estimate on its image or clip, which still gets the colour space that it waits for.
 
     Parameters
     ----------
@@ -48,7 +48,10 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
         What the panel says of the estimate.
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
+    pending = pending_color_space(datablock)
     datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
+    if pending:
+        datablock[KEY][PENDING_COLOR_SPACE] = pending
 
 
 def is_stored(datablock: Datablock | None) -> bool:

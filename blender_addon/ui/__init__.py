@@ -3,9 +3,9 @@
 
 operators         "Estimate Camera Response", "Apply Camera Response", "Cancel"
 running           the one run that is under way, and how its progress is shown
-panel             the sidebar panel of three editors
+panel             the sidebar panel and the menu entries of three editors
 estimate_box      what the panel shows of an estimate
-menus             the entries of three menus
+comparison        the linear plate in the place of the plate, for looking only
 image_tools       the Image Editor's before and after, and the eyedropper for gray
 photographs       further photographs of the same camera
 config_operators  what is in the OpenColorIO config: list it, take it out, restart

@@ -17,9 +17,10 @@ from typing import ClassVar
 import bpy
 
 from .. import lazy_import
-from ..scene import color_management, comparison
+from ..scene import color_management
 from ..work.errors import expected_errors
 from ..work.wording import american
+from . import comparison
 from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.
@@ -104,6 +105,9 @@ class CRF_OT_save_and_restart(bpy.types.Operator):
     def execute(self, _context: bpy.types.Context) -> set[str]:
         """Save, start another Blender, and quit this one; quit nothing that was not saved."""
         comparison.end_all()
+        if unsaved := next((image.name for image in bpy.data.images if image.is_dirty), ""):
+            self.report({"ERROR"}, f"{unsaved}: has changes that would be lost; save or pack the image first")
+            return {"CANCELLED"}
         try:
             bpy.ops.wm.save_mainfile()
             start_blender(bpy.data.filepath)

@@ -9,7 +9,7 @@ import textwrap
 import bpy
 import bpy.utils.previews
 
-from ..scene import comparison, plates, stored_estimate
+from ..scene import plates, stored_estimate
 from ..work import curve_picture
 from .image_tools import CRF_OT_compare
 
@@ -28,7 +28,7 @@ WARNING = "Warning: "
 
 #: The mean width of a letter of the interface, what the panel and a box take beside a line, and the width of an icon:
 #: pixels at a scale of 1.
-_LETTER, _BORDER, _ICON = 6, 52, 20
+_LETTER, _BORDER, _ICON = 6, 60, 20
 
 #: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
 _SMALLEST, _LARGEST = 9, 18
@@ -111,7 +111,7 @@ def curve_icon(datablock: plates.Datablock) -> int:
 
 def _draw_comparison(layout: bpy.types.UILayout, space: bpy.types.SpaceImageEditor) -> None:
     """Draw the switch between the plate and the linear plate."""
-    is_after = comparison.plate_of(space.image) is not None
+    is_after = plates.compared_plate(space.image) is not None
     row = layout.row(align=True)
     row.operator(CRF_OT_compare.bl_idname, text="Plate", depress=not is_after).is_after = False
     row.operator(CRF_OT_compare.bl_idname, text="Linear", depress=is_after).is_after = True

@@ -12,7 +12,8 @@ from typing import Any
 
 import bpy
 
-from ..scene import color_management, comparison, stored_estimate
+from ..scene import color_management, stored_estimate
+from . import comparison
 
 
 @bpy.app.handlers.persistent

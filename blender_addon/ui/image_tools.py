@@ -8,9 +8,10 @@ from typing import TYPE_CHECKING, ClassVar
 import bpy
 
 from .. import lazy_import
-from ..scene import comparison, plates, stored_estimate
+from ..scene import plates, stored_estimate
 from ..work.errors import AddonError, expected_errors
 from ..work.wording import american
+from . import comparison
 
 if TYPE_CHECKING:
     from crfnet_core.types import Float32Array

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any, ClassVar
 import bpy
 
 from .. import lazy_import
-from ..scene import comparison, plates, stored_estimate
+from ..scene import plates, stored_estimate
 from ..work.errors import AddonError, CancelledError, expected_errors
 from ..work.wording import american, report_line
-from . import running
+from . import comparison, running
 from .plate_settings import CHOICES, PlateChoices, remember_applied
 from .preferences import APPLY_MODES
 

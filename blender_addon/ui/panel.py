@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor."""
+"""The sidebar panel of the Image Editor, the Movie Clip Editor and the compositor, and the entries of their menus."""
 
 from __future__ import annotations
 
@@ -15,6 +15,12 @@ from .image_tools import CRF_OT_pick_gray
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
 from .plate_settings import is_to_be_applied
+
+#: The menus of the three editors, by which Blender's search finds the operators, too.
+MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
+
+#: The width of the word "stops", in units of the interface.
+_UNIT_WIDTH = 2.5
 
 
 class ResponsePanel:
@@ -73,6 +79,16 @@ class CRF_PT_node(ResponsePanel, bpy.types.Panel):
     bl_category = "Node"
 
 
+def draw_menu_entries(menu: bpy.types.Menu, context: bpy.types.Context) -> None:
+    """Draw the entries of a menu; the node editor has them only as the compositor."""
+    space = context.space_data
+    if space is not None and space.type == "NODE_EDITOR" and space.tree_type != "CompositorNodeTree":
+        return
+    menu.layout.separator()
+    menu.layout.operator(CRF_OT_estimate_response.bl_idname, icon="CAMERA_DATA")
+    menu.layout.operator(CRF_OT_apply_response.bl_idname, icon="CHECKMARK")
+
+
 def _obstacle(context: bpy.types.Context, datablock: plates.Datablock | None) -> str:
     """Return why no response can be estimated here, or an empty text."""
     return plates.OPEN_A_PLATE[context.area.type] if datablock is None else plates.obstacle(datablock)
@@ -98,7 +114,9 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
             row.operator(CRF_OT_pick_gray.bl_idname, text="", icon="EYEDROPPER")
     row = column.row(align=True)
     row.prop(settings, "exposure")
-    row.label(text="stops")
+    unit = row.row()
+    unit.ui_units_x = _UNIT_WIDTH
+    unit.label(text="stops")
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in ("ESTIMATE", "NODES"):
@@ -151,12 +169,16 @@ _CLASSES = (CRF_PT_image, CRF_PT_clip, CRF_PT_node)
 
 
 def register() -> None:
-    """Register the panels."""
+    """Register the panels, and add the entries to the menus."""
     for kind in _CLASSES:
         bpy.utils.register_class(kind)
+    for name in MENUS:
+        getattr(bpy.types, name).append(draw_menu_entries)
 
 
 def unregister() -> None:
-    """Unregister the panels."""
+    """Remove the entries, and unregister the panels."""
+    for name in MENUS:
+        getattr(bpy.types, name).remove(draw_menu_entries)
     for kind in reversed(_CLASSES):
         bpy.utils.unregister_class(kind)

@@ -77,8 +77,10 @@ class Run:
         redraw_editors(self._manager, regions=("UI",))
 
     def end(self) -> None:
-        """Remove the timer and the display; there is no current run then."""
+        """Remove the timer and the display, once; there is no current run then."""
         global _current
+        if _current is not self:
+            return
         _current = None
         self._manager.event_timer_remove(self._timer)
         self._manager.progress_end()

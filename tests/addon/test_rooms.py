@@ -14,11 +14,11 @@ LIGHT = ("background", "curve_picture", "errors", "job", "wording")
 
 #: Modules of `ui` that Blender imports when it enables the add-on.
 REGISTERED = (
+    "comparison",
     "config_operators",
     "estimate_box",
     "handlers",
     "image_tools",
-    "menus",
     "operators",
     "panel",
     "photographs",

@@ -5,6 +5,7 @@ import dataclasses
 import pytest
 
 from blender_addon.work.wording import american, panel_line, report_line
+from crfnet_core.posterior import Verdict
 
 
 @pytest.mark.parametrize(
@@ -27,7 +28,7 @@ def test_the_panel_leaves_the_figure_of_the_papers_out():
 
 
 def test_a_report_names_the_verdict_and_the_warning(estimate, plate_file):
-    found = dataclasses.replace(estimate(plate_file), warnings=())
+    found = dataclasses.replace(estimate(plate_file), verdict=Verdict.USABLE, warnings=())
     assert report_line("plate", found, "done") == "plate: the response is usable; done"
     one = dataclasses.replace(found, warnings=("gray photograph",))
     assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray photograph); done"
@@ -36,8 +37,6 @@ def test_a_report_names_the_verdict_and_the_warning(estimate, plate_file):
 
 
 def test_a_verdict_is_a_sentence(estimate, plate_file):
-    from crfnet_core.posterior import Verdict
-
     for verdict in Verdict:
         found = dataclasses.replace(estimate(plate_file), verdict=verdict, warnings=())
         assert report_line("plate", found, "done").startswith("plate: the response is ")

@@ -161,43 +161,6 @@ def test_gray_anchor(image, plate_file, codes, estimate):
     np.testing.assert_allclose(linear[codes == 100], 0.18, rtol=1e-5)
 
 
-@pytest.mark.parametrize("color_space", ["Filmic Log", "AgX Log", "Linear Rec.709", "ACEScg"])
-def test_log_and_linear_color_spaces_are_warned_of(image, color_space):
-    image.colorspace_settings.name = color_space
-    with pytest.raises(RuntimeError, match="is logarithmic or linear"):
-        bpy.ops.crf.estimate_response(image=image.name)
-    assert "camera_response" not in image
-    assert bpy.ops.crf.estimate_response(image=image.name, force=True) == {"FINISHED"}
-
-
-@pytest.mark.parametrize("color_space", ["sRGB", "Non-Color", "Display P3", "Rec.1886", "Rec.2020"])
-def test_other_color_spaces_are_not(image, color_space):
-    image.colorspace_settings.name = color_space
-    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
-
-
-def test_log_metadata_is_warned_of(addon, tmp_path, codes):
-    path = write_image(tmp_path / "scan.dpx", codes, dpx__Transfer="Logarithmic")
-    image = bpy.data.images.load(str(path))
-    with pytest.raises(RuntimeError, match=r"calls itself (KodakLog|Logarithmic)"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
-def test_a_dpx_that_is_neither(addon, tmp_path, codes, estimate):
-    """Blender takes every DPX for linear; its header says otherwise."""
-    path = write_image(tmp_path / "video.dpx", codes)
-    image = bpy.data.images.load(str(path))
-    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
-    assert_equal(stored(image), estimate(path))
-
-
-def test_linear_files_are_refused(addon, tmp_path):
-    path = write_image(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32))
-    image = bpy.data.images.load(str(path))
-    with pytest.raises(RuntimeError, match="linear"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
 def test_errors_are_one_sentence_and_leave_nothing(addon, tmp_path, codes):
     small = bpy.data.images.load(str(write_image(tmp_path / "small.png", codes[:100])))
     float_image = bpy.data.images.new("float", 256, 256, float_buffer=True)
@@ -273,33 +236,3 @@ def test_blenders_own_libraries_are_used():
     import PyOpenColorIO
 
     assert "bpy" in PyOpenColorIO.__file__
-
-
-def test_the_preferences_come_first_until_a_plate_is_set(addon):
-    assert addon.apply == "ESTIMATE"
-    addon.apply = "EXPORT"
-    image = bpy.data.images.new("new", 8, 8)
-    assert image.camera_response_settings.apply == "EXPORT"
-    image.camera_response_settings.apply = "BAKE"
-    addon.apply = "NODES"
-    assert image.camera_response_settings.apply == "BAKE"
-
-
-def test_the_interface_offers_what_jobs_and_ocio_know(addon):
-    """It repeats their choices and defaults, because it is drawn without them."""
-    from blender_addon.scene.color_management import CONFIG_NAME
-    from blender_addon.work.job import Anchor, ApplyMode
-    from ocio import defaults
-
-    settings = bpy.data.images.new("new", 8, 8).camera_response_settings.bl_rna.properties
-    assert settings["apply"].enum_items.keys() == list(ApplyMode)
-    assert settings["anchor"].enum_items.keys() == list(Anchor)
-    assert settings["depth"].enum_items.keys() == list(defaults.DEPTHS)
-    assert settings["prior"].enum_items.keys() == [*defaults.PRIORS, "file"]
-    assert settings["prior"].default == defaults.PRIORS[0]
-    assert (settings["exposure"].hard_min, settings["exposure"].hard_max) == (
-        -defaults.MAX_EXPOSURE,
-        defaults.MAX_EXPOSURE,
-    )
-    assert addon.lut_length == defaults.LUT_LENGTH
-    assert defaults.CONFIG_NAME == CONFIG_NAME

@@ -140,13 +140,13 @@ def test_photographs_of_the_same_camera_are_estimated_together(image, plate_file
 
 def test_menus_have_the_operators(addon):
     """So that Blender's search finds them."""
-    from blender_addon.ui import menus
+    from blender_addon.ui.panel import MENUS, draw_menu_entries
 
     from .test_addon_panel import Panel
 
-    for name in menus.MENUS:
-        assert menus.draw_entries in getattr(bpy.types, name)._dyn_ui_initialize()
+    for name in MENUS:
+        assert draw_menu_entries in getattr(bpy.types, name)._dyn_ui_initialize()
     panel = Panel()
-    menus.draw_entries(panel, bpy.context)
+    draw_menu_entries(panel, bpy.context)
     drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
     assert drawn == ["crf.estimate_response", "crf.apply_response"]

@@ -11,11 +11,13 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 FRAMES = 12
 
-#: Container, codec and bits of the movies: RGB without loss, YUV of limited range without further loss, RGB of 10 bits.
+#: Container, codec and bits of the movies: RGB without loss, YUV of limited range without further loss, RGB of 10 bits,
+#: RGB with alpha.
 CODECS = {
     "rgb.mkv": ("MKV", "FFV1", "8"),
     "yuv.mp4": ("MPEG4", "H264", "8"),
     "deep.mkv": ("MKV", "FFV1", "10"),
+    "alpha.mov": ("QUICKTIME", "QTRLE", "8"),
 }
 
 
@@ -54,7 +56,13 @@ def encode(path, frames):
     node = tree.nodes.new("CompositorNodeImage")
     node.image = image
     node.frame_duration, node.frame_start, node.frame_offset = len(frames), 1, 0
-    tree.links.new(node.outputs["Image"], output.inputs[0])
+    multiplied = tree.nodes.new("CompositorNodePremulKey")  # by alpha, which the encoder divides by
+    if bpy.app.version >= (5, 0, 0):
+        multiplied.inputs["Type"].default_value = "To Premultiplied"
+    else:
+        multiplied.mapping = "STRAIGHT_TO_PREMUL"
+    tree.links.new(node.outputs["Image"], multiplied.inputs["Image"])
+    tree.links.new(multiplied.outputs["Image"], output.inputs[0])
     render, settings = scene.render, scene.render.image_settings
     render.resolution_x, render.resolution_y = 256, 256
     render.dither_intensity, render.compositor_device, render.compositor_precision = 0, "CPU", "FULL"
@@ -62,10 +70,10 @@ def encode(path, frames):
     scene.frame_end = len(frames)
     if hasattr(settings, "media_type"):
         settings.media_type = "VIDEO"
-    settings.file_format, settings.color_mode = "FFMPEG", "RGB"
+    settings.file_format = "FFMPEG"
     render.ffmpeg.format, render.ffmpeg.codec, render.ffmpeg.audio_codec = container, codec, "NONE"
     render.ffmpeg.constant_rate_factor = "LOSSLESS"
-    settings.color_depth = depth
+    settings.color_mode, settings.color_depth = "RGBA" if codec == "QTRLE" else "RGB", depth
     render.filepath, render.use_file_extension = str(path), False
     bpy.ops.render.render(animation=True, scene=scene.name)
     bpy.data.images.remove(image)
@@ -105,9 +113,18 @@ def decoded(addon):
         frames = frames_of(plate)
         with frame_reader(plate) as read:
             paths = tuple(frames.paths[n - 1] for n in numbers)
-            return [read_image(file, kind=sample) for file in read(FrameSequence(paths, tuple(numbers)), None).paths]
+            files = read(FrameSequence(paths, tuple(numbers)), None).paths
+            return [as_stored(file) if sample == "stored" else read_image(file, kind=sample) for file in files]
 
     return decode
+
+
+def as_stored(path):
+    """Codes with alpha, not multiplied by it."""
+    from crfnet_core.image_io import read_codes
+
+    values = read_codes(path)
+    return np.dstack([values.codes, values.alpha])
 
 
 def test_a_movie_is_decoded_to_its_code_values(movie, decoded, codes):
@@ -128,6 +145,20 @@ def test_ten_bits_are_kept(movie, decoded, codes):
     (found,) = decoded(movie("deep.mkv"), (7,), sample="uint16")
     assert np.abs(found / 65535 - frame_codes(codes, 7) / 255).max() < 2 / 1023
     assert len(np.unique(found % 257)) > 1  # not 8 bits made wider
+
+
+def test_alpha_is_kept_and_colors_are_not_multiplied_by_it(addon, movie_folder, decoded, codes):
+    path, alpha = movie_folder / "alpha.mov", np.maximum(codes[..., :1], 1)
+    if not path.is_file():
+        samples = np.dstack([codes, alpha])
+        encode(path, [write_image(movie_folder / f"a{n}.png", samples, oiio__UnassociatedAlpha=1) for n in (1, 2)])
+    (found,) = decoded(path, (1,), sample="stored")
+    image = bpy.data.images.load(str(path))
+    pixels = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(pixels)
+    shown = np.rint(pixels.reshape(256, 256, 4)[::-1] * 255)  # the decoder's code values
+    assert len(np.unique(shown[..., 3])) == 255
+    np.testing.assert_array_equal(found, shown)
 
 
 @pytest.mark.parametrize("kind", ["image", "clip"])

@@ -14,7 +14,7 @@ def image(addon, plate_file):
 
 
 class Layout:
-    """Stands for a layout; records what is drawn into it."""
+    """Stands for a layout; records what is drawn into it, and knows what a real layout can draw."""
 
     def __init__(self):
         self.drawn = []
@@ -24,7 +24,12 @@ class Layout:
         return self, self
 
     def __getattr__(self, name):
+        function = bpy.types.UILayout.bl_rna.functions[name]
+
         def draw(*arguments, **options):
+            assert options.keys() <= set(function.parameters.keys()), (name, options)
+            if "icon" in options:
+                assert options["icon"] in function.parameters["icon"].enum_items, (name, options)
             self.drawn.append((name, *arguments, *options.values()))
             return self
 
@@ -159,3 +164,33 @@ def test_the_icon_is_drawn_once_per_estimate(image):
     (preview,) = estimate_box._previews.values()
     assert tuple(preview.image_size) == (SIZE, SIZE)
     assert np.ptp(preview.image_pixels_float[:]) > 0.5
+
+
+def test_the_preferences_come_first_until_a_plate_is_set(addon):
+    assert addon.apply == "ESTIMATE"
+    addon.apply = "EXPORT"
+    image = bpy.data.images.new("new", 8, 8)
+    assert image.camera_response_settings.apply == "EXPORT"
+    image.camera_response_settings.apply = "BAKE"
+    addon.apply = "NODES"
+    assert image.camera_response_settings.apply == "BAKE"
+
+
+def test_the_interface_offers_what_jobs_and_ocio_know(addon):
+    """It repeats their choices and defaults, because it is drawn without them."""
+    from blender_addon.scene.color_management import CONFIG_NAME
+    from blender_addon.work.job import Anchor, ApplyMode
+    from ocio import defaults
+
+    settings = bpy.data.images.new("new", 8, 8).camera_response_settings.bl_rna.properties
+    assert settings["apply"].enum_items.keys() == list(ApplyMode)
+    assert settings["anchor"].enum_items.keys() == list(Anchor)
+    assert settings["depth"].enum_items.keys() == list(defaults.DEPTHS)
+    assert settings["prior"].enum_items.keys() == [*defaults.PRIORS, "file"]
+    assert settings["prior"].default == defaults.PRIORS[0]
+    assert (settings["exposure"].hard_min, settings["exposure"].hard_max) == (
+        -defaults.MAX_EXPOSURE,
+        defaults.MAX_EXPOSURE,
+    )
+    assert addon.lut_length == defaults.LUT_LENGTH
+    assert defaults.CONFIG_NAME == CONFIG_NAME

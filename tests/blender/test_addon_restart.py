@@ -52,6 +52,13 @@ def test_a_restart_is_due_until_it_is_done(image, user_config, in_editor, monkey
         assert config_operators.is_restart_due()  # the config that Blender runs on is gone
 
 
+def test_another_estimate_does_not_end_the_wait(image, user_config):
+    from blender_addon.scene.stored_estimate import pending_color_space
+
+    bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+    assert pending_color_space(image) == "CRF plate"
+
+
 def test_a_restored_config_leaves_nothing_to_do(image, user_config):
     """Blender has never read the config that came and went."""
     from blender_addon.ui import config_operators
@@ -130,6 +137,17 @@ def test_a_config_that_the_environment_demands_stays_in_it(image, tmp_path, star
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     bpy.ops.crf.save_and_restart()
     assert started[0][1]["OCIO"] == str(tmp_path / "studio.ocio")
+
+
+def test_painted_images_are_not_lost(image, tmp_path, started):
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    painted = bpy.data.images.new("painted", 8, 8)
+    painted.pixels[0] = 0.5
+    with pytest.raises(RuntimeError, match="painted: has changes that would be lost"):
+        bpy.ops.crf.save_and_restart()
+    assert started == []
+    painted.pack()
+    assert bpy.ops.crf.save_and_restart() == {"FINISHED"}
 
 
 def test_nothing_is_quit_that_was_not_saved(image, tmp_path, started, monkeypatch):

@@ -21,6 +21,7 @@ from training.data.splits import SPLITS_FILE
 from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded
 from training.network.model import KINDS, NetworkConfig, PhotographNet, ShippedNetwork
+from training.network.train import CHECKPOINT
 from training.provenance import RUN_FILE, Record, file_sha256, read_run, training_commit, write_json
 
 
@@ -35,7 +36,7 @@ def load_network(run: Path, *, without: Sequence[str] = ()) -> ShippedNetwork:
         Kinds of features, of `KINDS`, that it does not see: to measure what they are worth.
     """
     net = PhotographNet(NetworkConfig(**read_run(run)["recipe"]["network"]))
-    net.load_state_dict(torch.load(run / "last.pt", weights_only=True)["net"])
+    net.load_state_dict(torch.load(run / CHECKPOINT, weights_only=True)["net"])
     for kind in without:
         getattr(net.embedding, kind).is_left_out = True
     return rounded(ShippedNetwork(net).eval())

@@ -18,6 +18,9 @@ from training.network.shards import CurveSet, Shards, read_shards, shard_files
 from training.provenance import data_record, file_sha256, record_run
 from training.synthesis.photographs import FOLDS
 
+#: The file of the last checkpoint in the folder of a run.
+CHECKPOINT = "last.pt"
+
 #: Largest norm of the gradient of a step.
 CLIP = 1.0
 
@@ -108,8 +111,8 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.weights)}
     record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start=_start_record(init))
     state = _start(network, config, len(photographs.weights))
-    if (run / "last.pt").exists():
-        state.resume(run / "last.pt")
+    if (run / CHECKPOINT).exists():
+        state.resume(run / CHECKPOINT)
     elif init is not None:
         state.net.load_state_dict(torch.load(init, weights_only=True)["net"], strict=False)
     loss = _loss(photographs, config)
@@ -118,8 +121,8 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
         window_error, error = validation_errors(state.net, loss, held_out)
         with (run / "log.csv").open("a", newline="") as file:
             csv.writer(file).writerow([state.epoch, f"{train_loss:.4f}", f"{window_error:.4f}", f"{error:.4f}"])
-        state.save(run / "last.pt")
-    return run / "last.pt"
+        state.save(run / CHECKPOINT)
+    return run / CHECKPOINT
 
 
 def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) -> tuple[float, float]:

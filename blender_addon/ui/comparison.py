@@ -15,14 +15,12 @@ import bpy
 import numpy as np
 
 from .. import lazy_import
+from ..scene.plates import COMPARED_PLATE, compared_plate
 from ..work.errors import AddonError
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array
-
-#: The custom property that marks a linear plate that is only shown; its value is the plate.
-PLATE = "camera_response_plate"
 
 #: The name of these images; a leading dot hides them in menus.
 _NAME = ".Camera Response Linear"
@@ -32,11 +30,6 @@ _LARGEST = 65535
 
 #: Rows that are converted at a time: few enough to stay in the processor's cache.
 _ROWS = 16
-
-
-def plate_of(image: bpy.types.Image | None) -> bpy.types.Image | None:
-    """Return the plate of which an image is the linear one that is only shown; None for any other image."""
-    return None if image is None else image.get(PLATE)
 
 
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str) -> None:
@@ -54,7 +47,7 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
     plate = space.image
     height, width = pixels.shape[:2]
     linear = bpy.data.images.new(_NAME, width, height, alpha=True, float_buffer=True)
-    linear[PLATE] = plate
+    linear[COMPARED_PLATE] = plate
     linear.colorspace_settings.name = color_space  # before the pixels, which this would remove
     linear.pixels.foreach_set(pixels.ravel())
     linear.update()
@@ -63,8 +56,8 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
 
 def end(space: bpy.types.SpaceImageEditor) -> None:
     """Show the plate again in an editor that shows its linear one, which is removed unless another editor shows it."""
-    linear, plate = space.image, plate_of(space.image)
-    if linear is None or PLATE not in linear:
+    linear, plate = space.image, compared_plate(space.image)
+    if linear is None or COMPARED_PLATE not in linear:
         return
     space.image = plate
     if all(other.image != linear for other in _image_editors()):
@@ -74,9 +67,9 @@ def end(space: bpy.types.SpaceImageEditor) -> None:
 def end_all() -> None:
     """Show the plates again everywhere, and remove all linear plates that were only shown."""
     for space in _image_editors():
-        if space.image is not None and PLATE in space.image:
-            space.image = plate_of(space.image)
-    for image in [image for image in bpy.data.images if PLATE in image]:
+        if space.image is not None and COMPARED_PLATE in space.image:
+            space.image = compared_plate(space.image)
+    for image in [image for image in bpy.data.images if COMPARED_PLATE in image]:
         bpy.data.images.remove(image)
 
 

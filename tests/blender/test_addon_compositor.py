@@ -1,0 +1,214 @@
+"""The compositor's tree after a plate is applied: one viewer, room for the new node, the selection, the timing."""
+
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def tree(addon):
+    """The scene's compositor tree, empty."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    tree = compositor_tree(bpy.context.scene)
+    tree.nodes.clear()
+    return tree
+
+
+@pytest.fixture
+def plates(tmp_path, codes, addon):
+    """Two plates."""
+    return [bpy.data.images.load(str(write_image(tmp_path / f"{name}.png", codes))) for name in ("one", "two")]
+
+
+@pytest.fixture
+def sequence(tmp_path, codes, addon):
+    """A sequence from 1001 on."""
+    paths = [write_image(tmp_path / f"shot.{number}.png", codes) for number in (1001, 1002, 1003)]
+    image = bpy.data.images.load(str(paths[0]))
+    image.source = "SEQUENCE"
+    return image
+
+
+def apply(image, **choices):
+    assert bpy.ops.crf.estimate_response(image=image.name, **{"apply": "NODES", **choices}) == {"FINISHED"}
+
+
+def of_kind(tree, kind):
+    return [node for node in tree.nodes if node.type == kind]
+
+
+def timing(user):
+    return user.frame_duration, user.frame_start, user.frame_offset
+
+
+def test_one_viewer_shows_the_last_plate(tree, plates):
+    for image in plates:
+        apply(image)
+        (viewer,) = of_kind(tree, "VIEWER")
+        group = viewer.inputs["Image"].links[0].from_node
+        assert group.node_tree["camera_response_of"] == image
+
+
+def test_the_new_group_is_active_and_the_only_selected_node(tree, plates):
+    for image in plates:
+        apply(image)
+        selected = [node for node in tree.nodes if node.select]
+        assert selected == [tree.nodes.active]
+        assert selected[0].node_tree["camera_response_of"] == image
+
+
+def test_what_is_only_brought_up_to_date_leaves_the_selection(tree, plates):
+    apply(plates[0])
+    (viewer,) = of_kind(tree, "VIEWER")
+    tree.nodes.active = viewer
+    for node in tree.nodes:
+        node.select = node == viewer
+    apply(plates[0], exposure=1)
+    assert tree.nodes.active == viewer
+    assert [node for node in tree.nodes if node.select] == [viewer]
+
+
+@pytest.mark.parametrize("in_frame", [False, True])
+def test_the_nodes_behind_make_room(tree, plates, in_frame):
+    source, blur, view = (tree.nodes.new(f"CompositorNode{kind}") for kind in ("Image", "Blur", "Viewer"))
+    source.image = plates[0]
+    other = tree.nodes.new("CompositorNodeBlur")
+    other.location = (200, -400)
+    blur.location, view.location = (200, 0), (400, 0)
+    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
+    tree.links.new(blur.outputs["Image"], view.inputs["Image"])
+    if in_frame:
+        frame = tree.nodes.new("NodeFrame")
+        frame.location = (50, 50)
+        blur.parent = frame
+    distance = view.location_absolute.x - blur.location_absolute.x
+    apply(plates[0])
+    (group,) = of_kind(tree, "GROUP")
+    assert group.location_absolute.x >= source.location_absolute.x + source.width
+    assert blur.location_absolute.x >= group.location_absolute.x + group.width
+    assert view.location_absolute.x - blur.location_absolute.x == pytest.approx(distance)
+    assert tuple(other.location) == (200, -400)
+
+
+def test_nodes_far_away_stay(tree, plates):
+    source, blur = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeBlur")
+    source.image = plates[0]
+    blur.location = (2000, 0)
+    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
+    apply(plates[0])
+    assert blur.location.x == 2000
+
+
+def test_the_panel_follows_the_group_to_the_plate(tree, plates, in_editor):
+    from blender_addon.scene.plates import active_datablock
+
+    apply(plates[0])
+    with in_editor("NODE_EDITOR") as space:
+        space.node_tree = tree
+        for kind in ("GROUP", "IMAGE"):
+            (tree.nodes.active,) = of_kind(tree, kind)
+            assert active_datablock(bpy.context) == plates[0]
+
+
+def test_a_new_node_has_the_timing_of_the_editor(tree, sequence, in_editor):
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = sequence
+        user = space.image_user
+        user.frame_duration, user.frame_start, user.frame_offset = 3, 1, 1000  # as Blender opens it
+        assert bpy.ops.crf.estimate_response(apply="NODES") == {"FINISHED"}
+    (node,) = of_kind(tree, "IMAGE")
+    assert timing(node) == (3, 1, 1000)
+
+
+def test_a_node_keeps_its_timing(tree, sequence):
+    node = tree.nodes.new("CompositorNodeImage")
+    node.image = sequence
+    node.frame_duration, node.frame_start, node.frame_offset, node.use_cyclic = 3, 11, 1000, True
+    apply(sequence)
+    assert timing(node) == (3, 11, 1000)
+    assert node.use_cyclic
+    assert node.image != sequence
+
+
+def test_the_baked_sequence_has_the_timing_of_the_plate(sequence, in_editor):
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = sequence
+        user = space.image_user
+        user.frame_duration, user.frame_start, user.frame_offset = 3, 1, 1000
+        assert bpy.ops.crf.estimate_response(apply="BAKE") == {"FINISHED"}
+        assert space.image.name == "shot_linear.1001.exr"
+        assert timing(space.image_user) == (3, 1, 1000)
+
+
+def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
+    clip = bpy.data.movieclips.load(sequence.filepath)
+    clip.frame_start, clip.frame_offset = 101, 3
+    clip.tracking.camera.focal_length = 77
+    track = clip.tracking.tracks.new(name="corner", frame=1)
+    track.markers.insert_frame(2, co=(0.25, 0.5))
+    bpy.ops.crf.estimate_response(clip=clip.name, apply="BAKE")
+    baked = bpy.data.movieclips["shot_linear.1001.exr"]
+    assert (baked.frame_start, baked.frame_offset) == (101, 3)
+    assert baked.tracking.camera.focal_length == 77
+    assert [track.name for track in baked.tracking.tracks] == ["corner"]
+    assert tuple(baked.tracking.tracks[0].markers.find_frame(2).co) == (0.25, 0.5)
+    assert (baked.source, baked.colorspace_settings.name) == ("SEQUENCE", "Linear Rec.709")
+    assert "camera_response" not in baked
+    baked.tracking.camera.focal_length = 50
+    bpy.ops.crf.apply_response(clip=clip.name, apply="BAKE", overwrite=True)
+    assert [clip.name for clip in bpy.data.movieclips if "linear" in clip.name] == ["shot_linear.1001.exr"]
+    assert baked.tracking.camera.focal_length == 50
+
+
+def test_tracks_and_camera_are_copied_one_by_one(sequence):
+    """So the baked frames of a movie get them."""
+    from blender_addon.scene.apply import _copy_tracking
+
+    clips = [bpy.data.movieclips.load(sequence.filepath) for _ in range(2)]
+    source, target = (clip.tracking for clip in clips)
+    source.camera.focal_length, source.camera.k1 = 77, 0.125
+    track = source.tracks.new(name="corner", frame=2)
+    track.markers[0].pattern_corners = ((-0.1, -0.1), (0.1, -0.1), (0.1, 0.2), (-0.1, 0.1))
+    track.markers.insert_frame(3, co=(0.25, 0.5)).mute = True
+    _copy_tracking(source, target)
+    assert (target.camera.focal_length, target.camera.k1) == (77, 0.125)
+    (copy,) = target.tracks
+    assert [marker.frame for marker in copy.markers] == [marker.frame for marker in track.markers]
+    for marker, kept in zip(track.markers, copy.markers, strict=True):
+        assert tuple(kept.co) == tuple(marker.co)
+        assert kept.mute == marker.mute
+        assert [tuple(corner) for corner in kept.pattern_corners] == [tuple(c) for c in marker.pattern_corners]
+
+
+@pytest.mark.parametrize("kind", ["image", "clip"])
+@pytest.mark.parametrize("is_relative", [True, False])
+def test_a_relative_path_stays_relative(addon, tmp_path, codes, kind, is_relative):
+    path = write_image(tmp_path / "plate.png", codes)
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    collection = bpy.data.images if kind == "image" else bpy.data.movieclips
+    datablock = collection.load(str(path))
+    datablock.filepath = "//plate.png" if is_relative else str(path)
+    bpy.ops.crf.estimate_response(**{kind: datablock.name}, apply="BAKE")
+    found = collection["plate_linear.exr"].filepath
+    assert found == ("//plate_linear.exr" if is_relative else str(tmp_path / "plate_linear.exr"))
+
+
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_unsaved_painting_is_not_lost(addon, tree, tmp_path, codes, is_packed):
+    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    if is_packed:
+        image.pack()
+    image.pixels[0] = 0.25
+    for mode in ("NODES", "BAKE", "EXPORT", "COLORSPACE"):
+        with pytest.raises(RuntimeError, match="has unsaved changes"):
+            apply(image, apply=mode)
+    assert image.is_dirty
+    assert image.pixels[0] == pytest.approx(0.25, abs=1 / 255)
+    if is_packed:
+        image.pack()
+    else:
+        image.save()
+    apply(image)

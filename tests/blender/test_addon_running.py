@@ -1,0 +1,138 @@
+"""The run that is under way: one at a time, its progress and how seldom it is drawn, Cancel, a disabled add-on."""
+
+import threading
+import time
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+from .test_addon_modal import Interface  # noqa: E402 - after the skip
+
+
+@pytest.fixture
+def interface(addon):
+    from blender_addon.ui import running
+
+    yield Interface()
+    running.stop()
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+class Waiting:
+    """A job that waits for its end to be allowed, and reports the progress that it is told to."""
+
+    def __init__(self):
+        self.end, self.progress = threading.Event(), None
+
+    def __call__(self, progress):
+        self.progress = progress
+        assert self.end.wait(30)
+        progress(1, 1)
+
+
+@pytest.fixture
+def waiting(interface):
+    """A run under way, and its job."""
+    from blender_addon.ui import running
+
+    job = Waiting()
+    run = running.start(interface, "plate", job)
+    while job.progress is None:
+        time.sleep(0.001)
+    yield run, job
+    job.end.set()
+    run.task.wait(30)
+
+
+def test_the_progress_is_drawn_only_if_it_changed_and_seldom(waiting, interface, monkeypatch):
+    from blender_addon.ui import running
+
+    run, job = waiting
+    now = [time.monotonic()]
+    monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
+    drawn = len(interface.status), len(interface.progress)
+    for _ in range(5):  # nothing has changed
+        now[0] += 1
+        run.show()
+    assert (len(interface.status), len(interface.progress)) == drawn
+    for percent in range(1, 51):  # a tenth of a second each
+        job.progress(percent, 100)
+        now[0] += 0.1
+        run.show()
+    assert 9 <= len(interface.status) - drawn[0] <= 11
+    assert set(interface.redrawn) == {"UI"}  # never the picture
+    assert "50 %" in run.text
+
+
+def test_where_drawing_is_slow_the_progress_is_drawn_more_seldom(waiting, interface, monkeypatch):
+    """A display that takes 0.3 s is followed by 3 s without one."""
+    from blender_addon.ui import running
+
+    run, job = waiting
+    now = [time.monotonic() + 1]
+    monkeypatch.setattr(running.time, "monotonic", lambda: now[0])
+    shown = []
+    for percent in range(1, 101):
+        job.progress(percent, 100)
+        before = len(interface.status)
+        run.show()
+        is_shown = len(interface.status) > before
+        shown += [now[0]] * is_shown
+        now[0] += 0.4 if is_shown else 0.1
+    assert np.diff(shown).min() > 2.9
+    assert len(shown) >= 3
+    run.cancel()  # at once
+    assert interface.status[-1] == "Canceling"
+
+
+def test_one_run_at_a_time(waiting, image):
+    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+        assert not operator.poll()
+        with pytest.raises(RuntimeError, match="plate is running"):
+            operator(image=image.name)
+    run, job = waiting
+    assert bpy.ops.crf.cancel_run() == {"FINISHED"}
+    assert run.task.is_cancelled
+    assert run.text == "Canceling"
+    job.end.set()
+    run.task.wait(30)
+    run.end()
+    assert bpy.ops.crf.estimate_response.poll()
+    assert not bpy.ops.crf.cancel_run.poll()
+
+
+def test_disabling_the_addon_cancels_the_run(waiting, interface):
+    import addon_utils
+
+    from blender_addon.ui import running
+
+    run, _ = waiting
+    addon_utils.disable("blender_addon")
+    try:
+        assert run.task.is_cancelled
+        assert running.current() is None
+        assert interface.timers == []
+        assert interface.status[-1] is None
+    finally:
+        addon_utils.enable("blender_addon")
+
+
+def test_the_panel_shows_the_progress_and_cancels(waiting, in_editor, image):
+    from blender_addon.ui.panel import ResponsePanel
+
+    from .test_addon_panel import Panel
+
+    panel = Panel()
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        ResponsePanel.draw(panel, bpy.context)
+    assert ("progress", 0.0, "plate: 0 %") in panel.layout.drawn
+    drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
+    assert "crf.cancel_run" in drawn
+    assert "crf.estimate_response" not in drawn

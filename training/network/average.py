@@ -1,0 +1,94 @@
+"""Average the weights of runs from the same start: ``python -m training.network.average --run DIR DIR --out DIR``.
+
+Networks that were trained from the same weights lie in one valley of the loss. The mean of their weights is one network
+that answers nearly as well as the mean of their answers: Wortsman et al., "Model soups", ICML 2022.
+"""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+import torch
+from torch import Tensor
+
+from crfnet_core.files import atomic_write
+from training.network.train import CHECKPOINT
+from training.provenance import RUN_FILE, Record, file_sha256, read_run, write_json
+
+
+def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
+    """Write a run folder with the weighted mean of the last checkpoints of runs, and return its checkpoint.
+
+    Parameters
+    ----------
+    runs : sequence of Path
+        Folders written by `training.network.train`.
+    shares : sequence of float
+        What each run counts, as parts of their sum.
+    out : Path
+        The new folder. Its run.json is that of the run with the largest share, and names all of them under "average".
+
+    Raises
+    ------
+    SystemExit
+        If the networks differ in size or start, or there is not one share for each run.
+    """
+    if len(shares) != len(runs) or min(shares) <= 0:
+        raise SystemExit("give each run a share above 0")
+    records = [read_run(run) for run in runs]
+    if any(_origin(record) != _origin(records[0]) for record in records):
+        raise SystemExit(
+            "these runs cannot be averaged: their networks differ in size or in the weights they began from"
+        )
+    networks = [torch.load(run / CHECKPOINT, weights_only=True)["net"] for run in runs]
+    parts = [share / sum(shares) for share in shares]
+    out.mkdir(parents=True, exist_ok=True)
+    with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
+        torch.save({"net": weighted_mean(networks, parts)}, temporary)
+    largest = records[parts.index(max(parts))]
+    write_json(out / RUN_FILE, largest | {"average": [_part(*one) for one in zip(runs, records, parts, strict=True)]})
+    return out / CHECKPOINT
+
+
+def weighted_mean(networks: Sequence[dict[str, Tensor]], parts: Sequence[float]) -> dict[str, Tensor]:
+    """Return the weighted mean of the states of networks; whole numbers (counts of batches) are those of the first."""
+    return {
+        name: sum(
+            (part * network[name] for part, network in zip(parts, networks, strict=True)), torch.zeros_like(first)
+        )
+        if first.is_floating_point()
+        else first
+        for name, first in networks[0].items()
+    }
+
+
+def _origin(record: Record) -> Record:
+    """Return what runs must share to be averaged."""
+    return {"network": record["recipe"]["network"], "start": record["start"]}
+
+
+def _part(run: Path, record: Record, part: float) -> Record:
+    """Return what is recorded of one of the runs."""
+    return {
+        "share": round(part, 6),
+        "checkpoint": f"SHA-256 {file_sha256(run / CHECKPOINT)}",
+        "commit": record["commit"],
+        "recipe": record["recipe"],
+        "data": {key: record["data"][key] for key in ("files", "sha256")},
+    }
+
+
+def main() -> None:
+    """Average as the options say."""
+    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
+    parser.add_argument("--run", type=Path, nargs="+", required=True, help="folders written by the training")
+    parser.add_argument("--share", type=float, nargs="+", required=True, help="what each run counts")
+    parser.add_argument("--out", type=Path, required=True, help="the new run folder")
+    options = parser.parse_args()
+    print(average(options.run, options.share, options.out))
+
+
+if __name__ == "__main__":
+    main()
