@@ -36,11 +36,13 @@ class Artist:
         The scale of the interface.
     theme : {"dark", "light"}
         The theme.
+    keep : callable
+        Keeps a picture under a name: what is shown when waiting was in vain.
     """
 
-    def __init__(self, blender: Blender, *, scale: float = 1, theme: str = "dark") -> None:
+    def __init__(self, blender: Blender, *, scale: float, theme: str, keep: Callable[[Picture, str], Any]) -> None:
         self.blender, self.call, self.value = blender, blender.call, blender.value
-        self.screen, self._scale = blender.screen, scale
+        self.screen, self._scale, self._keep = blender.screen, scale, keep
         self.call("editors.look", scale=scale, theme=theme)
 
     def open(self, path: Path, *, alone: bool = True, **options: Any) -> str:
@@ -121,5 +123,8 @@ class Artist:
         deadline = time.monotonic() + seconds
         while not condition():
             if time.monotonic() > deadline:
-                raise TimeoutError(f"waited {seconds} s: {what}; Blender says: {self.blender.printed[-LAST:]}")
+                kept = self._keep(self.picture(), f"waited_in_vain_{time.time_ns()}")
+                raise TimeoutError(
+                    f"waited {seconds} s: {what} (see {kept}); Blender says: {self.blender.printed[-LAST:]}"
+                )
             time.sleep(0.05)

@@ -59,7 +59,7 @@ class WindowTest(unittest.TestCase):
         blender = Blender(os.environ[BLENDER], screen(*SIZES[scale]), self.home, file)
         self.blenders.append(blender)
         self.addCleanup(blender.quit)
-        return Artist(blender, scale=scale, theme=theme)
+        return Artist(blender, scale=scale, theme=theme, keep=self.keep)
 
     def plate(self, name: str, to: str = "") -> Path:
         """Return a copy of a plate, or of a folder of frames, in the case's own folder."""

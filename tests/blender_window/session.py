@@ -21,7 +21,7 @@ INSIDE = Path(__file__).parent / "inside" / "serve.py"
 LAST = 2000
 
 #: Seconds that Blender may take to start, and to answer.
-START, ANSWER = 120, 180
+START, ANSWER = 300, 600
 
 
 class Blender:
@@ -47,7 +47,12 @@ class Blender:
         command += [*([str(file)] if file else []), "--python", str(INSIDE), "--", str(self._socket)]
         with self._log.open("wb") as log:
             self._process = subprocess.Popen(command, env=self._environment(), stdout=log, stderr=log)
-        self._wait()
+        try:
+            self._wait()
+        except BaseException:
+            self._process.kill()
+            self.quit()
+            raise
 
     def __enter__(self) -> Blender:
         return self
@@ -108,7 +113,6 @@ class Blender:
                 return
             except (FileNotFoundError, ConnectionRefusedError):
                 time.sleep(0.1)
-        self._process.kill()
         raise RuntimeError(f"Blender did not start in {START} s: {self.printed[-LAST:]}")
 
     def _ask(self, question: dict[str, Any]) -> Any:
