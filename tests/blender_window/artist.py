@@ -19,7 +19,7 @@ CANCEL = "bpy.ops.crf.cancel_run("
 BUTTON = 16
 
 #: Where in the width of the sidebar buttons are looked for.
-COLUMNS = (0.5, 0.3, 0.75)
+COLUMNS = (0.5, 0.3, 0.75, 0.83)
 
 #: Seconds that a run and everything else may take.
 RUN, MOMENT = 300, 60
@@ -82,18 +82,27 @@ class Artist:
         """Return what is shown now."""
         return self.screen.picture(box)
 
-    def find(self, command: str) -> tuple[int, int]:
-        """Return the middle of the button of a command in the sidebar; LookupError if there is none."""
+    def find(self, command: str, *, row: int | None = None) -> tuple[int, int]:
+        """Return the middle of the button of a command in the sidebar, or near a row of it if one is given.
+
+        Raises
+        ------
+        LookupError
+            If there is none.
+        """
         box, step = self.sidebar(), round(BUTTON * self._scale / 2)
+        first, last = (box.y + step, box.y + box.height) if row is None else (row - 2 * step, row + 2 * step)
         for column in COLUMNS:
             x = box.x + round(column * box.width)
             rows = []
-            for y in range(box.y + step, box.y + box.height, step):
+            for y in range(first, last, step):
                 self.screen.move(x, y)
                 if self.call("editors.button", "IMAGE_EDITOR", "UI").startswith(command):
                     rows.append(y)
                 elif rows:
-                    return x, (rows[0] + rows[-1]) // 2
+                    break
+            if rows:
+                return x, (rows[0] + rows[-1]) // 2
         raise LookupError(f"there is no button {command}...) in the sidebar")
 
     def press(self, command: str = ESTIMATE) -> float:

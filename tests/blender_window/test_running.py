@@ -56,8 +56,9 @@ class TestRunning(WindowTest):
     def test_the_panel_offers_the_restart_that_is_due(self):
         artist, name = self.start_with("plate.jpg", apply="COLORSPACE")
         artist.run()
-        artist.find(RESTART)
         file = self.save(artist)
+        artist.settle()
+        artist.find(RESTART)
         artist.blender.quit()
         artist = self.start(file)
         artist.call("editors.show", "IMAGE_EDITOR")
@@ -97,9 +98,10 @@ class TestRunning(WindowTest):
         self.assertTrue(artist.call("runs.can_run"))
 
     def test_the_cancel_button_of_the_panel_cancels(self):
-        artist, name = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        artist, name = self.start_with("large.jpg", apply="BAKE", folder=str(self.folder / "look"))
+        _, row = artist.find(ESTIMATE)
         artist.start()
-        artist.press(CANCEL)
+        artist.screen.click(*artist.find(CANCEL, row=row))
         artist.wait_for_end()
         self.assertIsNone(artist.call("plates.stored", name))
 
