@@ -93,7 +93,7 @@ def ended() -> float | None:
 
 def last_registered() -> dict[str, Any] | None:
     """Return the properties of the add-on's last operator as the redo panel shows them; None if it shows none of it."""
-    registered = bpy.context.window_manager.operators
+    registered = [found for found in bpy.context.window_manager.operators if "REGISTER" in found.bl_options]
     if not registered or not registered[-1].bl_idname.startswith("CRF_OT"):
         return None
     properties = registered[-1].properties
