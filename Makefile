@@ -1,7 +1,10 @@
 # Every target sets up what it needs, once, in .venvs/: python3, git and make are enough.
-# Another interpreter: make test PYTHON=python3.13. Another Blender: make test-blender BPY=4.5.
+# Another interpreter: make test PYTHON=python3.13. Another Blender: make test-blender BPY=4.5. A Blender with its
+# window: make test-blender-window BLENDER=blender.
 PYTHON ?= python3
 BPY ?=
+BLENDER ?=
+ONLY ?=
 PIP_OPTIONS ?=
 
 TAG := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
@@ -10,10 +13,12 @@ TEST := .venvs/test-$(TAG)
 DEV := .venvs/dev-$(TAG)
 TRAIN := .venvs/train-$(TAG)
 ADDON := .venvs/addon-$(TAG)
-BLENDER := .venvs/blender-$(TAG)$(if $(BPY),-$(BPY))
+BPY_VENV := .venvs/blender-$(TAG)$(if $(BPY),-$(BPY))
 
 PHOTO := tests/data/plate.jpg
 DEMO := demo_out
+WINDOW := build/blender_window
+DRIVE = $(PYTHON) -m tests.blender_window --blender '$(BLENDER)' --zip $(WINDOW)/zip --files $(WINDOW) --pictures $(WINDOW)/pictures
 DATA ?=
 RUN ?= runs/model
 MODEL ?=
@@ -22,10 +27,10 @@ comma := ,
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo addon test test-training test-blender check format model docs bench clean
+.PHONY: help demo addon test test-training test-blender test-blender-window blender-pictures check format model docs bench clean
 
 help:  ## list the targets
-	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 24
+	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 28
 
 demo: $(PLOT)/ready  ## one photograph to LUTs, OCIO config, linear plate and sheet, in demo_out/
 	@$(PLOT)/bin/crfnet estimate $(PHOTO) --out $(DEMO) --overwrite
@@ -40,8 +45,14 @@ test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as
 test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)
 	$(TRAIN)/bin/python -m pytest tests/training
 
-test-blender: $(BLENDER)/ready  ## the tests inside Blender (installs bpy; Python 3.11 or 3.13)
-	$(BLENDER)/bin/python -m pytest tests/blender
+test-blender: $(BPY_VENV)/ready  ## the tests inside Blender (installs bpy; Python 3.11 or 3.13)
+	$(BPY_VENV)/bin/python -m pytest tests/blender
+
+test-blender-window: $(if $(BLENDER),$(WINDOW)/ready)  ## the same with its window: BLENDER=blender (xvfb, xdotool); ONLY=test_button
+	@$(DRIVE) $(ONLY)
+
+blender-pictures: $(if $(BLENDER),$(WINDOW)/ready)  ## the pictures of the panel in blender_addon/pictures anew: BLENDER=blender
+	@$(DRIVE) --readme blender_addon/pictures test_pictures.TestPictures.test_dark_at_scale_1
 
 check: $(DEV)/ready  ## format, lint, types and layers
 	$(DEV)/bin/ruff format --check .
@@ -83,6 +94,14 @@ define install
 	touch $@
 endef
 
+# The zip, the plates and what the command says of them; where they are up to date, the test needs no environment.
+$(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio tests/bench.py tests/blender_window/make_files.py -name '*.pyc' -o -type f -print)
+	$(MAKE) $(ADDON)/ready $(PLOT)/ready
+	rm -rf $(WINDOW)
+	$(ADDON)/bin/python blender_addon/build.py --platform linux-x64-any-python --out $(WINDOW)/zip
+	$(PLOT)/bin/python -m tests.blender_window.make_files $(WINDOW)
+	touch $@
+
 # Bare: the builder needs pip alone.
 $(ADDON)/ready:
 	rm -rf $(@D)
@@ -97,5 +116,5 @@ $(DEV)/ready: pyproject.toml
 	$(call install,dev)
 $(TRAIN)/ready: pyproject.toml
 	$(call install,train$(comma)test)
-$(BLENDER)/ready: pyproject.toml
+$(BPY_VENV)/ready: pyproject.toml
 	$(call install,blender$(comma)test,$(if $(BPY),'bpy==$(BPY).*'))

@@ -28,16 +28,16 @@ class Cost:
     gigabytes: float
 
 
-def make_photograph(path: Path) -> None:
-    """Write the bundled photograph, mirrored and tiled to 24 megapixels, with noise of its own everywhere."""
+def make_photograph(path: Path, width: int = WIDTH, height: int = HEIGHT) -> None:
+    """Write the bundled photograph, mirrored and tiled to a size, with noise of its own everywhere."""
     pixels = np.asarray(oiio.ImageBuf(str(PLATE)).get_pixels(oiio.UINT8))
     pair = np.concatenate([pixels, pixels[:, ::-1]], axis=1)
     tile = np.concatenate([pair, pair[::-1]], axis=0)
-    rows, columns = -(-HEIGHT // tile.shape[0]), -(-WIDTH // tile.shape[1])
-    large = np.tile(tile, (rows, columns, 1))[:HEIGHT, :WIDTH]
+    rows, columns = -(-height // tile.shape[0]), -(-width // tile.shape[1])
+    large = np.tile(tile, (rows, columns, 1))[:height, :width]
     noise = np.random.default_rng(0).normal(0, 1.5, large.shape)
     codes = np.clip(np.rint(large + noise), 0, 255).astype(np.uint8)
-    spec = oiio.ImageSpec(WIDTH, HEIGHT, 3, oiio.UINT8)
+    spec = oiio.ImageSpec(width, height, 3, oiio.UINT8)
     spec["Compression"] = "jpeg:92"
     image = oiio.ImageBuf(spec)
     image.set_pixels(image.roi, codes)

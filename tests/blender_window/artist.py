@@ -1,0 +1,139 @@
+"""An artist at a Blender: opens plates, finds a button under the mouse and presses it, waits until a run has ended."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from tests.blender_window.screen import Box, Picture
+from tests.blender_window.session import LAST, Blender
+
+#: The buttons of the panel, as Blender writes their Python commands.
+ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response("
+SHOW_LINEAR, RESTART = "bpy.ops.crf.compare(is_after=True", "bpy.ops.crf.save_and_restart("
+CANCEL = "bpy.ops.crf.cancel_run("
+
+#: Height of a button in pixels at a scale of 1, at least; the mouse looks for buttons in half of it.
+BUTTON = 16
+
+#: Where in the width of the sidebar buttons are looked for.
+COLUMNS = (0.5, 0.3, 0.75, 0.83)
+
+#: Seconds that a run and everything else may take.
+RUN, MOMENT = 300, 60
+
+
+class Artist:
+    """Works in the Image Editor of a Blender.
+
+    Parameters
+    ----------
+    blender : Blender
+        The running Blender.
+    scale : float
+        The scale of the interface.
+    theme : {"dark", "light"}
+        The theme.
+    keep : callable
+        Keeps a picture under a name: what is shown when waiting was in vain.
+    """
+
+    def __init__(self, blender: Blender, *, scale: float, theme: str, keep: Callable[[Picture, str], Any]) -> None:
+        self.blender, self.call, self.value = blender, blender.call, blender.value
+        self.screen, self._scale, self._keep = blender.screen, scale, keep
+        self.call("editors.look", scale=scale, theme=theme)
+
+    def open(self, path: Path, *, alone: bool = True, **options: Any) -> str:
+        """Open an image in the Image Editor, the panel beside it; return its name."""
+        if not self.value("[area for area in editors.window().screen.areas if area.type == 'IMAGE_EDITOR'] and 1"):
+            self.call("editors.show", "IMAGE_EDITOR", alone=alone)
+            self.settle()
+        name = self.call("plates.open_image", str(path), **options)
+        self.settle()
+        self.call("editors.show_tab", "IMAGE_EDITOR")
+        self.settle()
+        return name
+
+    def settle(self) -> None:
+        """Move the mouse over the picture, so that Blender draws, and wait until it has drawn."""
+        x, y = self.screen.width // 3, self.screen.height // 2
+        for step in (0, 4, 8):
+            self.screen.move(x + step, y)
+        before = None
+        for _ in range(20):
+            time.sleep(0.25)
+            shown = self.screen.picture().rgb
+            if shown == before:
+                return
+            before = shown
+
+    def sidebar(self, editor: str = "IMAGE_EDITOR") -> Box:
+        """Return where the sidebar of an editor is."""
+        return Box(*self.call("editors.box", editor, "UI"))
+
+    def status_bar(self) -> Box:
+        """Return where the status bar has hints and messages; its right end has the version."""
+        height = round(18 * self._scale)
+        return Box(0, self.screen.height - height, self.screen.width * 3 // 4, height)
+
+    def picture(self, box: Box | None = None) -> Picture:
+        """Return what is shown now."""
+        return self.screen.picture(box)
+
+    def find(self, command: str, *, row: int | None = None) -> tuple[int, int]:
+        """Return the middle of the button of a command in the sidebar, or near a row of it if one is given.
+
+        Raises
+        ------
+        LookupError
+            If there is none.
+        """
+        box, step = self.sidebar(), round(BUTTON * self._scale / 2)
+        first, last = (box.y + step, box.y + box.height) if row is None else (row - 2 * step, row + 2 * step)
+        for column in COLUMNS:
+            x = box.x + round(column * box.width)
+            rows = []
+            for y in range(first, last, step):
+                self.screen.move(x, y)
+                if self.call("editors.button", "IMAGE_EDITOR", "UI").startswith(command):
+                    rows.append(y)
+                elif rows:
+                    break
+            if rows:
+                return x, (rows[0] + rows[-1]) // 2
+        raise LookupError(f"there is no button {command}...) in the sidebar")
+
+    def press(self, command: str = ESTIMATE) -> float:
+        """Press a button of the sidebar; return the time of the click in seconds, by `time.monotonic`."""
+        return self.screen.click(*self.find(command))
+
+    def start(self, command: str = ESTIMATE) -> float:
+        """Press a button that starts a run, and wait until it runs; return the time of the click."""
+        position = self.find(command)
+        self.call("runs.watch")
+        clicked = self.screen.click(*position)
+        self.wait(lambda: self.call("runs.has_started"), "the run starts", MOMENT)
+        return clicked
+
+    def run(self, command: str = ESTIMATE) -> float:
+        """Press a button that starts a run, and wait until it has ended; return how long it took in seconds."""
+        clicked = self.start(command)
+        return self.wait_for_end() - clicked
+
+    def wait_for_end(self) -> float:
+        """Wait until the run has ended; return when that was, by `time.monotonic`."""
+        self.wait(lambda: self.call("runs.ended") is not None, "the run ends", RUN)
+        return self.call("runs.ended")
+
+    def wait(self, condition: Callable[[], Any], what: str, seconds: float = MOMENT) -> None:
+        """Wait until a condition holds; TimeoutError if it takes longer."""
+        deadline = time.monotonic() + seconds
+        while not condition():
+            if time.monotonic() > deadline:
+                kept = self._keep(self.picture(), f"waited_in_vain_{time.time_ns()}")
+                raise TimeoutError(
+                    f"waited {seconds} s: {what} (see {kept}); Blender says: {self.blender.printed[-LAST:]}"
+                )
+            time.sleep(0.05)

@@ -1,0 +1,107 @@
+"""The add-on's runs: install and remove it, start it as a script does, see whether it runs and when it ended."""
+
+from __future__ import annotations
+
+import time
+from typing import Any
+
+import bpy
+import editors
+
+#: The add-on's identifier, and its module once it is installed.
+IDENTIFIER, MODULE = "crf_response", "bl_ext.user_default.crf_response"
+
+#: Seconds between two looks at whether a run has ended: at every turn of Blender's main loop, so that none is missed.
+INTERVAL = 0.0
+
+#: When the run that was watched was first and last seen, and when it was seen to have ended, by `time.monotonic`.
+_times: dict[str, float] = {}
+
+
+def install(path: str) -> bool:
+    """Install the extension from its zip, as by dropping it on the window; return whether it is enabled."""
+    bpy.ops.extensions.package_install_files(filepath=path, repo="user_default", enable_on_install=True)
+    bpy.ops.wm.save_userpref()
+    return MODULE in bpy.context.preferences.addons
+
+
+def uninstall() -> None:
+    """Uninstall the extension, as by its button in the preferences."""
+    repositories = [repository.module for repository in bpy.context.preferences.extensions.repos]
+    bpy.ops.extensions.package_uninstall(repo_index=repositories.index("user_default"), pkg_id=IDENTIFIER)
+    bpy.ops.wm.save_userpref()
+
+
+def disable() -> None:
+    """Disable the add-on, as by its checkbox in the preferences."""
+    bpy.ops.preferences.addon_disable(module=MODULE)
+
+
+def running() -> list[str]:
+    """Return the add-on's operators that run in the window."""
+    return [found.bl_idname for found in editors.window().modal_operators if found.bl_idname.startswith("CRF_OT")]
+
+
+def can_run(operator: str = "estimate_response") -> bool:
+    """Return whether an operator of the add-on may be started in the Image Editor."""
+    with editors.context("IMAGE_EDITOR"):
+        return getattr(bpy.ops.crf, operator).poll()
+
+
+def why_not(operator: str = "estimate_response") -> str:
+    """Return what Blender says if an operator of the add-on cannot be started in the Image Editor."""
+    with editors.context("IMAGE_EDITOR"):
+        try:
+            getattr(bpy.ops.crf, operator)("EXEC_DEFAULT")
+        except RuntimeError as problem:
+            return str(problem)
+    return ""
+
+
+def script(**options: Any) -> float:
+    """Estimate as a script does, and return the time in seconds."""
+    with editors.context("IMAGE_EDITOR"):
+        start = time.monotonic()
+        bpy.ops.crf.estimate_response("EXEC_DEFAULT", True, **options)
+        return time.monotonic() - start
+
+
+def watch() -> None:
+    """Note when the next run starts and ends."""
+    _times.clear()
+
+    def look() -> float | None:
+        if running():
+            _times.setdefault("started", time.monotonic())
+        elif "started" in _times:
+            _times["ended"] = time.monotonic()
+            return None
+        return INTERVAL
+
+    bpy.app.timers.register(look)
+
+
+def has_started() -> bool:
+    """Return whether the run that is watched was seen."""
+    return "started" in _times
+
+
+def ended() -> float | None:
+    """Return when the run that is watched ended, by `time.monotonic`; None before that."""
+    return _times.get("ended")
+
+
+def last_registered() -> dict[str, Any] | None:
+    """Return the properties of the add-on's last operator as the redo panel shows them; None if it shows none of it."""
+    registered = [found for found in bpy.context.window_manager.operators if "REGISTER" in found.bl_options]
+    if not registered or not registered[-1].bl_idname.startswith("CRF_OT"):
+        return None
+    properties = registered[-1].properties
+    names = [found.identifier for found in properties.bl_rna.properties if found.identifier != "rna_type"]
+    return {name: getattr(properties, name) for name in names}
+
+
+def quit() -> None:
+    """End Blender, without a question."""
+    with bpy.context.temp_override(window=editors.window()):
+        bpy.ops.wm.quit_blender()

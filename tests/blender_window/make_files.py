@@ -1,0 +1,69 @@
+"""Make the plates of the cases, and let the `crfnet` command estimate them.
+
+``python -m tests.blender_window.make_files FOLDER`` runs in the project's own environment, beforehand, because a
+Blender's Python need not have it.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import shutil
+import sys
+from pathlib import Path
+
+import numpy as np
+
+from ocio.cli import main as crfnet
+from tests import bench
+from tests.helpers.images import read_image, write_image
+
+#: The bundled photograph.
+PLATE = Path(__file__).resolve().parent.parent / "data" / "plate.jpg"
+
+#: Plates whose estimate and linear values are compared with those of the add-on.
+COMPARED = ("plate.jpg", "a/IMG_0001.jpg", "b/IMG_0001.jpg")
+
+#: Size of the large plate, 12 megapixels.
+LARGE = (4000, 3000)
+
+
+def make_plates(folder: Path) -> None:
+    """Write the plates into a folder.
+
+    ``plate.jpg`` and ``a/IMG_0001.jpg`` are the bundled photograph, ``b`` and ``c`` have others of the same name with
+    another response. ``numbers`` and ``shot`` are sequences, ``log.png`` is the photograph on a logarithmic
+    scale, which no camera's response explains, and ``large.jpg`` has 12 megapixels.
+    """
+    for name in ("a", "b", "c", "numbers", "shot"):
+        (folder / name).mkdir(parents=True, exist_ok=True)
+    shutil.copyfile(PLATE, folder / "plate.jpg")
+    shutil.copyfile(PLATE, folder / "a" / "IMG_0001.jpg")
+    codes = np.rint(read_image(PLATE) * 255)[..., :3].astype(np.uint8)
+    for name, power in (("b", 1.5), ("c", 0.8)):
+        bent = np.rint(255 * (codes / 255) ** power).astype(np.uint8)
+        write_image(folder / name / "IMG_0001.jpg", bent, Compression="jpeg:95")
+    for number in range(1, 5):
+        frame = np.roll(codes, 8 * number, axis=1)
+        write_image(folder / "numbers" / f"{number:04d}.jpg", frame, Compression="jpeg:95")
+        write_image(folder / "shot" / f"shot.{1000 + number}.jpg", frame, Compression="jpeg:95")
+    logarithm = np.rint(255 / 8 * np.log2(1.0 + codes)).astype(np.uint8)
+    write_image(folder / "log.png", logarithm)
+    bench.make_photograph(folder / "large.jpg", *LARGE)
+
+
+def main(folder: Path) -> int:
+    """Write the plates, and what the command says of them, into a folder; return the exit code of the command."""
+    make_plates(folder / "plates")
+    for name in COMPARED:
+        out = folder / "expected" / Path(name).with_suffix("")
+        arguments = ["estimate", str(folder / "plates" / name), "--out", str(out), "--depth", "float", "--no-sheet"]
+        with contextlib.redirect_stdout(io.StringIO()):
+            code = crfnet([*arguments, "--overwrite"])
+        if code:
+            return code
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(Path(sys.argv[1])))

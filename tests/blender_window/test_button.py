@@ -1,0 +1,63 @@
+"""The button in the Image Editor: its numbers are those of the `crfnet` command, Esc and undo leave nothing behind."""
+
+from __future__ import annotations
+
+from tests.blender_window.base import BAKED, NODES, WindowTest, report
+
+PLATE = "plate.jpg"
+
+
+class TestButton(WindowTest):
+    def setUp(self):
+        super().setUp()
+        self.artist = self.start()
+        self.name = self.artist.open(self.plate(PLATE))
+
+    def test_the_stored_estimate_is_that_of_the_command(self):
+        self.artist.call("plates.choose", self.name, apply="NODES")
+        self.artist.run()
+        self.artist.settle()
+        self.keep(self.artist.picture(), "button_nodes")
+        stored, expected = self.artist.call("plates.stored", self.name), report(PLATE)
+        self.assertEqual(stored["verdict"], expected["verdict"])
+        self.assertAlmostEqual(stored["uncertainty"], expected["uncertainty"], places=4)
+        for found, wanted in zip(stored["brightness"], expected["response"]["brightness"], strict=True):
+            self.assertAlmostEqual(found, wanted, places=4)
+
+    def test_nodes_give_the_linear_values_of_the_command(self):
+        self.artist.call("plates.choose", self.name, apply="NODES")
+        self.artist.run()
+        rendered = self.artist.call("plates.render", self.name, str(self.folder / "rendered.exr"))
+        self.assert_linear(self.artist, rendered, PLATE, NODES)
+
+    def test_baked_files_hold_the_linear_values_of_the_command(self):
+        self.artist.call("plates.choose", self.name, apply="BAKE", depth="float")
+        self.artist.run()
+        self.artist.settle()
+        self.keep(self.artist.picture(), "button_bake")
+        (baked,) = (self.folder / "project").glob("*.exr")
+        self.assert_linear(self.artist, baked, PLATE, BAKED)
+
+    def test_esc_cancels_and_changes_nothing(self):
+        name = self.artist.open(self.plate("large.jpg"))
+        self.artist.call("plates.choose", name, apply="NODES")
+        before = self.artist.call("plates.state")
+        self.artist.start()
+        self.artist.screen.key("Escape")
+        self.artist.wait_for_end()
+        self.assertEqual(self.artist.call("plates.state"), before)
+        self.assertIsNone(self.artist.call("plates.stored", name))
+
+    def test_one_undo_takes_all_back_and_redo_brings_it(self):
+        self.artist.call("plates.choose", self.name, apply="NODES")
+        before = self.artist.call("plates.state")
+        self.artist.run()
+        after = self.artist.call("plates.state")
+        self.assertNotEqual(after, before)
+        self.artist.settle()
+        self.artist.screen.key("ctrl+z")
+        self.artist.settle()
+        self.assertEqual(self.artist.call("plates.state"), before)
+        self.artist.screen.key("ctrl+shift+z")
+        self.artist.settle()
+        self.assertEqual(self.artist.call("plates.state"), after)

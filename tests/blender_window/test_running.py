@@ -1,0 +1,136 @@
+"""What is shown while the response is estimated, and afterwards."""
+
+from __future__ import annotations
+
+import time
+
+from tests.blender_window.artist import APPLY, CANCEL, ESTIMATE, RESTART
+from tests.blender_window.base import WindowTest
+
+#: Fraction of the sidebar's pixels that may differ where nothing is to be drawn: the highlight of a button.
+HIGHLIGHT = 0.03
+
+#: Seconds after which the report of an operator has gone from the status bar.
+REPORT = 15
+
+
+class TestRunning(WindowTest):
+    def start_with(self, plate, **settings):
+        """Return an artist with a plate open, its settings chosen, and the name of its image."""
+        alone = settings.pop("alone", True)
+        artist = self.start()
+        name = artist.open(self.plate(plate), alone=alone)
+        artist.call("plates.choose", name, **settings)
+        artist.settle()
+        return artist, name
+
+    def test_the_redo_panel_shows_what_was_done_or_is_not_there(self):
+        folder = self.folder / "look"
+        settings = {"apply": "EXPORT", "anchor": "GRAY", "gray": 0.4, "exposure": 1.0, "folder": str(folder)}
+        artist, _ = self.start_with("plate.jpg", **settings)
+        artist.run()
+        artist.settle()
+        artist.screen.key("F9")
+        time.sleep(1)
+        self.keep(artist.picture(), "redo_panel")
+        shown = artist.call("runs.last_registered")
+        for name, value in settings.items() if shown is not None else ():
+            with self.subTest(name):
+                (self.assertAlmostEqual if isinstance(value, float) else self.assertEqual)(shown[name], value)
+
+    def test_the_panel_shows_the_estimate_although_the_mouse_rests(self):
+        for apply in ("EXPORT", "COLORSPACE"):
+            with self.subTest(apply):
+                artist, _ = self.start_with("plate.jpg", apply=apply, folder=str(self.folder / "look"))
+                artist.run()
+                time.sleep(2)
+                shown = artist.picture(artist.sidebar())
+                artist.settle()
+                artist.call("editors.redraw")
+                artist.settle()
+                drawn = artist.picture(artist.sidebar())
+                self.keep(shown, f"after_{apply.lower()}_mouse_at_rest")
+                self.assertLess(shown.difference(drawn), HIGHLIGHT)
+                artist.blender.quit()
+
+    def test_the_panel_offers_the_restart_that_is_due(self):
+        artist, name = self.start_with("plate.jpg", apply="COLORSPACE")
+        artist.run()
+        file = self.save(artist)
+        artist.settle()
+        artist.find(RESTART)
+        artist.blender.quit()
+        artist = self.start(file)
+        artist.call("editors.show", "IMAGE_EDITOR")
+        artist.call("plates.show_image", name)
+        artist.call("editors.show_tab", "IMAGE_EDITOR")
+        artist.settle()
+        with self.assertRaises(LookupError):
+            artist.find(RESTART)
+
+    def test_the_status_bar_is_as_before_after_a_change_of_workspace(self):
+        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"), alone=False)
+        before = artist.picture(artist.status_bar())
+        artist.start()
+        usual = artist.call("editors.change_workspace", "Modeling")
+        artist.settle()
+        artist.wait_for_end()
+        artist.call("editors.change_workspace", usual)
+        self.assert_status_bar_is(artist, before, "status_after_workspace")
+
+    def test_the_status_bar_is_as_before_after_the_add_on_was_disabled(self):
+        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        before = artist.picture(artist.status_bar())
+        artist.start()
+        artist.call("runs.disable")
+        self.assert_status_bar_is(artist, before, "status_after_disabling")
+
+    def test_one_run_at_a_time_which_the_panel_can_cancel(self):
+        artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        position = artist.find(ESTIMATE)
+        artist.start()
+        artist.screen.click(*position)
+        self.assertEqual(len(artist.call("runs.running")), 1)
+        self.assertFalse(artist.call("runs.can_run"))
+        self.keep(artist.picture(), "running")
+        artist.wait_for_end()
+        artist.settle()
+        self.assertTrue(artist.call("runs.can_run"))
+
+    def test_the_cancel_button_of_the_panel_cancels(self):
+        artist, name = self.start_with("large.jpg", apply="BAKE", folder=str(self.folder / "look"))
+        _, row = artist.find(ESTIMATE)
+        artist.start()
+        artist.screen.click(*artist.find(CANCEL, row=row))
+        artist.wait_for_end()
+        self.assertIsNone(artist.call("plates.stored", name))
+
+    def test_frames_that_were_opened_as_tiles_are_explained_or_read(self):
+        artist = self.start()
+        frames = self.plate("shot")
+        names = tuple(sorted(path.name for path in frames.iterdir()))
+        name = artist.open(frames / names[0], names=names, sequence=True)
+        self.keep(artist.picture(), "tiles")
+        self.assertEqual(artist.value(f"bpy.data.images[{name!r}].source"), "TILED")
+        if not artist.call("runs.can_run"):
+            self.assertIn("Image Sequence", artist.call("runs.why_not"))
+
+    def test_apply_is_offered_once_there_is_an_estimate(self):
+        artist, _ = self.start_with("plate.jpg", apply="EXPORT", folder=str(self.folder / "look"))
+        with self.assertRaises(LookupError):
+            artist.find(APPLY)
+        artist.run()
+        artist.settle()
+        artist.find(APPLY)
+
+    def assert_status_bar_is(self, artist, before, name):
+        """Assert that the status bar becomes what it was, once the report of the operator has gone."""
+        deadline = time.monotonic() + REPORT
+        while time.monotonic() < deadline:
+            artist.settle()
+            shown = artist.picture(artist.status_bar())
+            if shown == before:
+                return
+        self.keep(before, f"{name}_before")
+        self.keep(shown, f"{name}_after")
+        self.fail("the status bar is not as before")
