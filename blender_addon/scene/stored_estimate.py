@@ -97,6 +97,11 @@ def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     datablock[KEY][name] = value
 
 
+def exposure(datablock: Datablock) -> float:
+    """Return the stops that the linear plate was given; 0 if that was not stored."""
+    return datablock[KEY].get(EXPOSURE, 0.0)
+
+
 def pending_color_space(datablock: Datablock | None) -> str:
     """Return the colour space that a plate waits for; an empty text if it waits for none."""
     return datablock[KEY].get(PENDING_COLOR_SPACE, "") if datablock is not None and is_stored(datablock) else ""

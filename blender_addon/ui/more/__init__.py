@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""What the sub-panel "More" offers beside the estimate.
+
+panel     the sub-panel
+add_look  "Add Camera Look" in the compositor
+"""

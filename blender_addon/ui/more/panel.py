@@ -1,0 +1,19 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The sub-panel "More", closed at first."""
+
+from __future__ import annotations
+
+import bpy
+
+from ...scene import plates, stored_estimate
+from .add_look import CRF_OT_add_look
+
+
+def draw_more(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw what can be done with the response of a plate beside applying it to this plate."""
+    if not stored_estimate.is_stored(datablock) or context.space_data.type != "NODE_EDITOR":
+        return
+    header, body = layout.panel("CRF_more", default_closed=True)
+    header.label(text="More")
+    if body is not None:
+        body.column(align=True).operator(CRF_OT_add_look.bl_idname, icon="CAMERA_DATA")
