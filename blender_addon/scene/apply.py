@@ -30,6 +30,8 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
+    if job.estimation.origin:
+        stored_estimate.set_entry(datablock, stored_estimate.ORIGIN, job.estimation.origin)
     remember_settings(datablock, job)
     if not completed.is_applied:
         return "nothing else was changed"

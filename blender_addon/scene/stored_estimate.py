@@ -30,6 +30,9 @@ LAYOUT, READABLE_LAYOUTS = 2, (1, 2)
 #: Blender has been started with the new config.
 EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
 
+#: The entry that says where a response comes from, in words, if it was not estimated from its plate.
+ORIGIN = "origin"
+
 #: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
 #: drawn without the estimator.
 DO_NOT_TRUST = "do not trust"
@@ -95,6 +98,11 @@ def restored(datablock: Datablock) -> ResponseEstimate:
 def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     """Set one more entry of the stored estimate."""
     datablock[KEY][name] = value
+
+
+def origin(datablock: Datablock) -> str:
+    """Return where the response comes from, in words; empty if it was estimated from the plate."""
+    return datablock[KEY].get(ORIGIN, "")
 
 
 def exposure(datablock: Datablock) -> float:

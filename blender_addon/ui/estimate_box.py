@@ -46,6 +46,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     row = column.row()
     row.alert = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
     row.label(text=word, icon=icon)
+    if origin := stored_estimate.origin(datablock):
+        draw_text(column, origin, letters)
     if row.alert:
         draw_text(column, "Nothing else was changed.", letters)
     stops = stored_estimate.expected_stops(datablock)

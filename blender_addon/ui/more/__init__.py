@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What the sub-panel "More" offers beside the estimate.
 
-panel     the sub-panel
-add_look  "Add Camera Look" in the compositor
+panel         the sub-panel
+add_look      "Add Camera Look" in the compositor
+other_plates  "Apply to Other Plates"
 """
