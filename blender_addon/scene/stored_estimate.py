@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import lazy_import
+from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
@@ -100,6 +101,11 @@ def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     datablock[KEY][name] = value
 
 
+def is_loaded(datablock: Datablock) -> bool:
+    """Return whether the response was loaded from a LUT file, so that it has no verdict."""
+    return datablock[KEY]["model"].startswith(LOADED)
+
+
 def origin(datablock: Datablock) -> str:
     """Return where the response comes from, in words; empty if it was estimated from the plate."""
     return datablock[KEY].get(ORIGIN, "")
@@ -127,4 +133,6 @@ def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> s
 def fingerprint(datablock: Datablock) -> str:
     """Return a text that differs between different estimates."""
     entries = datablock[KEY]
+    if is_loaded(datablock):
+        return f"{entries['model']} {hash(tuple(entries['brightness'].to_list()))}"
     return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"

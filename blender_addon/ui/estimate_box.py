@@ -41,6 +41,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     """Draw the stored estimate of a plate in one box."""
     letters = letters_of(context)
     word, icon = VERDICTS[stored_estimate.verdict(datablock)]
+    if stored_estimate.is_loaded(datablock):
+        word, icon = "Loaded", "FILE"
     box = layout.box()
     column = box.column(align=True)
     row = column.row()

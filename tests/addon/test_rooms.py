@@ -20,6 +20,7 @@ REGISTERED = (
     "handlers",
     "image_tools",
     "more.add_look",
+    "more.load_lut",
     "more.other_plates",
     "more.panel",
     "operators",

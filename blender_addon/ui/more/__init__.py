@@ -3,5 +3,6 @@
 
 panel         the sub-panel
 add_look      "Add Camera Look" in the compositor
+load_lut      "Load Response from LUT"
 other_plates  "Apply to Other Plates"
 """
