@@ -61,6 +61,12 @@ def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, ch
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
 
 
+def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
+    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
+    _, node = look(write_image(tmp_path / "deep.png", samples))
+    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - samples / 65535).max() < ROUND_TRIP
+
+
 def test_it_undoes_it_under_alpha(look, composited, tmp_path, codes):
     alpha = np.random.default_rng(1).integers(1, 256, (256, 256, 1)).astype(np.uint8)
     path = write_image(tmp_path / "cut_out.png", np.concatenate([codes, alpha], axis=2), oiio__UnassociatedAlpha=1)
