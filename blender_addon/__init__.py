@@ -39,6 +39,7 @@ def _registered() -> tuple[ModuleType, ...]:
         plate_settings,
         preferences,
     )
+    from .ui.more import add_look, load_lut, other_plates
 
-    tools = (operators, image_tools, photographs, config_operators)
+    tools = (operators, image_tools, photographs, config_operators, add_look, load_lut, other_plates)
     return (preferences, plate_settings, *tools, estimate_box, panel, handlers)

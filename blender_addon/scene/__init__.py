@@ -7,6 +7,8 @@ decode_frames     a script for another Blender: frames of movies and images as P
 stored_estimate   the estimate as a custom property of its image or clip
 apply             what a completed job changes
 node_group        the inverse response as a compositor node group
+look_group        the response as a compositor node group: from scene-linear light to the look of the plate
+node_building     nodes from which the two groups are built
 compositor        where the node group goes in the compositor
 node_links        which nodes lie behind a node
 code_values       the copy of a plate that the compositor reads, in place of what Blender linearizes

@@ -12,7 +12,7 @@ from ocio.configs.installed import Installed
 from ..work.job import Job
 from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
-from . import color_management, compositor, node_group, stored_estimate
+from . import color_management, compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
 from .plates import Datablock, datablock_of_plate
 
@@ -30,9 +30,12 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
+    if job.estimation.origin:
+        stored_estimate.set_entry(datablock, stored_estimate.ORIGIN, job.estimation.origin)
     remember_settings(datablock, job)
     if not completed.is_applied:
         return "the plate was not changed"
+    look_group.update_look(datablock, completed.estimate.curve, completed.stops)
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)
@@ -74,7 +77,7 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         exposure=completed.stops,
         timing=compositor.timing_of(context, datablock, completed.frames),
     )
-    compositor.apply_group(_tree(context), wanted)
+    compositor.apply_group(shown_tree(context), wanted)
     return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before'
 
 
@@ -174,7 +177,7 @@ def _path_like(plate: Datablock, path: str) -> str:
     return bpy.path.relpath(path) if plate.filepath.startswith("//") and bpy.data.filepath else path
 
 
-def _tree(context: bpy.types.Context) -> bpy.types.NodeTree:
+def shown_tree(context: bpy.types.Context) -> bpy.types.NodeTree:
     """Return the compositor tree that the node editor shows, or the scene's if no node editor is active."""
     space = context.space_data
     if (

@@ -24,10 +24,16 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.output_files import distinct_names
 
 from .color_management import color_spaces, data_space, running_config
+from .node_building import (
+    IS_BLENDER_5,
+    NodeGrid,
+    combine_node,
+    convert_color_space,
+    map_uv,
+    math_node,
+    multiply_by_alpha,
+)
 from .plates import Datablock
-
-#: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
-IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: Width and height of the LUT image.
 SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
@@ -35,14 +41,6 @@ SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
 #: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
 #: earlier versions, the plate's name, which two plates may share.
 PLATE = "camera_response_of"
-
-#: Nodes that Blender 5.0 replaced by those of shaders.
-_MATH, _COMBINE = (
-    ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
-)
-
-#: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
-_COLUMN, _ROW = 190, -230
 
 _CHANNELS = ("Red", "Green", "Blue")
 
@@ -67,7 +65,9 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
         If the config has no linear Rec.709, the colour space to which the inverse response leads.
     """
     source = linear_rec709()
-    group = _of_plate(bpy.data.node_groups, plate) or _new_group(plate, name)
+    group = made_for(plate, bpy.data.node_groups)
+    if group is None:
+        group = new_group(plate, f"Camera Response {name}", PLATE, "Stops added to the linear plate")
     group.nodes.clear()
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
@@ -101,23 +101,40 @@ def working_space() -> str:
     return "scene_linear" if "scene_linear" in kinds else role_name(running_config(), OCIO.ROLE_SCENE_LINEAR)
 
 
-def _new_group(plate: Datablock, name: str) -> bpy.types.NodeTree:
-    """Return a node group that has sockets and no nodes."""
-    names = distinct_names(f"Camera Response {name}", Path(bpy.path.abspath(plate.filepath)).parent.name)
+def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.types.NodeTree:
+    """Return a plate's new node group, which has sockets and no nodes.
+
+    Parameters
+    ----------
+    plate : Image or MovieClip
+        The plate.
+    title : str
+        The name of the group; if there is such a group already, the folder of the plate is added.
+    mark : str
+        The custom property by which the group is found again; its value is the plate.
+    exposure : str
+        The description of the Exposure socket.
+    """
+    names = distinct_names(title, Path(bpy.path.abspath(plate.filepath)).parent.name)
     free = next(name for name in names if name not in bpy.data.node_groups)
     group = bpy.data.node_groups.new(free, "CompositorNodeTree")
-    group[PLATE] = plate
+    group[mark] = plate
     group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
-    exposure = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
-    exposure.description = "Stops added to the linear plate"
-    exposure.min_value, exposure.max_value = -20, 20
+    stops = group.interface.new_socket("Exposure", in_out="INPUT", socket_type="NodeSocketFloat")
+    stops.description = exposure
+    stops.min_value, stops.max_value = -20, 20
     return group
+
+
+def made_for(plate: Datablock, collection: bpy.types.bpy_prop_collection, mark: str = PLATE) -> bpy.types.ID | None:
+    """Return the node group or image that was made for a plate; not one linked from another file."""
+    return next((item for item in collection if item.get(mark) == plate and item.library is None), None)
 
 
 def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.Image:
     """Return the packed image of a plate's LUT, which the leading dot of its name hides; an earlier one is updated."""
-    image = _of_plate(bpy.data.images, plate)
+    image = made_for(plate, bpy.data.images)
     if image is not None and tuple(image.size) != SIZE:
         bpy.data.images.remove(image)
         image = None
@@ -134,17 +151,12 @@ def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.I
     return image
 
 
-def _of_plate(collection: bpy.types.bpy_prop_collection, plate: Datablock) -> bpy.types.ID | None:
-    """Return the node group or image that was made for a plate; not one linked from another file."""
-    return next((item for item in collection if item.get(PLATE) == plate and item.library is None), None)
-
-
 def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> None:
     """Add the nodes: a look-up for each channel, exposure, multiplication by alpha, conversion to the working space.
 
     The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored.
     """
-    grid = _NodeGrid(group)
+    grid = NodeGrid(group)
     start = grid.node("NodeGroupInput", 0)
     table = grid.node("CompositorNodeImage", 3, row=-1)
     table.image = lut
@@ -158,90 +170,33 @@ def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> 
     exposed = grid.node("CompositorNodeExposure", 7)
     grid.link(join.outputs[0], exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
-    premultiplied = _multiply_by_alpha(grid, exposed.outputs[0], 8)  # before the conversion, which is a matrix: faster
+    premultiplied = multiply_by_alpha(grid, exposed.outputs[0], 8)  # before the conversion, which is a matrix: faster
     end = grid.node("NodeGroupOutput", 10)
-    grid.link(_convert_to_working_space(grid, source, premultiplied, 9), end.inputs["Image"])
+    grid.link(convert_color_space(grid, source, working_space(), premultiplied, 9), end.inputs["Image"])
 
 
 def _look_up(
-    grid: _NodeGrid, table: bpy.types.NodeSocket, position: bpy.types.NodeSocket, row: int
+    grid: NodeGrid, table: bpy.types.NodeSocket, position: bpy.types.NodeSocket, row: int
 ) -> bpy.types.NodeSocket:
     """Return the socket of a channel's irradiance, gray as the LUT image, which is read at a position in [0, 1]."""
-    look_up = grid.node("CompositorNodeMapUV", 5, row=row)
+    look_up = map_uv(grid, table, position, 5, row)
     if IS_BLENDER_5:
         look_up.inputs["Interpolation"].default_value = "Bilinear"
-        look_up.inputs["Extension X"].default_value = look_up.inputs["Extension Y"].default_value = "Extend"
-    else:
-        look_up.filter_type = "NEAREST"
-    grid.link(table, look_up.inputs["Image"])
-    grid.link(position, look_up.inputs["UV"])
     return look_up.outputs[0]
 
 
-def _position(grid: _NodeGrid, brightness: bpy.types.NodeSocket, row: int) -> bpy.types.NodeSocket:
+def _position(grid: NodeGrid, brightness: bpy.types.NodeSocket, row: int) -> bpy.types.NodeSocket:
     """Return the socket of the position (u, v) of a brightness, clamped to [0, 1], in the LUT image."""
-    clamped = _math(grid, "ADD", 2, row, brightness, 0)
+    clamped = math_node(grid, "ADD", 2, row, brightness, 0)
     clamped.node.use_clamp = True
-    vector = grid.node(_COMBINE, 4, row=row)
-    vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
+    vector = combine_node(grid, 4, row)
     if IS_BLENDER_5:
         length = SIZE[0]
-        u = _math(grid, "MULTIPLY_ADD", 3, row, clamped, (length - 1) / length, 0.5 / length)
+        u = math_node(grid, "MULTIPLY_ADD", 3, row, clamped, (length - 1) / length, 0.5 / length)
     else:
-        scaled = _math(grid, "MULTIPLY_ADD", 2.5, row, clamped, 65535 / 256, 0.5 / 256)
-        u = _math(grid, "FRACT", 3, row, scaled)
-        line = _math(grid, "FLOOR", 3, row + 0.5, scaled)
-        grid.link(_math(grid, "MULTIPLY_ADD", 3.5, row + 0.5, line, 1 / 256, 0.5 / 256), vector.inputs["Y"])
+        scaled = math_node(grid, "MULTIPLY_ADD", 2.5, row, clamped, 65535 / 256, 0.5 / 256)
+        u = math_node(grid, "FRACT", 3, row, scaled)
+        line = math_node(grid, "FLOOR", 3, row + 0.5, scaled)
+        grid.link(math_node(grid, "MULTIPLY_ADD", 3.5, row + 0.5, line, 1 / 256, 0.5 / 256), vector.inputs["Y"])
     grid.link(u, vector.inputs["X"])
     return vector.outputs[0]
-
-
-def _math(
-    grid: _NodeGrid, operation: str, column: float, row: float, value: bpy.types.NodeSocket, *numbers: float
-) -> bpy.types.NodeSocket:
-    """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-    node = grid.node(_MATH, column, row=row)
-    node.operation = operation
-    grid.link(value, node.inputs[0])
-    for place, number in enumerate(numbers, 1):
-        node.inputs[place].default_value = number
-    return node.outputs[0]
-
-
-def _convert_to_working_space(
-    grid: _NodeGrid, space: str, colors: bpy.types.NodeSocket, column: int
-) -> bpy.types.NodeSocket:
-    """Return the socket of colours that are converted from a colour space to the scene's working space."""
-    node = grid.node("CompositorNodeConvertColorSpace", column)
-    node.from_color_space = space
-    node.to_color_space = working_space()
-    grid.link(colors, node.inputs["Image"])
-    return node.outputs[0]
-
-
-def _multiply_by_alpha(grid: _NodeGrid, colors: bpy.types.NodeSocket, column: int) -> bpy.types.NodeSocket:
-    """Return the socket of colours that are multiplied by their alpha."""
-    node = grid.node("CompositorNodePremulKey", column)
-    if IS_BLENDER_5:
-        node.inputs["Type"].default_value = "To Premultiplied"
-    else:
-        node.mapping = "STRAIGHT_TO_PREMUL"
-    grid.link(colors, node.inputs["Image"])
-    return node.outputs[0]
-
-
-class _NodeGrid:
-    """A node tree whose nodes are placed in columns and rows."""
-
-    def __init__(self, tree: bpy.types.NodeTree) -> None:
-        self._tree = tree
-
-    def node(self, kind: str, column: float, *, row: float = 0) -> bpy.types.Node:
-        """Return a new node."""
-        node = self._tree.nodes.new(kind)
-        node.location = (_COLUMN * column, _ROW * row)
-        return node
-
-    def link(self, source: bpy.types.NodeSocket, target: bpy.types.NodeSocket) -> None:
-        """Link an output to an input."""
-        self._tree.links.new(source, target)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .. import lazy_import
+from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
@@ -29,6 +30,9 @@ LAYOUT, READABLE_LAYOUTS = 2, (1, 2)
 #: Entries that are set later: the exposure that was applied, in stops, and the colour space that the plate gets once
 #: Blender has been started with the new config.
 EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
+
+#: The entry that says where a response comes from, in words, if it was not estimated from its plate.
+ORIGIN = "origin"
 
 #: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
 #: drawn without the estimator.
@@ -102,6 +106,21 @@ def set_entry(datablock: Datablock, name: str, value: Any) -> None:
     datablock[KEY][name] = value
 
 
+def is_loaded(datablock: Datablock) -> bool:
+    """Return whether the response was loaded from a LUT file, so that it has no verdict."""
+    return datablock[KEY]["model"].startswith(LOADED)
+
+
+def origin(datablock: Datablock) -> str:
+    """Return where the response comes from, in words; empty if it was estimated from the plate."""
+    return datablock[KEY].get(ORIGIN, "")
+
+
+def exposure(datablock: Datablock) -> float:
+    """Return the stops that the linear plate was given; 0 if that was not stored."""
+    return datablock[KEY].get(EXPOSURE, 0.0)
+
+
 def pending_color_space(datablock: Datablock | None) -> str:
     """Return the colour space that a plate waits for; an empty text if it waits for none."""
     return datablock[KEY].get(PENDING_COLOR_SPACE, "") if datablock is not None and is_stored(datablock) else ""
@@ -119,4 +138,6 @@ def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> s
 def fingerprint(datablock: Datablock) -> str:
     """Return a text that differs between different estimates."""
     entries = datablock[KEY]
+    if is_loaded(datablock):
+        return f"{entries['model']} {hash(tuple(entries['brightness'].to_list()))}"
     return f"{entries['model']} {entries['uncertainty']!r} {entries['weights'].to_list()!r}"

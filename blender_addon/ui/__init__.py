@@ -11,6 +11,7 @@ photographs       further photographs of the same camera
 config_operators  what is in the OpenColorIO config: list it, take it out, restart
 plate_settings    what can be chosen for one plate
 preferences       what is chosen for every file
+more              the sub-panel "More": the look of the camera, other plates
 handlers          what happens when a .blend file is opened or saved, and at undo
 gather            the job of a plate, from its settings and the preferences
 """

@@ -49,6 +49,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     """Draw the stored estimate of a plate in one box."""
     letters = letters_of(context)
     word, icon, advice = _verdict_words(datablock)
+    if stored_estimate.is_loaded(datablock):
+        word, icon, advice = "Loaded", "FILE", ""
     box = layout.box()
     column = box.column(align=True)
     row = column.row()
@@ -56,6 +58,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     row.label(text=word, icon=icon)
     if advice:
         draw_text(column, advice, letters)
+    if origin := stored_estimate.origin(datablock):
+        draw_text(column, origin, letters)
     stops = stored_estimate.expected_stops(datablock)
     if math.isfinite(stops):
         column.label(text=f"Expected error {stops:.2f} stop")

@@ -12,6 +12,7 @@ from . import running
 from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_text, letters_of
 from .image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
+from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
 from .plate_settings import WITHOUT_FILES, is_applied, is_to_be_applied
@@ -122,6 +123,7 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     if stored_estimate.is_stored(datablock):
         _draw_apply(layout, context, datablock)
     draw_photographs(layout, settings)
+    draw_more(layout, context, datablock)
     _draw_advanced(layout, settings)
 
 

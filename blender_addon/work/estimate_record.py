@@ -43,10 +43,40 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "upper": estimate.band[1].tolist(),
         "window_photos": [w.photo for w in windows],
         "window_places": [n for w in windows for n in (w.window.x, w.window.y, w.window.step, w.window.filled)],
-        "window_weights": np.concatenate([w.weights for w in windows]).tolist(),
+        "window_weights": [weight for w in windows for weight in w.weights.tolist()],
         "window_errors": [w.expected_error for w in windows],
         "window_kept": [int(w.kept) for w in windows],
     }
+
+
+def loaded_estimate(curve: ResponseCurve, model: str) -> ResponseEstimate:
+    """Return a response that was not estimated, in the place of an estimate.
+
+    Its errors are NaN, its band has no width, and it has no windows and no families. Its verdict, which is not shown,
+    lets it be applied.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response.
+    model : str
+        Where it comes from, beginning with `wording.LOADED`.
+    """
+    return ResponseEstimate(
+        curve=curve,
+        weights=curve.brightness[:0],
+        windows=(),
+        uncertainty=math.nan,
+        shape_uncertainty=math.nan,
+        band=np.array([curve.brightness, curve.brightness]),
+        families={},
+        verdict=Verdict.USABLE,
+        prior="",
+        origins=(),
+        warnings=(),
+        model=model,
+        photos=(),
+    )
 
 
 def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
@@ -79,6 +109,8 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
 def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
     """Yield the estimate of each window."""
     count = len(entries["window_photos"])
+    if not count:
+        return
     positions = np.reshape(entries["window_places"], (count, -1)).tolist()
     weights = np.reshape(np.array(entries["window_weights"]), (count, -1))
     for n in range(count):

@@ -155,12 +155,15 @@ class Estimation:
         An earlier estimate, which is used instead of a new one.
     photographs : tuple of Plate
         Further photographs of the same camera with the same settings, which share the response.
+    origin : str
+        Where `stored` comes from, in words; empty if it was estimated from the plate.
     """
 
     options: EstimateOptions
     is_forced: bool
     stored: ResponseEstimate | None = None
     photographs: tuple[Plate, ...] = ()
+    origin: str = ""
 
 
 @dataclass(frozen=True, kw_only=True)

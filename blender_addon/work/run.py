@@ -11,6 +11,7 @@ from crfnet_core import ResponseEstimate
 from crfnet_core.errors import CRFNetError
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress
+from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.pipeline import (
     anchored_exposure,
     estimate_frames,
@@ -28,7 +29,7 @@ from .errors import AddonError, CancelledError
 from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 from .target_check import check_targets
-from .wording import panel_line
+from .wording import is_loaded, panel_line
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
@@ -67,6 +68,8 @@ class CompletedJob:
     @property
     def lines(self) -> tuple[str, ...]:
         """The verdict and the warnings in words, one line each."""
+        if is_loaded(self.estimate):
+            return (f"The response is {self.estimate.model}: this is no estimate, so there is no verdict.",)
         return tuple(map(panel_line, verdict_lines(self.estimate)))
 
     @property
@@ -128,9 +131,16 @@ def _completed(
     shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
-        lut = response_lut(estimate, length=job.output.lut_length)
+        lut = _lut(estimate, job.output.lut_length)
         files = writers.write(job, lut, stops, sequence, progress)
     return replace(completed, frames=sequence().numbers if shows_frames else (), files=files)
+
+
+def _lut(estimate: ResponseEstimate, length: int) -> Lut1D:
+    """Return the inverse response as a LUT that says where the response comes from."""
+    if is_loaded(estimate):
+        return inverse_response_lut(estimate.curve, length=length, comments=(f"Inverse response, {estimate.model}",))
+    return response_lut(estimate, length=length)
 
 
 def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> ResponseEstimate:

@@ -40,6 +40,15 @@ _SENTENCES = {
 }
 
 
+#: How the model of a response is named that was loaded from a LUT file, so that it is no estimate and has no verdict.
+LOADED = "loaded from "
+
+
+def is_loaded(estimate: ResponseEstimate) -> bool:
+    """Return whether a response was loaded from a LUT file."""
+    return estimate.model.startswith(LOADED)
+
+
 def american(text: str) -> str:
     """Return a message in American spelling; words that belong to a file or a quoted name stay as they are."""
     return " ".join(word if _NAME.search(word) else _BRITISH.sub(_spelled, word) for word in text.split(" "))
@@ -65,6 +74,8 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
 
     Blender cuts lines that are too long in their middle, so the advice behind the colon of a warning is left out.
     """
+    if is_loaded(estimate):
+        return f"{name}: the response is {estimate.model}; {done}"
     first, *others = estimate.warnings or ("",)
     finding = first.partition(": ")[0]
     warning = f" (warning: {finding}{f', and {len(others)} more' if others else ''})" if first else ""

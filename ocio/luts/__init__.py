@@ -1,9 +1,10 @@
 """Lookup tables: the table itself, and one module per file format.
 
-lut1d  the table, its interpolation in both directions, and the inverse response as a table
-text   the text of a LUT file: numbers and tables, with errors that name the line
-spi1d  Sony's .spi1d
-cube   the .cube format of Adobe and Resolve
-clf    the Academy's Common LUT Format
-files  read or write a LUT file of any of these formats, by its suffix
+lut1d     the table, its interpolation in both directions, and the inverse response as a table
+text      the text of a LUT file: numbers and tables, with errors that name the line
+spi1d     Sony's .spi1d
+cube      the .cube format of Adobe and Resolve
+clf       the Academy's Common LUT Format
+response  the response of a LUT of its inverse
+files     read or write a LUT file of any of these formats, by its suffix
 """

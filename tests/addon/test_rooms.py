@@ -19,6 +19,10 @@ REGISTERED = (
     "estimate_box",
     "handlers",
     "image_tools",
+    "more.add_look",
+    "more.load_lut",
+    "more.other_plates",
+    "more.panel",
     "operators",
     "panel",
     "photographs",
@@ -110,8 +114,9 @@ def test_what_is_registered_imports_no_estimator(addon_folder, module):
     assert of_work <= set(LIGHT)
 
 
-@pytest.mark.parametrize("room", ["ui", "scene", "work"])
+@pytest.mark.parametrize("room", ["ui", "ui/more", "scene", "work"])
 def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     modules = {path.stem for path in (addon_folder / room).glob("*.py")} - {"__init__"}
+    modules |= {path.parent.name for path in (addon_folder / room).glob("*/__init__.py")}
     text = ast.get_docstring(ast.parse((addon_folder / room / "__init__.py").read_text(encoding="utf-8")))
     assert {line.split()[0] for line in text.split("\n\n")[1].splitlines()} == modules

@@ -1,0 +1,192 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The response as a compositor node group, "Camera Look": from scene-linear light to the code values of the plate.
+
+A Map UV node for each channel reads the nearest pixel k of an image of the response, which holds f at sample k and the
+step to the next one; f is linear between its samples, so the result is exact. Then the code values are taken for sRGB
+and converted to the working space: the view transform Standard undoes this, on screen and in files that are saved with
+it. A second output has the code values themselves, for the view transform Raw.
+"""
+
+from __future__ import annotations
+
+import bpy
+import numpy as np
+
+from crfnet_core import ResponseCurve
+from crfnet_core.errors import ConfigError
+from crfnet_core.response import SAMPLES
+
+from .color_management import color_spaces, data_space
+from .node_building import (
+    NodeGrid,
+    combine_node,
+    convert_color_space,
+    divide_by_alpha,
+    map_uv,
+    math_node,
+    multiply_by_alpha,
+)
+from .node_group import is_group_of, linear_rec709, made_for, new_group, working_space
+from .node_links import compositor_trees
+from .plates import Datablock
+
+#: The custom property of these node groups and their images; its value is the plate's image or clip.
+LOOK = "camera_response_look_of"
+
+#: The output of the group with code values.
+CODE_VALUES = "Code Values"
+
+#: Names of sRGB, the encoding of displays, in common configs.
+SRGB = ("sRGB", "sRGB Encoded Rec.709 (sRGB)", "sRGB - Texture", "Utility - sRGB - Texture")
+
+#: Distance between the node and the output of the tree, in units of the node editor.
+_GAP, _WIDTH = 60, 220
+
+
+def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> None:
+    """Put the plate's "Camera Look <name>" before the output of a compositor tree, in place of an earlier one.
+
+    Parameters
+    ----------
+    tree : NodeTree
+        The compositor tree. If it has no output, the node is added and left alone.
+    plate : Image or MovieClip
+        The plate.
+    name : str
+        The plate's name.
+    curve : ResponseCurve
+        The plate's response.
+    exposure : float
+        The stops that the linear plate was given, which the look takes back. The Exposure of the plate's linearising
+        group counts instead, if this tree has it.
+
+    Raises
+    ------
+    ConfigError
+        If the config lacks linear Rec.709 or sRGB; nothing is changed then.
+    """
+    group = _build(plate, name, curve)
+    given = (node for node in tree.nodes if is_group_of(getattr(node, "node_tree", None), plate, name))
+    node = _node_before_output(tree)
+    node.node_tree = group
+    node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in given), exposure)
+    _link(tree, node)
+    for other in tree.nodes:
+        other.select = other == node
+    tree.nodes.active = node
+
+
+def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None:
+    """Bring the plate's look up to date, and every node of it in the file; nothing happens if it has none."""
+    group = made_for(plate, bpy.data.node_groups, LOOK)
+    if group is None:
+        return
+    _build(plate, "", curve)
+    for tree in compositor_trees():
+        for node in tree.nodes:
+            if getattr(node, "node_tree", None) == group:
+                node.inputs["Exposure"].default_value = exposure
+
+
+def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeTree:
+    """Return the plate's look; one that exists already is updated."""
+    linear, srgb, working = linear_rec709(), _srgb(), working_space()
+    group = made_for(plate, bpy.data.node_groups, LOOK)
+    if group is None:
+        group = new_group(plate, f"Camera Look {name}", LOOK, "Stops that the linear plate was given; taken back here")
+        codes = group.interface.new_socket(CODE_VALUES, in_out="OUTPUT", socket_type="NodeSocketColor")
+        codes.description = "For the view transform Raw, and for files without color management"
+        group.interface.items_tree["Image"].description = "For the view transform Standard on an sRGB display"
+    group.nodes.clear()
+    grid = NodeGrid(group)
+    start, end = grid.node("NodeGroupInput", 0), grid.node("NodeGroupOutput", 15)
+    straight = divide_by_alpha(grid, start.outputs["Image"], 1)
+    light = grid.node("CompositorNodeExposure", 3)
+    grid.link(convert_color_space(grid, working, linear, straight, 2), light.inputs["Image"])
+    grid.link(math_node(grid, "MULTIPLY", 2, 1, start.outputs["Exposure"], -1), light.inputs["Exposure"])
+    codes = _encoded(grid, light.outputs[0], _response_image(plate, f".{group.name} Response", curve))
+    grid.link(multiply_by_alpha(grid, codes, 14), end.inputs[CODE_VALUES])
+    shown = convert_color_space(grid, srgb, working, codes, 13)
+    grid.link(multiply_by_alpha(grid, shown, 14), end.inputs["Image"])
+    return group
+
+
+def _encoded(grid: NodeGrid, light: bpy.types.NodeSocket, response: bpy.types.Image) -> bpy.types.NodeSocket:
+    """Return the socket of the code values of light, clipped to [0, 1] as by the camera."""
+    table = grid.node("CompositorNodeImage", 8, row=-1)
+    table.image = response
+    split, join = grid.node("CompositorNodeSeparateColor", 4), grid.node("CompositorNodeCombineColor", 12)
+    grid.link(light, split.inputs[0])
+    grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
+    for row, channel in enumerate(("Red", "Green", "Blue")):
+        clipped = math_node(grid, "ADD", 5, row, split.outputs[channel], 0)
+        clipped.node.use_clamp = True
+        position = math_node(grid, "MULTIPLY", 6, row, clipped, SAMPLES - 1)
+        sample = math_node(grid, "FLOOR", 7, row, position)
+        vector = combine_node(grid, 8, row)
+        grid.link(math_node(grid, "MULTIPLY_ADD", 7.5, row, sample, 1 / SAMPLES, 0.5 / SAMPLES), vector.inputs["X"])
+        read = grid.node("CompositorNodeSeparateColor", 10, row=row)
+        grid.link(map_uv(grid, table.outputs["Image"], vector.outputs[0], 9, row).outputs[0], read.inputs[0])
+        between = math_node(grid, "MULTIPLY_ADD", 11, row, math_node(grid, "FRACT", 7, row + 0.5, position))
+        grid.link(read.outputs["Green"], between.node.inputs[1])
+        grid.link(read.outputs["Red"], between.node.inputs[2])
+        grid.link(between, join.inputs[channel])
+    return join.outputs[0]
+
+
+def _response_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.Image:
+    """Return the packed image of a response, red f at each sample, green the step to the next; hidden by its name."""
+    image = made_for(plate, bpy.data.images, LOOK)
+    if image is None:
+        image = bpy.data.images.new(name, SAMPLES, 1, alpha=False, float_buffer=True)
+        image[LOOK] = plate
+        image.colorspace_settings.name = data_space()  # before the pixels, which this would remove
+    pixels = np.zeros((SAMPLES, 4), np.float32)
+    pixels[:, 0], pixels[:-1, 1], pixels[:, 3] = curve.brightness, np.diff(curve.brightness), 1
+    image.pixels.foreach_set(pixels.ravel())
+    image.update()
+    image.pack()
+    return image
+
+
+def _srgb() -> str:
+    """Return the name of sRGB in the config of this session."""
+    known = color_spaces()
+    for name in SRGB:
+        if name in known:
+            return name
+    raise ConfigError("this config has no sRGB space, which the look needs; use Blender's own config")
+
+
+def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
+    """Return the look that leads to the output of a tree, of whatever plate; else a new node."""
+    output = _output(tree)
+    link = output.inputs[0].links[0] if output is not None and output.inputs[0].links else None
+    earlier = link.from_node if link is not None else None
+    if LOOK in (getattr(earlier, "node_tree", None) or {}):
+        return earlier
+    node = tree.nodes.new("CompositorNodeGroup")
+    node.width = _WIDTH
+    if output is not None:
+        node.location = output.location
+        output.location.x += _WIDTH + _GAP
+    return node
+
+
+def _link(tree: bpy.types.NodeTree, node: bpy.types.Node) -> None:
+    """Put a look between the output of a tree and what leads to it, unless it is there already."""
+    output = _output(tree)
+    if output is None:
+        return
+    source = output.inputs[0].links[0].from_socket if output.inputs[0].links else None
+    if source is not None and source.node == node:
+        return
+    if source is not None:
+        tree.links.new(source, node.inputs["Image"])
+    tree.links.new(node.outputs["Image"], output.inputs[0])
+
+
+def _output(tree: bpy.types.NodeTree) -> bpy.types.Node | None:
+    """Return the node whose input is rendered; None if the tree has none."""
+    kinds = ("COMPOSITE", "GROUP_OUTPUT")
+    return next((node for node in tree.nodes if node.type in kinds and node.inputs), None)

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Nodes from which the compositor node groups are built, placed in columns and rows."""
+
+from __future__ import annotations
+
+import bpy
+
+#: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
+IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
+
+#: Nodes that Blender 5.0 replaced by those of shaders.
+_MATH, _COMBINE = (
+    ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
+)
+
+#: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
+_COLUMN, _ROW = 190, -230
+
+
+class NodeGrid:
+    """A node tree whose nodes are placed in columns and rows."""
+
+    def __init__(self, tree: bpy.types.NodeTree) -> None:
+        self._tree = tree
+
+    def node(self, kind: str, column: float, *, row: float = 0) -> bpy.types.Node:
+        """Return a new node."""
+        node = self._tree.nodes.new(kind)
+        node.location = (_COLUMN * column, _ROW * row)
+        return node
+
+    def link(self, source: bpy.types.NodeSocket, target: bpy.types.NodeSocket) -> None:
+        """Link an output to an input."""
+        self._tree.links.new(source, target)
+
+
+def math_node(
+    grid: NodeGrid, operation: str, column: float, row: float, value: bpy.types.NodeSocket, *numbers: float
+) -> bpy.types.NodeSocket:
+    """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
+    node = grid.node(_MATH, column, row=row)
+    node.operation = operation
+    grid.link(value, node.inputs[0])
+    for place, number in enumerate(numbers, 1):
+        node.inputs[place].default_value = number
+    return node.outputs[0]
+
+
+def combine_node(grid: NodeGrid, column: float, row: float) -> bpy.types.Node:
+    """Return a new node that combines X and Y to a position for a Map UV node; Y is 0.5 until something is linked."""
+    node = grid.node(_COMBINE, column, row=row)
+    node.inputs["Y"].default_value, node.inputs["Z"].default_value = 0.5, 1
+    return node
+
+
+def map_uv(
+    grid: NodeGrid, table: bpy.types.NodeSocket, position: bpy.types.NodeSocket, column: float, row: float
+) -> bpy.types.Node:
+    """Return a new node that reads the pixel of an image that is nearest to a position in [0, 1]."""
+    node = grid.node("CompositorNodeMapUV", column, row=row)
+    if IS_BLENDER_5:
+        node.inputs["Interpolation"].default_value = "Nearest"
+        node.inputs["Extension X"].default_value = node.inputs["Extension Y"].default_value = "Extend"
+    else:
+        node.filter_type = "NEAREST"
+    grid.link(table, node.inputs["Image"])
+    grid.link(position, node.inputs["UV"])
+    return node
+
+
+def convert_color_space(
+    grid: NodeGrid, source: str, target: str, colors: bpy.types.NodeSocket, column: float
+) -> bpy.types.NodeSocket:
+    """Return the socket of colours that are converted from one colour space to another."""
+    node = grid.node("CompositorNodeConvertColorSpace", column)
+    node.from_color_space = source
+    node.to_color_space = target
+    grid.link(colors, node.inputs["Image"])
+    return node.outputs[0]
+
+
+def multiply_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
+    """Return the socket of colours that are multiplied by their alpha."""
+    return _alpha_node(grid, colors, column, "To Premultiplied", "STRAIGHT_TO_PREMUL")
+
+
+def divide_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
+    """Return the socket of colours that are divided by their alpha."""
+    return _alpha_node(grid, colors, column, "To Straight", "PREMUL_TO_STRAIGHT")
+
+
+def _alpha_node(
+    grid: NodeGrid, colors: bpy.types.NodeSocket, column: float, kind: str, earlier_kind: str
+) -> bpy.types.NodeSocket:
+    """Return the socket of an Alpha Convert node; the name of its kind in Blender 4.5 is another one."""
+    node = grid.node("CompositorNodePremulKey", column)
+    if IS_BLENDER_5:
+        node.inputs["Type"].default_value = kind
+    else:
+        node.mapping = earlier_kind
+    grid.link(colors, node.inputs["Image"])
+    return node.outputs[0]

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Load the inverse of a plate's response from a LUT file, in place of an estimate."""
+
+from pathlib import Path
+from typing import ClassVar
+
+import bpy
+
+from ... import lazy_import
+from ...scene import plates, stored_estimate
+from ...work.errors import AddonError, expected_errors
+from ...work.wording import LOADED, american
+from .. import comparison, running
+
+
+class CRF_OT_load_lut(bpy.types.Operator):
+    """Choose a LUT file whose response the plate gets."""
+
+    bl_idname = "crf.load_lut"
+    bl_label = "Load Response from LUT"
+    bl_description = (
+        "Use the response in a .spi1d, .cube or .clf file, which leads from code values to linear light, in place of an"
+        " estimate. Nothing else changes until it is applied"
+    )
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    image: bpy.props.StringProperty(
+        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    clip: bpy.props.StringProperty(
+        name="Movie Clip",
+        description="Name of the movie clip; empty for the active plate",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    filepath: bpy.props.StringProperty(name="File", description="The LUT file", subtype="FILE_PATH")
+    filter_glob: bpy.props.StringProperty(default="*.spi1d;*.cube;*.clf", options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether there is a plate and no run; a script names its plate."""
+        if running.current() is not None:
+            return False
+        if context.area is None or context.area.type not in plates.EDITORS:
+            return True
+        datablock = plates.active_datablock(context)
+        return datablock is not None and not plates.obstacle(datablock)
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Let the user choose the file."""
+        context.window_manager.fileselect_add(self)
+        return {"RUNNING_MODAL"}
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Store the response on the plate."""
+        try:
+            plate = plates.chosen_datablock(context, self.image, self.clip)
+            if problem := plates.obstacle(plate):
+                raise AddonError(problem)
+            path = Path(bpy.path.abspath(self.filepath))
+            lut = lazy_import.load("ocio.luts.files").read_lut(path)
+            curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)
+            model = f"{LOADED}{path.name}"
+            loaded = lazy_import.load(".work.estimate_record").loaded_estimate(curve, model)
+        except expected_errors() as problem:
+            self.report({"ERROR"}, american(str(problem)))
+            return {"CANCELLED"}
+        comparison.end_all()
+        line = f"The response is {model}: this is no estimate, so there is no verdict."
+        stored_estimate.store(plate, loaded, lines=[line])
+        stored_estimate.set_entry(plate, stored_estimate.ORIGIN, f"Loaded from {path.name}")
+        running.redraw_editors(context.window_manager)
+        self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
+        return {"FINISHED"}
+
+
+def register() -> None:
+    """Register the operator."""
+    bpy.utils.register_class(CRF_OT_load_lut)
+
+
+def unregister() -> None:
+    """Unregister the operator."""
+    bpy.utils.unregister_class(CRF_OT_load_lut)

@@ -1,0 +1,180 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Apply the response of a plate to other plates of the same camera."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from typing import TYPE_CHECKING, ClassVar
+
+import bpy
+
+from ... import lazy_import
+from ...scene import plates, stored_estimate
+from ...work.errors import AddonError, expected_errors
+from ...work.wording import american
+from .. import comparison, running
+from ..plate_settings import CHOICES, remember_applied
+
+if TYPE_CHECKING:
+    from ...work.job import Job
+
+
+class CRF_OtherPlate(bpy.types.PropertyGroup):
+    """An image or clip by its name, and whether it gets the response."""
+
+    is_clip: bpy.props.BoolProperty(name="Movie Clip", description="Whether this is a movie clip, not an image")
+    is_chosen: bpy.props.BoolProperty(name="Apply", description="Apply the response to this plate", default=True)
+
+    @property
+    def datablock(self) -> plates.Datablock:
+        """The image or clip; an AddonError if there is none of this name."""
+        names = ("", self.name) if self.is_clip else (self.name, "")
+        return plates.chosen_datablock(bpy.context, *names)
+
+
+class CRF_OT_copy_response(bpy.types.Operator):
+    """Apply the response of the active plate to other plates, with its settings."""
+
+    bl_idname = "crf.copy_response"
+    bl_label = "Apply to Other Plates"
+    bl_description = (
+        "Apply this response, with the settings of this plate, to other plates that the same camera took with the same"
+        " settings. Selected nodes in the compositor are chosen at first"
+    )
+    bl_options: ClassVar[set[str]] = {"UNDO"}
+
+    image: bpy.props.StringProperty(
+        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
+    )
+    clip: bpy.props.StringProperty(
+        name="Movie Clip",
+        description="Name of the movie clip; empty for the active plate",
+        options={"HIDDEN", "SKIP_SAVE"},
+    )
+    targets: bpy.props.CollectionProperty(type=CRF_OtherPlate, options={"HIDDEN", "SKIP_SAVE"})
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether the plate has a response and there is no run; a script names its plate."""
+        if running.current() is not None:
+            return False
+        if context.area is None or context.area.type not in plates.EDITORS:
+            return True
+        return stored_estimate.is_stored(plates.active_datablock(context))
+
+    def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
+        """Let the user choose among all other plates of the file."""
+        self.targets.clear()
+        selected = _selected(context)
+        for datablock in other_plates(plates.active_datablock(context)):
+            target = self.targets.add()
+            target.name, target.is_clip = datablock.name, isinstance(datablock, bpy.types.MovieClip)
+            target.is_chosen = datablock in selected
+        if not self.targets:
+            self.report({"INFO"}, "There is no other plate in this file: open one first")
+            return {"CANCELLED"}
+        return context.window_manager.invoke_props_dialog(self)
+
+    def draw(self, _context: bpy.types.Context) -> None:
+        """Draw the list."""
+        column = self.layout.column(align=True)
+        for target in self.targets:
+            column.prop(target, "is_chosen", text=target.name, icon="TRACKER" if target.is_clip else "IMAGE_DATA")
+
+    def execute(self, context: bpy.types.Context) -> set[str]:
+        """Apply it to one plate after the other, once all of them are known to be usable."""
+        done = 0
+        try:
+            source = plates.chosen_datablock(context, self.image, self.clip)
+            jobs = [_job(source, datablock) for datablock in self._chosen(source)]
+            comparison.end_all()
+            for job in jobs:
+                _apply(context, source, job)
+                done += 1
+        except expected_errors() as problem:
+            self.report({"ERROR"}, american(str(problem)))
+            return {"FINISHED"} if done else {"CANCELLED"}
+        running.redraw_editors(context.window_manager)
+        self.report(
+            {"INFO"}, f"{source.name}: its response is that of {done} more plates now; {_what_was_done(source)}"
+        )
+        return {"FINISHED"}
+
+    def _chosen(self, source: plates.Datablock) -> list[plates.Datablock]:
+        """Return the plates that get the response."""
+        if not stored_estimate.is_stored(source):
+            raise AddonError(f"{source.name}: has no estimate yet; estimate its response first")
+        chosen = [target.datablock for target in self.targets if target.is_chosen]
+        chosen = [datablock for datablock in dict.fromkeys(chosen) if datablock != source]
+        if not chosen:
+            raise AddonError("No other plate is chosen: tick at least one")
+        return chosen
+
+
+def other_plates(source: plates.Datablock) -> Iterator[plates.Datablock]:
+    """Yield the images and clips of the file that a response can be applied to, hidden ones and the source excepted."""
+    for datablock in (*bpy.data.images, *bpy.data.movieclips):
+        if datablock != source and not datablock.name.startswith(".") and not plates.obstacle(datablock):
+            yield datablock
+
+
+def _selected(context: bpy.types.Context) -> list[plates.Datablock]:
+    """Return the plates of the selected nodes of the compositor."""
+    space = context.space_data
+    if space is None or space.type != "NODE_EDITOR" or not space.edit_tree:
+        return []
+    return [plates.datablock_of_node(node) for node in space.edit_tree.nodes if node.select]
+
+
+def _job(source: plates.Datablock, target: plates.Datablock) -> "Job":
+    """Return the job that applies the response and the settings of one plate to another one.
+
+    A bake may take long, so each plate gets it by its own Apply; until then the response is only stored.
+    """
+    settings = source.camera_response_settings
+    arguments = {name: getattr(settings, name) for name in CHOICES}
+    if arguments["apply"] == "BAKE":
+        arguments["apply"] = "ESTIMATE"
+    job = lazy_import.load(".ui.gather").gather_job(target, is_estimated=False, arguments=arguments)
+    origin = stored_estimate.origin(source)
+    came = replace(
+        job.estimation,
+        stored=stored_estimate.restored(source),
+        origin=f"From {source.name}" + (f" ({origin})" if origin else ""),
+        photographs=(),
+    )
+    return replace(job, estimation=came)
+
+
+def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> None:
+    """Run a job, and apply it to its plate."""
+    completed = lazy_import.load(".work.run").run(job)
+    lazy_import.load(".scene.apply").apply(context, completed)
+    datablock = plates.datablock_of_plate(job.plate)
+    datablock.camera_response_settings.apply = source.camera_response_settings.apply
+    if completed.is_applied:
+        remember_applied(datablock)
+
+
+def _what_was_done(source: plates.Datablock) -> str:
+    """Return in words how the response was applied to the other plates."""
+    mode = source.camera_response_settings.apply
+    if stored_estimate.verdict(source) == stored_estimate.DO_NOT_TRUST and mode != "ESTIMATE":
+        return "it is stored only, because it is not to be trusted"
+    if mode == "BAKE":
+        return "bake each with its own Apply"
+    return "it is stored only" if mode == "ESTIMATE" else "it is applied as to this plate"
+
+
+_CLASSES = (CRF_OtherPlate, CRF_OT_copy_response)
+
+
+def register() -> None:
+    """Register the operator."""
+    for kind in _CLASSES:
+        bpy.utils.register_class(kind)
+
+
+def unregister() -> None:
+    """Unregister the operator."""
+    for kind in reversed(_CLASSES):
+        bpy.utils.unregister_class(kind)

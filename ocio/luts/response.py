@@ -1,0 +1,47 @@
+"""The response of a camera from a LUT of its inverse: the reverse of `inverse_response_lut`."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crfnet_core.errors import LutError
+from crfnet_core.response import SAMPLES, ResponseCurve
+from ocio.luts.lut1d import Lut1D
+
+#: Largest irradiance of brightness 0, as a part of that of brightness 1.
+MOST_BLACK = 0.01
+
+#: Largest mean of an inverse response on [0, 1]; that of linear light is 0.5, those of cameras are below.
+MOST_MEAN = 0.55
+
+
+def response_of_lut(lut: Lut1D) -> ResponseCurve:
+    """Return the response of which a LUT is the inverse, scaled so that brightness 1 is irradiance 1.
+
+    Between its samples the response is linear, so its inverse is not quite the LUT: for the LUT of a response with the
+    usual length, the two differ by less than 5e-5, white = 1.
+
+    Parameters
+    ----------
+    lut : Lut1D
+        From encoded brightness to linear light; the domain holds [0, 1].
+
+    Raises
+    ------
+    LutError
+        If the domain does not hold [0, 1], black is no 0, or the LUT brightens: it then leads from light to codes.
+    CurveError
+        If the response does not increase strictly.
+    """
+    low, high = lut.domain
+    if low > 0 or high < 1:
+        raise LutError(f"the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1")
+    black, white = lut.apply(np.array([0.0, 1.0]))
+    if not white > 0 or abs(black) > MOST_BLACK * white:
+        raise LutError(f"the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0")
+    mean = float(lut.apply(np.linspace(0, 1, SAMPLES)).mean() - black) / float(white - black)
+    if mean > MOST_MEAN:
+        raise LutError("the LUT brightens, so it leads from light to code values; give its inverse")
+    brightness = np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1)
+    brightness[0], brightness[-1] = 0, 1
+    return ResponseCurve(brightness)

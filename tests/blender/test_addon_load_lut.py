@@ -1,0 +1,109 @@
+"""A response from a LUT file in place of an estimate."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def lut_file(tmp_path, true_response):
+    """Write the inverse of a known response in a format; returns its file."""
+    from ocio.luts.files import write_lut
+    from ocio.luts.lut1d import inverse_response_lut
+
+    def write(suffix=".spi1d"):
+        path = tmp_path / f"camera{suffix}"
+        write_lut(path, inverse_response_lut(true_response))
+        return path
+
+    return write
+
+
+def load(image, path):
+    return bpy.ops.crf.load_lut(image=image.name, filepath=str(path))
+
+
+@pytest.mark.parametrize("suffix", [".spi1d", ".cube", ".clf"])
+def test_the_response_of_the_file_is_stored(image, lut_file, true_response, suffix):
+    from blender_addon.scene import stored_estimate
+
+    assert load(image, lut_file(suffix)) == {"FINISHED"}
+    found = stored_estimate.restored(image).curve
+    assert np.abs(found.brightness - true_response.brightness).max() < 2e-4
+    assert stored_estimate.origin(image) == f"Loaded from camera{suffix}"
+
+
+def test_the_panel_says_so_and_has_no_verdict(image, lut_file, in_editor):
+    from tests.blender.test_addon_panel import drawn_in, labels, operators
+
+    assert "crf.load_lut" in [name for name, *_ in operators(drawn_in(image, in_editor))]
+    load(image, lut_file())
+    image.camera_response_settings.apply = "NODES"
+    drawn = drawn_in(image, in_editor)
+    words = " ".join(labels(drawn))
+    assert next(entry for entry in drawn if entry[0] == "label") == ("label", "Loaded", "FILE")
+    assert "Loaded from camera.spi1d" in words
+    assert not [word for word in ("Usable", "Good", "Expected error", "windows agree") if word in words]
+    assert ("crf.apply_response", "Apply") in operators(drawn)
+
+
+def test_it_is_applied_in_nodes_and_files(image, lut_file, tmp_path, codes, composited, true_response):
+    from blender_addon.scene.node_links import compositor_trees
+    from ocio.luts.files import read_lut
+
+    load(image, lut_file())
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
+    tree = bpy.data.node_groups["Camera Response plate"]
+    users = [user for user in compositor_trees() if user != tree]
+    node = next(node for user in users for node in user.nodes if getattr(node, "node_tree", None) == tree)
+    assert np.abs(composited(node.outputs[0])[..., :3] - true_response.inverse(codes / 255)).max() < 5e-5
+    bpy.ops.crf.apply_response(image=image.name, apply="EXPORT")
+    (exported,) = (path for path in tmp_path.glob("*.spi1d") if path.name != "camera.spi1d")
+    assert read_lut(exported).comments == ("Inverse response, loaded from camera.spi1d",)
+    assert image["camera_response"]["origin"] == "Loaded from camera.spi1d"
+
+
+def test_it_survives_saving_and_goes_to_other_plates(image, lut_file, tmp_path, codes):
+    from blender_addon.scene import stored_estimate
+
+    load(image, lut_file())
+    other = image.copy()
+    del other["camera_response"]
+    bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
+    name = other.name
+    image.use_fake_user = other.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+    image, other = bpy.data.images["plate.png"], bpy.data.images[name]
+    assert stored_estimate.is_loaded(image)
+    assert stored_estimate.is_loaded(other)
+    assert stored_estimate.origin(other) == "From plate.png (Loaded from camera.spi1d)"
+    curves = [stored_estimate.restored(plate).curve.brightness for plate in (image, other)]
+    assert np.array_equal(*curves)
+
+
+def test_a_new_estimate_takes_its_place(image, lut_file):
+    from blender_addon.scene import stored_estimate
+
+    load(image, lut_file())
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert not stored_estimate.is_loaded(image)
+    assert stored_estimate.origin(image) == ""
+
+
+def test_other_files_are_refused_and_change_nothing(image, tmp_path):
+    from ocio.luts.files import write_lut
+    from ocio.luts.lut1d import Lut1D
+
+    path = tmp_path / "forward.cube"
+    write_lut(path, Lut1D(np.linspace(0, 1, 256) ** 0.45))
+    for wrong in (path, tmp_path / "absent.spi1d", tmp_path / "plate.png"):
+        with pytest.raises(RuntimeError, match="Error"):
+            load(image, wrong)
+    assert "camera_response" not in image

@@ -1,0 +1,166 @@
+"""The node group "Camera Look": after the linearizing group, it gives the plate again."""
+
+import numpy as np
+import pytest
+
+from tests.blender.conftest import rendered
+from tests.helpers.images import read_image, write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
+
+#: Largest difference from the code values of the plate, white = 1.
+ROUND_TRIP = 1e-5
+
+
+def scene_tree():
+    scene = bpy.context.scene
+    return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+
+
+def output():
+    return next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
+
+
+def node_of(prefix):
+    groups = [node for node in scene_tree().nodes if node.type == "GROUP"]
+    return next(node for node in groups if node.node_tree.name.startswith(prefix))
+
+
+@pytest.fixture
+def look(addon):
+    """Linearize a file in the compositor, and add its look behind it; returns the image and the node of the look."""
+
+    def run(path, **choices):
+        image = bpy.data.images.load(str(path))
+        bpy.ops.crf.estimate_response(image=image.name, apply="NODES", **choices)
+        scene_tree().links.new(node_of("Camera Response").outputs[0], output().inputs[0])
+        assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
+        return image, node_of("Camera Look")
+
+    return run
+
+
+def save(path, view, size=(256, 256)):
+    """Save the output of the compositor as an 8-bit PNG file through a view transform, and read the file."""
+    scene = bpy.context.scene
+    rendered(scene, path.with_suffix(".exr"), size)
+    scene.view_settings.view_transform = view
+    scene.view_settings.look = "None"
+    scene.render.image_settings.file_format = "PNG"
+    scene.render.image_settings.color_depth, scene.render.image_settings.color_mode = "8", "RGBA"
+    scene.render.filepath = str(path)
+    bpy.ops.render.render(write_still=True)
+    return np.round(read_image(path) * 255)
+
+
+@pytest.mark.parametrize("choices", [{}, {"exposure": -1.5}, {"exposure": 2, "anchor": "GRAY"}])
+def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, choices):
+    _, node = look(plate_file, **choices)
+    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
+
+
+def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
+    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
+    _, node = look(write_image(tmp_path / "deep.png", samples))
+    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - samples / 65535).max() < ROUND_TRIP
+
+
+def test_it_undoes_it_under_alpha(look, composited, tmp_path, codes):
+    alpha = np.random.default_rng(1).integers(1, 256, (256, 256, 1)).astype(np.uint8)
+    path = write_image(tmp_path / "cut_out.png", np.concatenate([codes, alpha], axis=2), oiio__UnassociatedAlpha=1)
+    _, node = look(path)
+    pixels = composited(node.outputs["Code Values"])
+    assert np.abs(pixels[..., 3:] - alpha / 255).max() < 1e-6
+    assert np.abs(pixels[..., :3] - codes / 255 * (alpha / 255)).max() < ROUND_TRIP
+
+
+@pytest.mark.skipif(not IS_BLENDER_5, reason="the working space is the config's before Blender 5.0")
+def test_it_undoes_it_in_another_working_space(look, plate_file, codes, tmp_path):
+    bpy.ops.wm.set_working_color_space(working_space="ACEScg", convert_colors=False)
+    try:
+        look(plate_file)
+        saved = save(tmp_path / "saved.png", "Standard")
+    finally:
+        bpy.ops.wm.set_working_color_space(working_space="Linear Rec.709", convert_colors=False)
+    assert np.abs(saved[..., :3] - codes).max() <= 1
+
+
+def test_a_render_saved_through_standard_is_the_plate(look, plate_file, codes, tmp_path):
+    look(plate_file, exposure=1)
+    assert np.array_equal(save(tmp_path / "saved.png", "Standard")[..., :3], codes)
+
+
+def test_code_values_saved_through_raw_are_the_plate(look, plate_file, codes, tmp_path):
+    _, node = look(plate_file, exposure=1)
+    scene_tree().links.new(node.outputs["Code Values"], output().inputs[0])
+    assert np.array_equal(save(tmp_path / "saved.png", "Raw")[..., :3], codes)
+
+
+def test_light_beyond_the_camera_clips(look, composited, plate_file):
+    _, node = look(plate_file)
+    scene_tree().links.remove(node.inputs["Image"].links[0])
+    light = [-1, 0.5, 16, 1]
+    source = scene_tree().nodes.new("CompositorNodeRGB")
+    source.outputs[0].default_value = light
+    plate = next(other for other in scene_tree().nodes if other.type == "IMAGE")
+    mix = scene_tree().nodes.new("CompositorNodeAlphaOver")  # gives the color the size of the plate
+    images = [socket for socket in mix.inputs if socket.type == "RGBA"]
+    scene_tree().links.new(plate.outputs[0], images[0])
+    scene_tree().links.new(source.outputs[0], images[1])
+    scene_tree().links.new(mix.outputs[0], node.inputs["Image"])
+    red, green, blue = composited(node.outputs["Code Values"])[128, 128, :3]
+    assert (red, blue) == (0, 1)
+    assert 0 < green < 1
+
+
+def test_it_stands_before_the_output_once(look, plate_file):
+    image, node = look(plate_file)
+    assert output().inputs[0].links[0].from_socket == node.outputs["Image"]
+    assert node.inputs["Image"].links[0].from_node == node_of("Camera Response")
+    node_of("Camera Response").inputs["Exposure"].default_value = 0.75
+    bpy.ops.crf.add_look(image=image.name)
+    assert [other for other in scene_tree().nodes if other.type == "GROUP" and "Look" in other.node_tree.name] == [node]
+    assert node.inputs["Exposure"].default_value == 0.75
+    assert node.inputs["Image"].links[0].from_node == node_of("Camera Response")
+
+
+def test_another_plates_look_takes_its_place(look, plate_file, tmp_path, codes):
+    _, node = look(plate_file)
+    other = bpy.data.images.load(str(write_image(tmp_path / "other.png", codes)))
+    bpy.ops.crf.estimate_response(image=other.name)
+    bpy.ops.crf.add_look(image=other.name)
+    assert output().inputs[0].links[0].from_node == node
+    assert node.node_tree["camera_response_look_of"] == other
+
+
+def test_it_follows_a_response_that_is_applied_again(look, composited, plate_file, codes):
+    image, node = look(plate_file)
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=-2)
+    assert node.inputs["Exposure"].default_value == -2
+    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
+
+
+def test_it_needs_a_response(addon, plate_file):
+    image = bpy.data.images.load(str(plate_file))
+    with pytest.raises(RuntimeError, match="has no estimate yet"):
+        bpy.ops.crf.add_look(image=image.name)
+
+
+def test_it_is_in_the_panel_of_the_compositor_only(look, plate_file, in_editor):
+    from blender_addon.ui.panel import ResponsePanel
+    from tests.blender.test_addon_panel import Panel, operators
+
+    image, _ = look(plate_file)
+    for editor in ("NODE_EDITOR", "IMAGE_EDITOR"):
+        panel = Panel()
+        with in_editor(editor) as space:
+            if editor == "NODE_EDITOR":
+                space.node_tree = scene_tree()  # its active node is the look, which leads back to the plate
+            else:
+                space.image = image
+            assert bpy.ops.crf.add_look.poll() == (editor == "NODE_EDITOR")
+            ResponsePanel.draw(panel, bpy.context)
+        names = [name for name, *_ in operators(panel.layout.drawn)]
+        assert ("crf.add_look" in names) == (editor == "NODE_EDITOR")
