@@ -11,7 +11,7 @@ from tests.blender_window.base import WindowTest
 HIGHLIGHT = 0.03
 
 #: Seconds after which the report of an operator has gone from the status bar.
-REPORT = 15
+REPORT = 60
 
 
 class TestRunning(WindowTest):

@@ -39,7 +39,8 @@ def disable() -> None:
 
 def running() -> list[str]:
     """Return the add-on's operators that run in the window."""
-    return [found.bl_idname for found in editors.window().modal_operators if found.bl_idname.startswith("CRF_OT")]
+    known = [found for found in editors.window().modal_operators if found is not None]  # None: of a disabled add-on
+    return [found.bl_idname for found in known if found.bl_idname.startswith("CRF_OT")]
 
 
 def can_run(operator: str = "estimate_response") -> bool:
