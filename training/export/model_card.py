@@ -59,8 +59,8 @@ def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
         "## Accuracy\n",
         "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
         f"{P2 if report.p2 else ''} P4: real photographs with measured responses, means over bodies, with a prior"
-        " that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were chosen on them."
-        " E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an E_est of"
+        " that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were chosen on"
+        " them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an E_est of"
         f" {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
         accuracy_table(config.accuracy),
         bodies_table(report, config.name),
