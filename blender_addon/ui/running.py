@@ -19,10 +19,10 @@ from ..scene.plates import EDITORS
 from ..work.background import BackgroundTask
 
 #: Seconds between two checks of whether the job has ended.
-TICK = 0.1
+TICK = 0.05
 
 #: Least and longest time between two displays of the progress, in seconds; and the part of it that drawing may take.
-REDRAW, LONGEST, DRAWING_SHARE = 0.5, 5.0, 0.1
+REDRAW, LONGEST, DRAWING_SHARE = 1.0, 5.0, 0.1
 
 _current: Run | None = None
 
