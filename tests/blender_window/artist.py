@@ -15,6 +15,9 @@ ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response(
 SHOW_LINEAR, RESTART = "bpy.ops.crf.compare(is_after=True", "bpy.ops.crf.save_and_restart("
 CANCEL = "bpy.ops.crf.cancel_run("
 
+#: How Blender prints the report of an operator.
+REPORT = "operator         | "
+
 #: Height of a button in pixels at a scale of 1, at least; the mouse looks for buttons in half of it.
 BUTTON = 16
 
@@ -110,11 +113,11 @@ class Artist:
         return self.screen.click(*self.find(command))
 
     def start(self, command: str = ESTIMATE) -> float:
-        """Press a button that starts a run, and wait until it runs; return the time of the click."""
-        position = self.find(command)
+        """Press a button that starts a run, and wait until it runs or has reported; return the time of the click."""
+        position, reports = self.find(command), self._reports()
         self.call("runs.watch")
         clicked = self.screen.click(*position)
-        self.wait(lambda: self.call("runs.has_started"), "the run starts", MOMENT)
+        self.wait(lambda: self.call("runs.has_started") or self._reports() > reports, "the run starts", MOMENT)
         return clicked
 
     def run(self, command: str = ESTIMATE) -> float:
@@ -123,9 +126,15 @@ class Artist:
         return self.wait_for_end() - clicked
 
     def wait_for_end(self) -> float:
-        """Wait until the run has ended; return when that was, by `time.monotonic`."""
+        """Wait until the run has ended; return when that was, or was found, by `time.monotonic`."""
+        if not self.call("runs.has_started"):  # it was too short to be seen
+            return time.monotonic()
         self.wait(lambda: self.call("runs.ended") is not None, "the run ends", RUN)
         return self.call("runs.ended")
+
+    def _reports(self) -> int:
+        """Return how often Blender has printed the report of an operator."""
+        return self.blender.printed.count(REPORT)
 
     def wait(self, condition: Callable[[], Any], what: str, seconds: float = MOMENT) -> None:
         """Wait until a condition holds; TimeoutError if it takes longer."""

@@ -32,8 +32,8 @@ def make_plates(folder: Path) -> None:
     """Write the plates into a folder.
 
     ``plate.jpg`` and ``a/IMG_0001.jpg`` are the bundled photograph, ``b`` and ``c`` have others of the same name with
-    another response. ``numbers`` and ``shot`` are sequences, ``log.png`` is the photograph on a logarithmic
-    scale, which no camera's response explains, and ``large.jpg`` has 12 megapixels.
+    another response. ``numbers`` and ``shot`` are sequences, ``limited.png`` is the photograph in the codes
+    16 to 235 of video, which no camera's response explains, and ``large.jpg`` has 12 megapixels.
     """
     for name in ("a", "b", "c", "numbers", "shot"):
         (folder / name).mkdir(parents=True, exist_ok=True)
@@ -47,8 +47,7 @@ def make_plates(folder: Path) -> None:
         frame = np.roll(codes, 8 * number, axis=1)
         write_image(folder / "numbers" / f"{number:04d}.jpg", frame, Compression="jpeg:95")
         write_image(folder / "shot" / f"shot.{1000 + number}.jpg", frame, Compression="jpeg:95")
-    logarithm = np.rint(255 / 8 * np.log2(1.0 + codes)).astype(np.uint8)
-    write_image(folder / "log.png", logarithm)
+    write_image(folder / "limited.png", np.rint(16 + 219 / 255 * codes).astype(np.uint8))
     bench.make_photograph(folder / "large.jpg", *LARGE)
 
 

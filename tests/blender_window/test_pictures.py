@@ -42,7 +42,7 @@ class TestPictures(WindowTest):
 
     def after_a_run(self, artist, keep):
         """Take the pictures of plates whose response has been estimated."""
-        for plate, verdict in (("b/IMG_0001.jpg", "usable"), ("log.png", "do not trust")):
+        for plate, verdict in (("b/IMG_0001.jpg", "usable"), ("limited.png", "do not trust")):
             name = artist.open(self.plate(plate))
             artist.call("plates.choose", name, apply="NODES")
             artist.run()
