@@ -147,7 +147,8 @@ def test_p4_means_are_over_bodies(measured_once):
 def test_p4_knows_the_model_and_the_mean_of_the_other_bodies(measured_once):
     report = measured_once[1].p4["real"]
     one, two, _ = report.photographs
-    assert one.estimators["fixed_model"].errors.estimation < 2
+    gamma = one.estimators["gamma 2.2"].errors.estimation
+    assert one.estimators["fixed_model"].errors.estimation < 0.75 * gamma  # as near as the bank of these bodies goes
     assert two.estimators["fixed_model"].errors.estimation > one.estimators["fixed_model"].errors.estimation + 1
     truth = ResponseCurve.gamma((POWERS["two"] + POWERS["three"]) / 2)  # by hand, from the other bodies of "one"
     expected = [metric(plate_response(measured_once[0] / "data"), truth) for metric in (estimation_error, shape_error)]
