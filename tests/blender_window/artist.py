@@ -77,9 +77,10 @@ class Artist:
         return Box(*self.call("editors.box", editor, "UI"))
 
     def status_bar(self) -> Box:
-        """Return where the status bar has hints and messages; its right end has the version."""
-        height = round(18 * self._scale)
-        return Box(0, self.screen.height - height, self.screen.width * 3 // 4, height)
+        """Return where the status bar has hints and messages: not its border, nor its right end with the version."""
+        height, border = round(18 * self._scale), round(2 * self._scale)
+        top = self.screen.height - height + border
+        return Box(border, top, self.screen.width * 3 // 4, height - border)
 
     def picture(self, box: Box | None = None) -> Picture:
         """Return what is shown now."""

@@ -5,6 +5,10 @@ from __future__ import annotations
 from tests.blender_window.base import WindowTest, package
 
 
+#: What the graphics driver and Blender itself write, the latter about the display and about all extensions.
+NOT_OURS = (".cache/mesa", "blender/config/platform_support.txt", "blender/extensions/.cache/compat.dat")
+
+
 class TestUserFolder(WindowTest):
     is_installed = False
     maxDiff = None
@@ -28,6 +32,6 @@ class TestUserFolder(WindowTest):
         self.assertFalse((self.home / "blender" / "datafiles" / "colormanagement").exists())
 
     def files(self):
-        """Return the paths of the files in the home, but for the cache of the graphics driver."""
+        """Return the paths of the files in the home, but for those that are `NOT_OURS`."""
         found = (path.relative_to(self.home).as_posix() for path in self.home.rglob("*") if not path.is_dir())
-        return {name for name in found if not name.startswith(".cache/mesa")}
+        return {name for name in found if not name.startswith(NOT_OURS)}
