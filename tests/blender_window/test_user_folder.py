@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from tests.blender_window.base import WindowTest, package
 
-
 #: What the graphics driver and Blender itself write, the latter about the display and about all extensions.
 NOT_OURS = (".cache/mesa", "blender/config/platform_support.txt", "blender/extensions/.cache/compat.dat")
 
