@@ -12,11 +12,15 @@ from tests.blender_window.session import LAST, Blender
 
 #: The buttons of the panel, as Blender writes their Python commands.
 ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response("
-SHOW_LINEAR, RESTART = "bpy.ops.crf.compare(is_after=True", "bpy.ops.crf.save_and_restart("
+SHOW_PLATE, SHOW_LINEAR = "bpy.ops.crf.compare(is_after=False", "bpy.ops.crf.compare(is_after=True"
+RESTART = "bpy.ops.crf.save_and_restart("
 CANCEL = "bpy.ops.crf.cancel_run("
 
 #: How Blender prints the report of an operator.
 REPORT = "operator         | "
+
+#: The name of the image that the Image Editor shows, as an expression in Blender.
+SHOWN = "[area for area in editors.window().screen.areas if area.type == 'IMAGE_EDITOR'][0].spaces.active.image.name"
 
 #: Height of a button in pixels at a scale of 1, at least; the mouse looks for buttons in half of it.
 BUTTON = 16

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from tests.blender_window.artist import SHOW_LINEAR
+from tests.blender_window.artist import SHOW_LINEAR, SHOWN
 from tests.blender_window.base import WindowTest
 
 
@@ -55,6 +55,7 @@ class TestPictures(WindowTest):
         artist.settle()
         keep("restart_due")
         artist.press(SHOW_LINEAR)
+        artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")
         artist.settle()
         keep("linear")
         artist.call("editors.show", "NODE_EDITOR", alone=False)
