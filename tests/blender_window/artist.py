@@ -98,6 +98,8 @@ class Artist:
         LookupError
             If there is none.
         """
+        if row is None:
+            self.settle()  # Blender forgets the button that was pressed last
         box, step = self.sidebar(), round(BUTTON * self._scale / 2)
         first, last = (box.y + step, box.y + box.height) if row is None else (row - 2 * step, row + 2 * step)
         for column in COLUMNS:
