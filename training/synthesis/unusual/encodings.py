@@ -21,7 +21,7 @@ from training.synthesis.unusual.log_curves import log_curves
 SRGB = srgb_encode(IRRADIANCE)
 
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
-ROLL_OFF, CONTRAST = (1.0, 3.5), (0.0, 0.6)
+ROLL_OFF, CONTRAST = (1.0, 3.5), (0.4, 1.0)
 
 #: Stops that log footage is exposed above light whose white is 1, and the part of its colour that wide primaries
 #: take away.
