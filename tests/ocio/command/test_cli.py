@@ -9,7 +9,7 @@ import sys
 import pytest
 
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from ocio import commands
+from ocio.commands import printing
 
 COMMANDS = ("estimate", "linearize", "info", "completion")
 
@@ -73,12 +73,12 @@ class TestProgressBar:
     def test_moves_on_a_terminal(self, monkeypatch):
         monkeypatch.setattr(sys, "stderr", self.Terminal())
         monkeypatch.setenv("COLUMNS", "80")
-        with commands._progress_bar("windows") as progress:
+        with printing.progress_bar("windows") as progress:
             progress(10, 10)
         assert "windows" in sys.stderr.getvalue()
 
     def test_is_absent_elsewhere(self, monkeypatch):
         monkeypatch.setattr(sys, "stderr", io.StringIO())
-        with commands._progress_bar("windows") as progress:
+        with printing.progress_bar("windows") as progress:
             assert progress is None
         assert sys.stderr.getvalue() == ""

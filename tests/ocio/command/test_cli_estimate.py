@@ -9,8 +9,8 @@ import pytest
 
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response import ResponseCurve
-from ocio import commands
-from ocio.cli import BAD_INPUT
+from ocio.arguments.parts import BAD_INPUT
+from ocio.commands import estimate as command
 from ocio.luts.spi1d import read_spi1d
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
@@ -209,10 +209,10 @@ def test_a_bad_photograph_among_good_ones_stops_everything(estimate, plate, tmp_
 
 
 def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model, tmp_path, monkeypatch):
-    monkeypatch.setattr(commands, "find_spec", lambda name: None)
+    monkeypatch.setattr(command, "find_spec", lambda name: None)
     done = crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model)
     assert done.code == 0
-    assert done.err.splitlines() == [commands.NO_MATPLOTLIB]
+    assert done.err.splitlines() == [command.NO_MATPLOTLIB]
     assert not (tmp_path / "plate_sheet.png").exists()
 
 

@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from ocio.cli import BAD_INPUT, INTERRUPTED
+from ocio.arguments.parts import BAD_INPUT
+from ocio.cli import INTERRUPTED
 from tests.helpers.folders import listed
 from tests.helpers.processes import start_interruptible
 

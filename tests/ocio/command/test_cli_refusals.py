@@ -4,7 +4,8 @@ import numpy as np
 import pytest
 
 from crfnet_core.response import ResponseCurve
-from ocio.cli import BAD_INPUT, INTERRUPTED
+from ocio.arguments.parts import BAD_INPUT
+from ocio.cli import INTERRUPTED
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import write_spi1d
 from ocio.pipeline import estimates

@@ -1,0 +1,39 @@
+"""`crfnet estimate`: its arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import shtab
+
+from ocio.arguments.parts import Commands, add_command, add_network, add_plate, positive
+from ocio.defaults import LUT_LENGTH, WINDOWS
+
+EXAMPLES = """examples:
+  crfnet estimate plate01.jpg --out look
+  crfnet estimate day1/*.jpg --out look            several photographs of one camera, one response
+  crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
+  crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
+
+For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
+plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01.json."""
+
+
+def add(commands: Commands) -> None:
+    """Add `crfnet estimate`."""
+    parser = add_command(commands, "estimate", "estimate the response of the camera that took a photograph", EXAMPLES)
+    photos = parser.add_argument("photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, PNG, TIFF, WebP or DPX")
+    photos.complete = shtab.FILE  # type: ignore[attr-defined]
+    out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
+    out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    parser.add_argument("--each", action="store_true", help="one response per photograph, not one for all")
+    parser.add_argument(
+        "--windows", type=positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
+    )
+    parser.add_argument("--seed", type=int, default=0, metavar="N", help="which windows are drawn (0)")
+    parser.add_argument(
+        "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
+    )
+    parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
+    add_network(parser)
+    add_plate(parser)

@@ -1,0 +1,23 @@
+"""`crfnet info`: its arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import shtab
+
+from ocio.arguments.parts import Commands, add_command, add_json
+
+EXAMPLES = """examples:
+  crfnet info look/plate01.spi1d
+  crfnet info models/mine"""
+
+
+def add(commands: Commands) -> None:
+    """Add `crfnet info`."""
+    parser = add_command(commands, "info", "say what a LUT file or a model folder holds", EXAMPLES)
+    subject = parser.add_argument(
+        "subject", type=Path, metavar="FILE|MODEL", help=".spi1d, .cube, .clf, or a model folder"
+    )
+    subject.complete = shtab.FILE  # type: ignore[attr-defined]
+    add_json(parser)

@@ -1,0 +1,33 @@
+"""`crfnet linearize`: its arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import shtab
+
+from ocio.arguments.parts import Commands, add_command, add_network, add_plate
+
+EXAMPLES = """examples:
+  crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
+  crfnet linearize shot.%04d.png --lut look/plate01.spi1d --out linear/shot.%04d.exr
+  crfnet linearize 'shot.####.jpg' --frames 1001-1100 --out 'linear/shot.####.exr'
+
+Without --lut one response is estimated from several of the frames. Frames that are already written are left alone,
+so an interrupted run goes on where it stopped."""
+
+
+def add(commands: Commands) -> None:
+    """Add `crfnet linearize`."""
+    parser = add_command(commands, "linearize", "write a plate or a frame sequence as linear EXR", EXAMPLES)
+    plates = parser.add_argument(
+        "plates", metavar="PLATES", help="a file, or a sequence: shot.%%04d.png, shot.####.png"
+    )
+    plates.complete = shtab.FILE  # type: ignore[attr-defined]
+    out = parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")
+    out.complete = shtab.FILE  # type: ignore[attr-defined]
+    lut = parser.add_argument("--lut", type=Path, metavar="FILE", help="the inverse response: .spi1d, .cube or .clf")
+    lut.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
+    add_network(parser)
+    add_plate(parser)
