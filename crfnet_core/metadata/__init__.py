@@ -1,6 +1,7 @@
 """What a file says of how its photograph was made: evidence beside the pixels, used where it is there.
 
 file_metadata   what is read: names, sizes, tables, profile
+color_tags      primaries and encodings as files tag them
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name

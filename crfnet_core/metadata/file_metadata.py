@@ -6,6 +6,7 @@ import re
 from dataclasses import dataclass
 from typing import Any
 
+from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.jpeg import JpegHeader, Table
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
@@ -44,6 +45,8 @@ class FileMetadata:
         Description of the ICC profile; of DPX its transfer characteristic.
     file_format : str
         "JPEG", "PNG", "TIFF", "WebP" or "DPX".
+    color : ColorTags
+        What the file says of its primaries and of its encoding.
     """
 
     width: int = 0
@@ -62,6 +65,7 @@ class FileMetadata:
     has_adobe: bool = False
     profile: str = ""
     file_format: str = ""
+    color: ColorTags = ColorTags()
 
     @property
     def has_camera(self) -> bool:
