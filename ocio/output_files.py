@@ -5,9 +5,10 @@ from __future__ import annotations
 import itertools
 import os
 import re
+from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
@@ -69,6 +70,19 @@ class OutputFiles:
         """Every file except the config, which other estimates may share."""
         sheet = () if self.sheet is None else (self.sheet,)
         return (*self.luts, *self.linear, *sheet, self.report)
+
+    def in_folder(self, folder: Path) -> OutputFiles:
+        """Return the same files in another folder."""
+        return replace(
+            self,
+            spi1d=folder / self.spi1d.name,
+            cube=folder / self.cube.name,
+            clf=folder / self.clf.name,
+            config=folder / self.config.name,
+            linear=tuple(folder / path.name for path in self.linear),
+            sheet=self.sheet and folder / self.sheet.name,
+            report=folder / self.report.name,
+        )
 
     def plate_color_space(
         self, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
@@ -148,7 +162,7 @@ def check_outputs(
     check_folder(folder)
     outputs = tuple(outputs)
     targets = [path for files in outputs for path in files.own]
-    if twice := sorted({path.name for path in targets if targets.count(path) > 1}):
+    if twice := sorted(path.name for path, times in Counter(targets).items() if times > 1):
         raise PlateError(f"two photographs would both be written as {twice[0]}; rename one or use two folders")
     originals = {photo.resolve() for photo in photos}
     targets += [files.config for files in outputs[:1]]

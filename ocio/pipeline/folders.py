@@ -13,7 +13,7 @@ from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
-from ocio.defaults import LUT_LENGTH
+from ocio.defaults import CONFIG_NAME, LUT_LENGTH
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
@@ -22,6 +22,7 @@ from ocio.pipeline.estimates import PhotographEstimate, response_lut
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linearize_plates
 from ocio.report import estimate_document, json_text
+from ocio.staging import staged_files
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,38 +103,35 @@ def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -
     Raises
     ------
     CRFNetError
-        If a file cannot be written, a photograph has changed or gone, or the LUT length is out of range. The files
-        written before remain, each of them whole; a new folder that is still empty is removed.
+        If a file cannot be written, a photograph has changed or gone, or the LUT length is out of range. The folder is
+        then as it was: either all files are written, or none.
     """
     luts: dict[str, Lut1D] = {}
     documents = []
-    with output_folder(plan.folder):
+    with output_folder(plan.folder), staged_files(plan.folder) as staged:
         for files, estimated in zip(plan.outputs, estimates, strict=True):
             lut = response_lut(estimated.estimate, length=plan.lut_length)
             luts[files.color_space] = lut
-            documents.append(_write_estimate(files, estimated, lut, plan.plates))
-        write_config(plan.outputs[0].config, plan.config, check=luts, overwrite=plan.plates.overwrite)
+            _write_estimate(files.in_folder(staged), estimated, lut, plan.plates)
+            documents.append(estimate_document(estimated.estimate, estimated.facts, files))
+            atomic_write_text(staged / files.report.name, json_text(documents[-1]), error=PlateError)
+        write_config(staged / CONFIG_NAME, plan.config, check=luts)
     return documents
 
 
-def _write_estimate(
-    files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions
-) -> dict[str, Any]:
-    """Write the files of one estimate, except the config, and return its document."""
+def _write_estimate(files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions) -> None:
+    """Write the files of one estimate, except the document and the config."""
     for path in files.luts:
-        write_lut(path, lut, overwrite=plates.overwrite)
+        write_lut(path, lut)
     # Each photograph is read again: see `estimate_photographs`.
     for photo, linear in zip(estimated.paths, files.linear, strict=True):
         linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
     if files.sheet:
-        _write_sheet(files.sheet, estimated, overwrite=plates.overwrite)
-    document = estimate_document(estimated.estimate, estimated.facts, files)
-    atomic_write_text(files.report, json_text(document), overwrite=plates.overwrite, error=PlateError)
-    return document
+        _write_sheet(files.sheet, estimated)
 
 
-def _write_sheet(path: Path, estimated: PhotographEstimate, *, overwrite: bool) -> None:
+def _write_sheet(path: Path, estimated: PhotographEstimate) -> None:
     """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
     from ocio.sheet import draw_sheet
 
-    draw_sheet(path, estimated.preview, estimated.estimate, stride=estimated.stride, overwrite=overwrite)
+    draw_sheet(path, estimated.preview, estimated.estimate, stride=estimated.stride)

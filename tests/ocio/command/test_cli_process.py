@@ -67,3 +67,27 @@ def test_control_c_leaves_no_traceback(plate, fixed_model, tmp_path):
     assert process.returncode == INTERRUPTED
     assert err == "crfnet: interrupted\n"
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fixed_model, tmp_path):
+    code = (
+        "import sys, time, ocio.pipeline.folders as f, ocio.cli;"
+        "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
+        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+    )
+    arguments = ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+    with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        process.kill()
+    assert all(path.name.startswith(".crfnet-") for path in (tmp_path / "out").iterdir())
+    subprocess.run([CRFNET, *arguments], capture_output=True, check=True)
+    assert [name for name in listed(tmp_path / "out") if not name.startswith(".crfnet-")] == listed(look)
+
+
+def test_a_refused_config_leaves_nothing(plate, fixed_model, tmp_path):
+    command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+    environment = {**os.environ, "OCIO_ACTIVE_DISPLAYS": "no such display"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert done.returncode == BAD_INPUT
+    assert not (tmp_path / "out").exists()

@@ -1,0 +1,84 @@
+"""A set of files that appears whole or not at all."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import tempfile
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+from crfnet_core.errors import CRFNetError, PlateError
+
+#: Age in seconds from which a temporary folder or file counts as left behind by a killed run.
+STALE_SECONDS = 600
+
+#: How the names of temporary folders begin.
+_PREFIX = ".crfnet-"
+
+
+@contextmanager
+def staged_files(folder: Path) -> Iterator[Path]:
+    """Yield a temporary folder in `folder`; if the block succeeds, its files take their names in `folder` together.
+
+    Files of these names are replaced: check before whether they may be. If the block fails, or one of the names cannot
+    be taken (a file that is locked, a full disk), `folder` is as it was. Temporary folders that a killed run left there
+    are removed once they are `STALE_SECONDS` old.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder of the files; it must exist.
+
+    Raises
+    ------
+    PlateError
+        If a file cannot take its name. Errors of the block name the files as they will be called.
+    """
+    _remove_stale(folder)
+    temporary = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
+    try:
+        yield temporary
+        _publish(temporary, folder)
+    except CRFNetError as problem:
+        raise type(problem)(str(problem).replace(str(temporary), str(folder))) from problem
+    finally:
+        shutil.rmtree(temporary, ignore_errors=True)
+
+
+def _publish(temporary: Path, folder: Path) -> None:
+    """Move the files of one folder into another, or none of them; earlier files of these names are gone then."""
+    files = sorted(path for path in temporary.iterdir())
+    earlier = temporary / "earlier"
+    earlier.mkdir()
+    taken: list[Path] = []
+    try:
+        for path in files:
+            target = folder / path.name
+            if os.path.lexists(target):
+                target.rename(earlier / path.name)
+            taken.append(target)
+            path.rename(target)
+    except OSError as problem:
+        for target in taken:
+            _take_back(target, earlier / target.name)
+        raise PlateError(f"{target}: cannot be written ({problem.strerror or problem}); check the file") from problem
+
+
+def _take_back(target: Path, earlier: Path) -> None:
+    """Put the earlier file back into its place, or remove the new one where there was none."""
+    with suppress(OSError):
+        if os.path.lexists(earlier):
+            earlier.replace(target)
+        else:
+            target.unlink(missing_ok=True)
+
+
+def _remove_stale(folder: Path) -> None:
+    """Remove the temporary folders of killed runs; a recent one may belong to a running process."""
+    for path in folder.glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            if time.time() - path.stat().st_mtime > STALE_SECONDS:
+                shutil.rmtree(path, ignore_errors=True)

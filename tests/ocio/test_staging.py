@@ -1,0 +1,70 @@
+import os
+from pathlib import Path
+
+import pytest
+
+from crfnet_core.errors import PlateError
+from ocio.staging import STALE_SECONDS, staged_files
+
+
+def content(folder):
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+def test_files_take_their_names_together(tmp_path):
+    (tmp_path / "a.txt").write_text("old")
+    with staged_files(tmp_path) as staged:
+        (staged / "a.txt").write_text("new")
+        (staged / "b.txt").write_text("new")
+        assert (tmp_path / "a.txt").read_text() == "old"
+    assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
+
+
+def write(folder, names, *, problem=None):
+    with staged_files(folder) as staged:
+        for name in names:
+            (staged / name).write_text("new")
+        if problem:
+            raise problem(f"{staged / names[-1]}: no room")
+
+
+def test_a_failed_block_leaves_the_folder_as_it_was(tmp_path):
+    (tmp_path / "a.txt").write_text("old")
+    with pytest.raises(ZeroDivisionError):
+        write(tmp_path, ["a.txt"], problem=ZeroDivisionError)
+    assert content(tmp_path) == {"a.txt": "old"}
+
+
+def test_errors_name_the_final_file(tmp_path):
+    with pytest.raises(PlateError) as caught:
+        write(tmp_path, ["a.txt"], problem=PlateError)
+    assert str(caught.value) == f"{tmp_path / 'a.txt'}: no room"
+
+
+@pytest.mark.parametrize("locked", ["a.txt", "b.txt", "c.txt"])
+def test_a_name_that_cannot_be_taken_leaves_the_folder_as_it_was(tmp_path, monkeypatch, locked):
+    for name in ("a.txt", "c.txt"):
+        (tmp_path / name).write_text("old")
+    rename = Path.rename
+
+    def refuse(path, target):
+        if Path(target) == tmp_path / locked:
+            raise PermissionError(1, "Operation not permitted")
+        return rename(path, target)
+
+    monkeypatch.setattr(Path, "rename", refuse)
+    with pytest.raises(PlateError, match=rf"{locked}.*not permitted"):
+        write(tmp_path, ["a.txt", "b.txt", "c.txt"])
+    assert content(tmp_path) == {"a.txt": "old", "c.txt": "old"}
+
+
+def test_old_temporary_folders_are_removed_and_recent_ones_are_not(tmp_path):
+    old, recent = tmp_path / ".crfnet-old", tmp_path / ".crfnet-recent"
+    for folder in (old, recent):
+        folder.mkdir()
+        (folder / "file").write_text("left behind")
+    then = old.stat().st_mtime - STALE_SECONDS - 1
+    os.utime(old, (then, then))
+    with staged_files(tmp_path):
+        pass
+    assert sorted(path.name for path in tmp_path.iterdir()) == [".crfnet-recent"]
