@@ -38,7 +38,7 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
         raise error(f"{path}: the folder {path.parent} is not writable; choose another")
     if path.is_dir():
         raise error(f"{path}: is a folder; give the name of a file")
-    if path.exists() and not overwrite:
+    if os.path.lexists(path) and not overwrite:
         raise error(f"{path}: exists already; choose another name or ask to overwrite it")
     return path
 

@@ -7,16 +7,17 @@ import io
 import os
 import sys
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
+from pathlib import Path
+from typing import TextIO
 
 import shtab
 
 from ocio.arguments import completion, estimate, info, linearize
 from ocio.arguments.parts import BAD_INPUT, Parser
-
-#: Exit code after Ctrl-C.
-INTERRUPTED = 130
+from ocio.interruption import interruptible
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -26,22 +27,17 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code: 0, `BAD_INPUT` or `INTERRUPTED`."""
-    _print_any_character()
+    """Run the command and return its exit code: 0, `BAD_INPUT`, or 128 and the number of the signal that ended it."""
+    _complete_streams()
     arguments = build_parser().parse_args(argv)
-    # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
-    from crfnet_core.errors import CRFNetError
-
-    try:
-        "".join(sys.argv if argv is None else argv).encode()  # refuses file names that are not valid Unicode
-        _run(arguments)
-        sys.stdout.flush()
-    except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
-        return _fail(problem)
-    except KeyboardInterrupt:
-        print("crfnet: interrupted", file=sys.stderr)  # noqa: T201
-        return INTERRUPTED
-    return 0
+    with interruptible() as interruption:
+        try:
+            return _run(arguments, sys.argv if argv is None else argv)
+        except BaseException as problem:  # an interrupted import raises all sorts of errors
+            if interruption.signal is None and not isinstance(problem, KeyboardInterrupt):
+                raise
+            _print_error("crfnet: interrupted")
+            return interruption.exit_code
 
 
 def build_parser() -> argparse.ArgumentParser:
@@ -58,19 +54,40 @@ def build_parser() -> argparse.ArgumentParser:
     return parser
 
 
-def _run(arguments: argparse.Namespace) -> None:
-    """Run the subcommand: the module of its name in `ocio.commands`."""
+def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
+    """Run the subcommand and return the exit code."""
+    # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
+    from crfnet_core.errors import CRFNetError
+
+    try:
+        "".join(argv).encode()  # refuses file names that are not valid Unicode
+        _run_subcommand(arguments)
+        sys.stdout.flush()
+    except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
+        return _fail(problem)
+    return 0
+
+
+def _run_subcommand(arguments: argparse.Namespace) -> None:
+    """Run the module of the subcommand's name in `ocio.commands`."""
     if arguments.command == "completion":
         sys.stdout.write(shtab.complete(build_parser(), shell=arguments.shell) + "\n")
         return
     import_module(f"ocio.commands.{arguments.command}").run(arguments)
 
 
-def _print_any_character() -> None:
-    """Print characters that the terminal or the pipe cannot show as escapes, instead of failing."""
+def _complete_streams() -> None:
+    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
+    sys.stdout = sys.stdout or _nowhere()
+    sys.stderr = sys.stderr or _nowhere()
     for stream in (sys.stdout, sys.stderr):
         if isinstance(stream, io.TextIOWrapper):
             stream.reconfigure(errors="backslashreplace")
+
+
+def _nowhere() -> TextIO:
+    """Return a stream that takes everything and keeps nothing."""
+    return Path(os.devnull).open("w", encoding="utf-8")
 
 
 def _fail(problem: BaseException) -> int:
@@ -79,8 +96,14 @@ def _fail(problem: BaseException) -> int:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BAD_INPUT
     text = UNEXPLAINED.get(type(problem), str(problem))
-    print(f"crfnet: error: {' '.join(text.split())}", file=sys.stderr)  # noqa: T201
+    _print_error(f"crfnet: error: {' '.join(text.split())}")
     return BAD_INPUT
+
+
+def _print_error(line: str) -> None:
+    """Print a line on stderr, if stderr takes it."""
+    with suppress(OSError):
+        print(line, file=sys.stderr, flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

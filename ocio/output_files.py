@@ -164,14 +164,14 @@ def check_outputs(
     targets = [path for files in outputs for path in files.own]
     if twice := sorted(path.name for path, times in Counter(targets).items() if times > 1):
         raise PlateError(f"two photographs would both be written as {twice[0]}; rename one or use two folders")
-    originals = {photo.resolve() for photo in photos}
+    originals = {os.path.realpath(photo) for photo in photos}
     targets += [files.config for files in outputs[:1]]
     for path in targets:
-        if path.resolve() in originals:
+        if os.path.realpath(path) in originals:
             raise PlateError(f"{path}: is one of the photographs and would be replaced; choose another folder")
         if path.is_dir():
             raise PlateError(f"{path}: is a folder, and a file of that name is to be written; choose another folder")
-    if not overwrite and (existing := [path.name for path in targets if path.exists()]):
+    if not overwrite and (existing := [path.name for path in targets if os.path.lexists(path)]):
         what = f"{existing[0]} and {len(existing) - 1} more exist" if len(existing) > 1 else f"{existing[0]} exists"
         raise PlateError(f"{folder}: {what} already; add --overwrite or choose another folder")
 

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import shtab
 
-from ocio.arguments.parts import Commands, add_command, add_network, add_plate, positive
+from ocio.arguments.parts import Commands, add_command, add_network, add_plate, count, positive
 from ocio.defaults import LUT_LENGTH, WINDOWS
 
 EXAMPLES = """examples:
@@ -30,7 +30,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--windows", type=positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
     )
-    parser.add_argument("--seed", type=int, default=0, metavar="N", help="which windows are drawn (0)")
+    parser.add_argument("--seed", type=count, default=0, metavar="N", help="which windows are drawn (0)")
     parser.add_argument(
         "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
     )

@@ -80,9 +80,9 @@ def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]
             count = len(sequence.paths)
             raise PlateError(f"{out}: one name for {count} frames; put their number into it, as in plate.%04d.exr")
         targets = [pattern.path(number) for number in sequence.numbers]
-    plates = {path.resolve() for path in sequence.paths}
+    plates = {os.path.realpath(path) for path in sequence.paths}
     for target in targets:
-        if target.resolve() in plates:
+        if os.path.realpath(target) in plates:
             raise PlateError(f"{target}: is one of the plates, which are never replaced; choose another name")
     return tuple(targets)
 

@@ -12,7 +12,6 @@ from pathlib import Path
 import pytest
 
 from ocio.arguments.parts import BAD_INPUT
-from ocio.cli import INTERRUPTED
 from tests.helpers.folders import listed
 from tests.helpers.processes import start_interruptible
 
@@ -52,21 +51,50 @@ def test_a_reader_that_leaves_is_no_error_message(look):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_control_c_leaves_no_traceback(plate, fixed_model, tmp_path):
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_a_signal_leaves_nothing_and_no_traceback(plate, fixed_model, tmp_path, number):
     code = (
-        "import sys, time, ocio.pipeline.estimates as e, ocio.cli;"
-        "e.estimate_response = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
+        "import sys, time, ocio.pipeline.folders as f, ocio.cli;"
+        "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
         "sys.exit(ocio.cli.main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", code, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
     with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.readline()
         time.sleep(0.1)
-        process.send_signal(signal.SIGINT)
+        process.send_signal(number)
+        process.send_signal(number)
         _, err = process.communicate(timeout=20)
-    assert process.returncode == INTERRUPTED
+    assert process.returncode == 128 + number
     assert err == "crfnet: interrupted\n"
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_control_c_during_the_imports_leaves_no_traceback(look):
+    code = (
+        "import sys, ocio.cli;"
+        "import_module = ocio.cli.import_module;"
+        "ocio.cli.import_module = lambda name: (print('ready', flush=True), import_module(name))[1];"
+        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+    )
+    command = [sys.executable, "-c", code, "info", look / "plate.spi1d"]
+    with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        process.stdout.readline()
+        process.send_signal(signal.SIGINT)
+        _, err = process.communicate(timeout=20)
+    assert (process.returncode, err) == (128 + signal.SIGINT, "crfnet: interrupted\n")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs a shell")
+@pytest.mark.parametrize("closed", [">&-", "2>&-", "2>/dev/full"])
+def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
+    if "full" in closed and not Path("/dev/full").exists():
+        pytest.skip("this system has no /dev/full")
+    known = subprocess.run(f"'{CRFNET}' info '{look / 'plate.spi1d'}' {closed}", shell=True, check=False)
+    assert known.returncode == 0
+    absent = subprocess.run(f"'{CRFNET}' info '{tmp_path / 'none.spi1d'}' {closed}", shell=True, check=False)
+    assert absent.returncode == BAD_INPUT
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")

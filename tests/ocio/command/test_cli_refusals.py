@@ -5,7 +5,6 @@ import pytest
 
 from crfnet_core.response import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
-from ocio.cli import INTERRUPTED
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import write_spi1d
 from ocio.pipeline import estimates
@@ -25,6 +24,9 @@ def make_bad_inputs(folder):
     (folder / "bad_model").mkdir()
     (folder / "bad_model" / "model.json").write_text("{}")
     (folder / "file").write_text("in the way")
+    (folder / "loop.jpg").symlink_to("loop.jpg")
+    (folder / "dangling").mkdir()
+    (folder / "dangling" / "plate.spi1d").symlink_to("nowhere")
 
 
 BAD_ESTIMATES = {
@@ -46,6 +48,9 @@ BAD_ESTIMATES = {
     "output below a file": ["{plate}", "--out", "{in}/file/deep"],
     "length 1": ["{plate}", "--length", "1"],
     "length too large": ["{plate}", "--length", "99999999"],
+    "endless link": ["{in}/loop.jpg"],
+    "link to nothing in place of an output": ["{plate}", "--out", "{in}/dangling"],
+    "negative seed": ["{plate}", "--seed", "-1"],
     "no windows": ["{plate}", "--windows", "0"],
     "words for a number": ["{plate}", "--windows", "many"],
     "negative threads": ["{plate}", "--threads", "-1"],
@@ -66,6 +71,7 @@ BAD_LINEARIZES = {
     "falling LUT": ["{plate}", "--lut", "{in}/bad.spi1d"],
     "absent prior": ["{plate}", "--prior", "film"],
     "photograph for a LUT": ["{plate}", "--lut", "{plate}"],
+    "endless link": ["{in}/loop.jpg", "--lut", "{in}/good.spi1d"],
     "frames of a file": ["{plate}", "--lut", "{in}/good.spi1d", "--frames", "1-2"],
     "bad frames": ["{in}/a.%04d.jpg", "--lut", "{in}/good.spi1d", "--frames", "one"],
     "bad output": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{out}/plate.png"],
@@ -122,7 +128,7 @@ def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
 @pytest.mark.parametrize(
     ("problem", "code", "line"),
     [
-        (KeyboardInterrupt(), INTERRUPTED, "crfnet: interrupted"),
+        (KeyboardInterrupt(), 130, "crfnet: interrupted"),
         (MemoryError(), BAD_INPUT, "crfnet: error: not enough memory"),
         (OSError(28, "No space left on device", "x.exr"), BAD_INPUT, "crfnet: error: [Errno 28] No space left"),
     ],
