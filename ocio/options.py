@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ocio.defaults import DEPTHS, PRIORS, WINDOWS
+from ocio.defaults import DEPTHS, LUT_LENGTH, PRIORS, WINDOWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -53,3 +53,22 @@ class PlateOptions:
     depth: str = DEPTHS[0]
     exposure: float = 0.0
     overwrite: bool = False
+
+
+@dataclass(frozen=True, kw_only=True)
+class OutputOptions:
+    """Which files are written of an estimate, beside its LUTs, config and document.
+
+    Parameters
+    ----------
+    lut_length : int
+        Entries of the LUTs.
+    has_sheet : bool
+        Whether the sheet is drawn, which needs matplotlib.
+    has_linear : bool
+        Whether the photographs are written as linear EXR.
+    """
+
+    lut_length: int = LUT_LENGTH
+    has_sheet: bool = True
+    has_linear: bool = True

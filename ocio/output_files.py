@@ -27,7 +27,7 @@ class OutputFiles:
     config : Path
         The OpenColorIO config; several estimates may share it.
     linear : tuple of Path
-        One linear EXR per photograph.
+        One linear EXR per photograph; none if they are not written.
     sheet : Path or None
         The picture of the estimate; None if it is not drawn.
     report : Path
@@ -46,7 +46,9 @@ class OutputFiles:
     color_space: str
 
     @classmethod
-    def named(cls, folder: Path, photos: Sequence[Path], *, has_sheet: bool = True) -> OutputFiles:
+    def named(
+        cls, folder: Path, photos: Sequence[Path], *, has_sheet: bool = True, has_linear: bool = True
+    ) -> OutputFiles:
         """Return the files for `photos`, which have one response in common."""
         stem = plain_stem(photos[0])
         return cls(
@@ -54,7 +56,7 @@ class OutputFiles:
             cube=folder / f"{stem}.cube",
             clf=folder / f"{stem}.clf",
             config=folder / CONFIG_NAME,
-            linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos),
+            linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos if has_linear),
             sheet=folder / f"{stem}_sheet.png" if has_sheet else None,
             report=folder / f"{stem}.json",
             color_space=f"CRF {stem}",

@@ -13,6 +13,7 @@ EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
   crfnet estimate day1/*.jpg --out look            several photographs of one camera, one response
   crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
+  crfnet estimate photographs/ --each --no-sheet --no-linear --out responses        a whole folder; can be continued
   crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
 
 For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
@@ -26,7 +27,15 @@ def add(commands: Commands) -> None:
     photos.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
-    parser.add_argument("--each", action="store_true", help="one response per photograph, not one for all")
+    parser.add_argument(
+        "--each", action="store_true", help="one response per photograph, not one for all; PHOTO may be a folder"
+    )
+    parser.add_argument(
+        "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="with --each: a Dask scheduler, such as tcp://10.0.0.1:8786"
+    )
     parser.add_argument(
         "--windows", type=positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
     )
@@ -35,5 +44,6 @@ def add(commands: Commands) -> None:
         "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
     )
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
+    parser.add_argument("--no-linear", action="store_true", help="do not write the photographs as linear EXR")
     add_network(parser)
     add_plate(parser)

@@ -5,36 +5,61 @@ from __future__ import annotations
 import argparse
 import sys
 from collections.abc import Sequence
+from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
 
+from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
+from ocio.options import EstimateOptions, OutputOptions
 from ocio.output_files import OutputFiles
-from ocio.pipeline import PhotographEstimate
+from ocio.pipeline import PhotographEstimate, PhotographRecord
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Estimate one response of all photographs, or one of each; write every file; say what was found."""
-    groups = [(photo,) for photo in arguments.photos] if arguments.each else [tuple(arguments.photos)]
-    has_sheet = not arguments.no_sheet and _has_matplotlib()
-    plan = pipeline.plan_outputs(
-        arguments.out, groups, plate_options(arguments), lut_length=arguments.length, has_sheet=has_sheet
-    )
     options = estimate_options(arguments, windows=arguments.windows, seed=arguments.seed)
+    outputs = OutputOptions(
+        lut_length=arguments.length,
+        has_sheet=not arguments.no_sheet and _has_matplotlib(),
+        has_linear=not arguments.no_linear,
+    )
+    if arguments.each:
+        _run_each(arguments, options, outputs)
+        return
+    photos: list[Path] = arguments.photos
+    plan = pipeline.plan_outputs(arguments.out, photos, plate_options(arguments), outputs)
     prior, network = pipeline.load_prior(options), pipeline.load_network(options)
-    estimates = []
-    for group in groups:
-        with progress_bar("windows") as progress:
-            estimates.append(pipeline.estimate_photographs(group, network, prior, options, progress=progress))
-    documents = pipeline.write_estimates(plan, estimates)
+    with progress_bar("windows") as progress:
+        estimated = pipeline.estimate_photographs(photos, network, prior, options, progress=progress)
+    document = pipeline.write_outputs(plan, estimated)
     if arguments.json:
-        print_json({"folder": str(plan.folder), "estimates": documents})
+        print_json({"folder": str(arguments.out), "estimates": [document]})
     else:
-        _print_estimates(estimates, plan.outputs, plan.folder)
+        _print_estimate(estimated, plan.files)
+
+
+def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: OutputOptions) -> None:
+    """Estimate one response of each photograph; those that fail are named at the end."""
+    photographs = pipeline.find_photographs(arguments.photos)
+    tasks = pipeline.plan_each(arguments.out, photographs, options, plate_options(arguments), outputs)
+    pipeline.load_prior(options)
+    pipeline.load_network(options)
+    with progress_bar("photographs") as progress:
+        records = pipeline.estimate_each(
+            arguments.out, tasks, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
+        )
+    if arguments.json:
+        print_json({"folder": str(arguments.out), "estimates": [asdict(record) for record in records]})
+    else:
+        _print_records(records, tasks[0].files, arguments.out)
+    if failed := [record for record in records if record.error]:
+        first = f"the first: {failed[0].error}"
+        raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
 
 
 def _has_matplotlib() -> bool:
@@ -45,13 +70,19 @@ def _has_matplotlib() -> bool:
     return False
 
 
-def _print_estimates(estimates: Sequence[PhotographEstimate], outputs: Sequence[OutputFiles], folder: Path) -> None:
-    """Print what was read, found and written, and how to use it; one line each if there are several estimates."""
-    first, *others = estimates
-    if others:
-        print_lines([*(report.result_line(estimated.estimate) for estimated in estimates), ""])
-        print_lines([f"Written to {folder}, for each photograph as for the first:"])
-    else:
-        print_lines([*map(str, first.facts), *report.verdict_lines(first.estimate), "", f"Written to {folder}:"])
-    print_lines([*report.file_lines(outputs[0]), "", "The linear plate in oiiotool, with the LUT or the config:"])
-    print_lines(f"  {line}" for line in report.oiiotool_lines(first.paths[0], outputs[0]))
+def _print_estimate(estimated: PhotographEstimate, files: OutputFiles) -> None:
+    """Print what was read, found and written, and how to use it."""
+    lines = [*map(str, estimated.facts), *report.verdict_lines(estimated.estimate)]
+    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
+    print_lines(["", "The linear plate in oiiotool, with the LUT or the config:"])
+    print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files))
+
+
+def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:
+    """Print the result of each photograph in one line, and what was written."""
+    print_lines(
+        f"{Path(record.photograph).name}: {record.error}" if record.error else record.summary for record in records
+    )
+    lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
+    print_lines(["", f"Written to {folder}, for each photograph as for the first:", *lines])
+    print_lines([f"All results, one JSON line each: {folder / pipeline.MANIFEST}"])

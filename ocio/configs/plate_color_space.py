@@ -120,8 +120,8 @@ def without_plate_rules(config: OCIO.Config) -> OCIO.Config:
     return config
 
 
-def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Config:
-    """Return a copy of `config` with a plate's colour space, and with its file rule before all other rules.
+def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO.Config:
+    """Return a copy of `config` with plates' colour spaces, and with their file rules before all other rules.
 
     The profile version and everything else stay. After the response, the plate is converted from linear Rec.709 to the
     config's reference space as the config's own linear Rec.709 space says, or else through its `aces_interchange`
@@ -131,8 +131,8 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
     ----------
     config : PyOpenColorIO.Config
         Any config; it is not changed.
-    space : PlateColorSpace
-        The plate's colour space. It replaces an earlier one of the same name in the family `FAMILY`.
+    *spaces : PlateColorSpace
+        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`.
 
     Raises
     ------
@@ -140,6 +140,17 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
         If the config uses the name for something else, or cannot convert linear Rec.709 to its reference space.
     """
     config = copy.deepcopy(config)
+    for space in spaces:
+        _add(config, space)
+    folders = [folder for folder in config.getSearchPaths() if folder not in ("", ".")]
+    config.clearSearchPaths()
+    for folder in (*folders, "."):
+        config.addSearchPath(folder)
+    return config
+
+
+def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
+    """Add a plate's colour space and its file rule to a config, in place."""
     modern = config.getMajorVersion() >= 2
     _remove_earlier(config, space)
     try:
@@ -159,11 +170,6 @@ def add_plate_color_space(config: OCIO.Config, space: PlateColorSpace) -> OCIO.C
             config.setFileRules(rules)
     except OCIO.Exception as problem:
         raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
-    folders = [folder for folder in config.getSearchPaths() if folder not in ("", ".")]
-    config.clearSearchPaths()
-    for folder in (*folders, "."):
-        config.addSearchPath(folder)
-    return config
 
 
 def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Sequence
 from importlib.resources import files
 
@@ -31,12 +32,11 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
         If two spaces share a name or an alias, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
-    names = [space.name.casefold() for space in spaces]
-    for index, space in enumerate(spaces):
-        if names.index(names[index]) != index:
+    names = Counter(space.name.casefold() for space in spaces)
+    for space in spaces:
+        if names[space.name.casefold()] > 1:
             raise ConfigError(f"{space.name}: two plates have this name; rename one")
-        config = add_plate_color_space(config, space)
-    return config
+    return add_plate_color_space(config, *spaces)
 
 
 def _template() -> str:

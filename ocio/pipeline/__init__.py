@@ -1,7 +1,10 @@
 """The one way from photographs to files, for the command and for the add-on.
 
 estimates  photographs or frames to the response estimated from them, its LUT and its exposure
-folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheets, documents and config
+folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheet, document and config
+each       many photographs, one response each: written as they end, continued when interrupted
+manifest   the file in which they stand
+workers    processes of this machine, or a Dask cluster
 delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
 
 Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
@@ -10,6 +13,7 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 """
 
 from ocio.pipeline.delivery import bake_plates, export_luts
+from ocio.pipeline.each import estimate_each, find_photographs, plan_each
 from ocio.pipeline.estimates import (
     PhotographEstimate,
     anchored_exposure,
@@ -19,19 +23,25 @@ from ocio.pipeline.estimates import (
     load_prior,
     response_lut,
 )
-from ocio.pipeline.folders import OutputPlan, plan_outputs, write_estimates
+from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
+from ocio.pipeline.manifest import MANIFEST, PhotographRecord
 
 __all__ = [
+    "MANIFEST",
     "OutputPlan",
     "PhotographEstimate",
+    "PhotographRecord",
     "anchored_exposure",
     "bake_plates",
+    "estimate_each",
     "estimate_frames",
     "estimate_photographs",
     "export_luts",
+    "find_photographs",
     "load_network",
     "load_prior",
+    "plan_each",
     "plan_outputs",
     "response_lut",
-    "write_estimates",
+    "write_outputs",
 ]

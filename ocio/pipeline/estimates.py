@@ -83,7 +83,7 @@ def estimate_photographs(
 ) -> PhotographEstimate:
     """Read photographs one by one and estimate the response that they have in common.
 
-    Only one photograph is in memory at a time; a preview of the first remains. `write_estimates` therefore reads each
+    Only one photograph is in memory at a time; a preview of the first remains. `write_estimate` therefore reads each
     photograph a second time for its linear plate: the pixels of many photographs do not fit into memory, and all
     estimates have to succeed before anything is written.
 

@@ -1,4 +1,4 @@
-"""The folder that `crfnet estimate` writes: LUTs, a config, linear plates, sheets and JSON documents."""
+"""The folder that `crfnet estimate` writes: LUTs, a config, linear plates, a sheet and a JSON document."""
 
 from __future__ import annotations
 
@@ -13,10 +13,9 @@ from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
-from ocio.defaults import CONFIG_NAME, LUT_LENGTH
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
-from ocio.options import PlateOptions
+from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
 from ocio.plates.frames import FrameSequence
@@ -31,74 +30,58 @@ class OutputPlan:
 
     Parameters
     ----------
-    folder : Path
-        The folder; it need not exist yet.
-    outputs : tuple of OutputFiles
-        The files of each estimate, in the order of the estimates.
+    files : OutputFiles
+        The files, all in one folder, which need not exist yet.
     config : PyOpenColorIO.Config
-        The config of the folder, with the colour spaces of all estimates.
+        The config of the folder, with the colour space of the estimate.
     plates : PlateOptions
         How the linear plates are written; `overwrite` holds for every file.
     lut_length : int
         Entries of the LUTs.
     """
 
-    folder: Path
-    outputs: tuple[OutputFiles, ...]
+    files: OutputFiles
     config: OCIO.Config
     plates: PlateOptions
     lut_length: int
 
 
-def plan_outputs(
-    folder: Path,
-    groups: Sequence[Sequence[Path]],
-    plates: PlateOptions,
-    *,
-    lut_length: int = LUT_LENGTH,
-    has_sheet: bool = True,
-) -> OutputPlan:
-    """Return which files are written for photographs, after checking that they can be; create nothing.
+def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
+    """Return which files are written for photographs of one response, after checking that they can be; create nothing.
 
     Parameters
     ----------
     folder : Path
         The folder to write to.
-    groups : sequence of sequences of Path
-        Photographs that have a response in common, for each estimate.
+    photos : sequence of Path
+        The photographs; at least one.
     plates : PlateOptions
         How the linear plates are written; `overwrite` holds for every file.
-    lut_length : int
-        Entries of the LUTs.
-    has_sheet : bool
-        Whether sheets are drawn, which needs matplotlib.
+    outputs : OutputOptions
+        Which files there are beside the LUTs, and how long the LUTs are.
 
     Raises
     ------
     PlateError
         If a file cannot be written or would replace another, or a photograph: see `check_outputs`.
     ConfigError
-        If the colour spaces cannot be in one config.
+        If the colour space cannot be in a config.
     """
-    outputs = tuple(OutputFiles.named(folder, photos, has_sheet=has_sheet) for photos in groups)
-    photos = [photo for group in groups for photo in group]
-    check_outputs(folder, outputs, photos=photos, overwrite=plates.overwrite)
-    spaces = [
-        files.plate_color_space(group[0], exposure=plates.exposure)
-        for group, files in zip(groups, outputs, strict=True)
-    ]
-    return OutputPlan(folder, outputs, portable_config(spaces), plates, lut_length)
+    files = OutputFiles.named(folder, photos, has_sheet=outputs.has_sheet, has_linear=outputs.has_linear)
+    check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
+    config = portable_config([files.plate_color_space(photos[0], exposure=plates.exposure)])
+    return OutputPlan(files, config, plates, outputs.lut_length)
 
 
-def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -> list[dict[str, Any]]:
-    """Write every file of a plan and return the documents that its JSON files hold.
+def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:
+    """Write every file of a plan and return the document that its JSON file holds.
 
     Parameters
     ----------
     plan : OutputPlan
         See `plan_outputs`.
-    estimates : sequence of PhotographEstimate
-        One for each group of the plan.
+    estimated : PhotographEstimate
+        The estimate from the photographs of the plan.
 
     Raises
     ------
@@ -106,28 +89,47 @@ def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -
         If a file cannot be written, a photograph has changed or gone, or the LUT length is out of range. The folder is
         then as it was: either all files are written, or none.
     """
-    luts: dict[str, Lut1D] = {}
-    documents = []
-    with output_folder(plan.folder), staged_files(plan.folder) as staged:
-        for files, estimated in zip(plan.outputs, estimates, strict=True):
-            lut = response_lut(estimated.estimate, length=plan.lut_length)
-            luts[files.color_space] = lut
-            _write_estimate(files.in_folder(staged), estimated, lut, plan.plates)
-            documents.append(estimate_document(estimated.estimate, estimated.facts, files))
-            atomic_write_text(staged / files.report.name, json_text(documents[-1]), error=PlateError)
-        write_config(staged / CONFIG_NAME, plan.config, check=luts)
-    return documents
+    lut = response_lut(estimated.estimate, length=plan.lut_length)
+    folder = plan.files.report.parent
+    with output_folder(folder), staged_files(folder) as staged:
+        files = plan.files.in_folder(staged)
+        document = write_estimate(files, estimated, lut, plan.plates)
+        write_config(files.config, plan.config, check={files.color_space: lut})
+    return document
 
 
-def _write_estimate(files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions) -> None:
-    """Write the files of one estimate, except the document and the config."""
+def write_estimate(
+    files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions
+) -> dict[str, Any]:
+    """Write the files of one estimate, except the config, and return the document of its JSON file.
+
+    Parameters
+    ----------
+    files : OutputFiles
+        Their names; none of them exists, as in a folder of `ocio.staging.staged_files`.
+    estimated : PhotographEstimate
+        The estimate.
+    lut : Lut1D
+        The inverse of its response, as `response_lut` returns it.
+    plates : PlateOptions
+        How the linear plates are written.
+
+    Raises
+    ------
+    CRFNetError
+        If a file cannot be written, or a photograph has changed or gone.
+    """
     for path in files.luts:
         write_lut(path, lut)
-    # Each photograph is read again: see `estimate_photographs`.
-    for photo, linear in zip(estimated.paths, files.linear, strict=True):
-        linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
+    if files.linear:
+        # Each photograph is read again: see `estimate_photographs`.
+        for photo, linear in zip(estimated.paths, files.linear, strict=True):
+            linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
     if files.sheet:
         _write_sheet(files.sheet, estimated)
+    document = estimate_document(estimated.estimate, estimated.facts, files)
+    atomic_write_text(files.report, json_text(document), error=PlateError)
+    return document
 
 
 def _write_sheet(path: Path, estimated: PhotographEstimate) -> None:

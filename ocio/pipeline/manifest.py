@@ -1,0 +1,130 @@
+"""The manifest of many photographs: JSON lines, first the settings, then what became of each photograph."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Mapping
+from dataclasses import asdict, dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crfnet_core.errors import PlateError
+from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.files import atomic_write_text
+from ocio.report import LikelyKind, result_line
+from ocio.report.documents import DECIMALS
+
+#: File name of the manifest in the output folder.
+MANIFEST = "estimates.jsonl"
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhotographRecord:
+    """What became of one photograph.
+
+    Parameters
+    ----------
+    photograph : str
+        The file, as it was given.
+    folder : str
+        The folder of its files, relative to the manifest.
+    weights : tuple of float
+        Eleven EMoR weights of the response.
+    family : str
+        What the picture most likely is, in words.
+    verdict : str
+        "good", "usable" or "do not trust".
+    uncertainty, shape_uncertainty_stops : float
+        The expected E_est, and the expected shape error in stops.
+    summary : str
+        The result in one line of words.
+    error : str
+        Why there is no estimate; empty if there is one.
+    """
+
+    photograph: str
+    folder: str = ""
+    weights: tuple[float, ...] = ()
+    family: str = ""
+    verdict: str = ""
+    uncertainty: float | None = None
+    shape_uncertainty_stops: float | None = None
+    summary: str = ""
+    error: str = ""
+
+    @classmethod
+    def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate) -> PhotographRecord:
+        """Return the record of an estimate."""
+        kind = LikelyKind.of(estimate)
+        return cls(
+            photograph=str(photograph),
+            folder=folder.as_posix(),
+            weights=tuple(np.round(estimate.weights, DECIMALS).tolist()),
+            family=kind.words if kind else "",
+            verdict=estimate.verdict,
+            uncertainty=round(estimate.uncertainty, DECIMALS),
+            shape_uncertainty_stops=round(estimate.shape_uncertainty, DECIMALS),
+            summary=result_line(estimate),
+        )
+
+
+class Manifest:
+    """A manifest file, to which each record is added as soon as it is known; a killed run loses the last one at most.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder must exist.
+    settings : mapping
+        What all estimates have in common, ready for JSON.
+    overwrite : bool
+        Whether to begin anew.
+
+    Raises
+    ------
+    PlateError
+        If the file is of a run with other settings, or is no manifest.
+    """
+
+    def __init__(self, path: Path, settings: Mapping[str, Any], *, overwrite: bool = False) -> None:
+        self.path, self.settings = path, dict(settings)
+        self.records: dict[str, PhotographRecord] = {}
+        if path.exists() and not overwrite:
+            self._read()
+        self.rewrite(self.records)
+
+    def add(self, record: PhotographRecord) -> None:
+        """Add a record, and write it at once."""
+        self.records[record.photograph] = record
+        with self.path.open("a", encoding="utf-8", newline="\n") as file:
+            file.write(_line(asdict(record)))
+
+    def rewrite(self, photographs: Iterable[str]) -> None:
+        """Write the settings and the records of some photographs anew, in their order."""
+        self.records = {photograph: self.records[photograph] for photograph in photographs}
+        entries = [{"settings": self.settings}, *map(asdict, self.records.values())]
+        text = "".join(map(_line, entries))
+        atomic_write_text(self.path, text, overwrite=True, error=PlateError)
+
+    def _read(self) -> None:
+        """Read the records of an earlier run; a last line that was cut short is left out."""
+        lines = self.path.read_text(encoding="utf-8").splitlines(keepends=True)
+        try:
+            entries = [json.loads(line) for line in lines if line.endswith("\n")]
+            settings = entries[0]["settings"]
+            records = [PhotographRecord(**{**entry, "weights": tuple(entry["weights"])}) for entry in entries[1:]]
+        except (IndexError, KeyError, TypeError, ValueError) as problem:
+            raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
+        if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
+            raise PlateError(
+                f"{self.path}: was begun with another {differing[0].replace('_', ' ')} ({settings.get(differing[0])});"
+                " give the same, choose another folder, or add --overwrite"
+            )
+        self.records = {record.photograph: record for record in records}
+
+
+def _line(entry: Mapping[str, Any]) -> str:
+    """Return a JSON line."""
+    return json.dumps(entry, ensure_ascii=False) + "\n"

@@ -1,0 +1,78 @@
+"""Where many photographs are worked on: processes of this machine, or a Dask cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+from collections.abc import Iterator
+from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
+from contextlib import contextmanager
+from multiprocessing import get_context
+
+from crfnet_core.errors import CRFNetError
+
+#: Seconds to wait for the answer of a scheduler.
+SCHEDULER_TIMEOUT = 10
+
+
+@contextmanager
+def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Executor]:
+    """Yield an executor; at the end of the block, what has not begun is dropped and what has begun is finished.
+
+    Parameters
+    ----------
+    workers : int
+        Processes of this machine; one works in this process.
+    scheduler : str, optional
+        The address of a Dask scheduler, such as "tcp://10.0.0.1:8786", in place of processes of this machine. Its
+        workers need this package and the same files under the same names; a job whose worker dies is done again.
+
+    Raises
+    ------
+    CRFNetError
+        If Dask is not installed, or no scheduler answers at the address.
+    """
+    if scheduler is not None:
+        with _dask_pool(scheduler) as pool:
+            yield pool
+        return
+    pool = _process_pool(workers) if workers > 1 else ThreadPoolExecutor(1)
+    try:
+        yield pool
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+def _process_pool(workers: int) -> ProcessPoolExecutor:
+    """Return processes that start afresh, because onnxruntime's threads do not survive a fork."""
+    return ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_leave_signals_to_the_parent)
+
+
+def _leave_signals_to_the_parent() -> None:
+    """Ignore Control-C, which a terminal sends to every process: the parent decides what ends."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+
+
+@contextmanager
+def _dask_pool(address: str) -> Iterator[Executor]:
+    """Yield the executor of a Dask cluster."""
+    try:
+        from distributed import Client
+    except ImportError as problem:
+        raise CRFNetError("a scheduler needs Dask: pip install 'crfnet[cluster]'") from problem
+    try:
+        client = Client(address, timeout=SCHEDULER_TIMEOUT)
+    except (OSError, ValueError) as problem:
+        raise CRFNetError(f"{address}: no Dask scheduler answers there ({problem}); check the address") from problem
+    with client, client.get_executor(pure=False) as pool:
+        try:
+            yield pool
+        except BaseException:
+            pool.shutdown(wait=False)
+            client.close()
+            raise
