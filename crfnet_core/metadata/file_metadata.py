@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 from crfnet_core.metadata.color_tags import ColorTags
@@ -66,7 +66,7 @@ class FileMetadata:
     has_adobe: bool = False
     profile: str = ""
     file_format: str = ""
-    color: ColorTags = ColorTags()
+    color: ColorTags = field(default_factory=ColorTags)
 
     @property
     def has_camera(self) -> bool:

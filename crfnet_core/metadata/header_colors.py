@@ -41,7 +41,7 @@ CICP_PRIMARIES = {
 #: TransferCharacteristics of ITU-T H.273, Table 3, that are no ordinary picture for a display.
 CICP_TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 
-#: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the interoperability index.
+#: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 
 #: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.

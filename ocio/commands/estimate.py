@@ -4,15 +4,14 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from importlib.util import find_spec
-from pathlib import Path
+from typing import Any
 
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
-from ocio.output_files import OutputFiles
-from ocio.pipeline import PhotographEstimate
+from ocio.pipeline import OutputPlan, PhotographEstimate
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
@@ -34,7 +33,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print_json({"folder": str(plan.folder), "estimates": documents})
     else:
-        _print_estimates(estimates, plan.outputs, plan.folder)
+        _print_estimates(estimates, documents, plan)
 
 
 def _has_matplotlib() -> bool:
@@ -45,13 +44,19 @@ def _has_matplotlib() -> bool:
     return False
 
 
-def _print_estimates(estimates: Sequence[PhotographEstimate], outputs: Sequence[OutputFiles], folder: Path) -> None:
+def _print_estimates(
+    estimates: Sequence[PhotographEstimate], documents: Sequence[Mapping[str, Any]], plan: OutputPlan
+) -> None:
     """Print what was read, found and written, and how to use it; one line each if there are several estimates."""
     first, *others = estimates
+    outputs, folder = plan.outputs, plan.folder
+    light = report.light_lines(documents[0])
     if others:
         print_lines([*(report.result_line(estimated.estimate) for estimated in estimates), ""])
+        print_lines([f"Of {first.facts[0].name}:", *light, ""])
         print_lines([f"Written to {folder}, for each photograph as for the first:"])
     else:
-        print_lines([*map(str, first.facts), *report.verdict_lines(first.estimate), "", f"Written to {folder}:"])
+        print_lines([*map(str, first.facts), *report.verdict_lines(first.estimate), *light, ""])
+        print_lines([f"Written to {folder}:"])
     print_lines([*report.file_lines(outputs[0]), "", "The linear plate in oiiotool, with the LUT or the config:"])
     print_lines(f"  {line}" for line in report.oiiotool_lines(first.paths[0], outputs[0]))

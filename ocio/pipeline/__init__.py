@@ -1,6 +1,6 @@
 """The one way from photographs to files, for the command and for the add-on.
 
-estimates  photographs or frames to the response estimated from them, its LUT and its exposure
+estimates  photographs or frames to the response estimated from them, and its LUT
 folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheets, documents and config
 delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
 
@@ -9,10 +9,10 @@ called with (done, total); whatever it raises ends the step, which first removes
 space into the config that a program reads at its start, see `ocio.configs.installed`.
 """
 
+from ocio.luts.exposure import anchored_exposure
 from ocio.pipeline.delivery import bake_plates, export_luts
 from ocio.pipeline.estimates import (
     PhotographEstimate,
-    anchored_exposure,
     estimate_frames,
     estimate_photographs,
     load_network,

@@ -3,15 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import PyOpenColorIO as OCIO
-
 from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text
+from crfnet_core.metadata.color_tags import REC709
 from ocio.configs.files import write_config
+from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME, LUT_LENGTH
 from ocio.luts.files import write_lut
@@ -20,7 +20,9 @@ from ocio.options import PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
 from ocio.plates.frames import FrameSequence
+from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
+from ocio.plates.primaries import common_primaries
 from ocio.report import estimate_document, json_text
 from ocio.staging import staged_files
 
@@ -35,8 +37,8 @@ class OutputPlan:
         The folder; it need not exist yet.
     outputs : tuple of OutputFiles
         The files of each estimate, in the order of the estimates.
-    config : PyOpenColorIO.Config
-        The config of the folder, with the colour spaces of all estimates.
+    spaces : tuple of PlateColorSpace
+        The colour space of each estimate in the folder's config, before its exposure and primaries are known.
     plates : PlateOptions
         How the linear plates are written; `overwrite` holds for every file.
     lut_length : int
@@ -45,7 +47,7 @@ class OutputPlan:
 
     folder: Path
     outputs: tuple[OutputFiles, ...]
-    config: OCIO.Config
+    spaces: tuple[PlateColorSpace, ...]
     plates: PlateOptions
     lut_length: int
 
@@ -83,11 +85,9 @@ def plan_outputs(
     outputs = tuple(OutputFiles.named(folder, photos, has_sheet=has_sheet) for photos in groups)
     photos = [photo for group in groups for photo in group]
     check_outputs(folder, outputs, photos=photos, overwrite=plates.overwrite)
-    spaces = [
-        files.plate_color_space(group[0], exposure=plates.exposure)
-        for group, files in zip(groups, outputs, strict=True)
-    ]
-    return OutputPlan(folder, outputs, portable_config(spaces), plates, lut_length)
+    spaces = tuple(files.plate_color_space(group[0]) for group, files in zip(groups, outputs, strict=True))
+    portable_config(spaces)
+    return OutputPlan(folder, outputs, spaces, plates, lut_length)
 
 
 def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -> list[dict[str, Any]]:
@@ -103,20 +103,40 @@ def write_estimates(plan: OutputPlan, estimates: Sequence[PhotographEstimate]) -
     Raises
     ------
     CRFNetError
-        If a file cannot be written, a photograph has changed or gone, or the LUT length is out of range. The folder is
-        then as it was: either all files are written, or none.
+        If a file cannot be written, a photograph has changed or gone, the LUT length is out of range, photographs of
+        one estimate differ in their primaries, or these are unknown and have to be converted. The folder is then as it
+        was: either all files are written, or none.
     """
-    luts: dict[str, Lut1D] = {}
+    lights = [_light(estimated, plan) for estimated in estimates]
+    spaces = [_with_light(space, light) for space, light in zip(plan.spaces, lights, strict=True)]
     documents = []
     with output_folder(plan.folder), staged_files(plan.folder) as staged:
-        for files, estimated in zip(plan.outputs, estimates, strict=True):
-            lut = response_lut(estimated.estimate, length=plan.lut_length)
-            luts[files.color_space] = lut
-            _write_estimate(files.in_folder(staged), estimated, lut, plan.plates)
-            documents.append(estimate_document(estimated.estimate, estimated.facts, files))
+        for files, estimated, light in zip(plan.outputs, estimates, lights, strict=True):
+            _write_estimate(files.in_folder(staged), estimated, light.lut, plan.plates)
+            documents.append(estimate_document(estimated.estimate, estimated.facts, files, light))
             atomic_write_text(staged / files.report.name, json_text(documents[-1]), error=PlateError)
-        write_config(staged / CONFIG_NAME, plan.config, check=luts)
+        luts = {space.name: light.lut for space, light in zip(spaces, lights, strict=True)}
+        write_config(staged / CONFIG_NAME, portable_config(spaces), check=luts)
     return documents
+
+
+def _light(estimated: PhotographEstimate, plan: OutputPlan) -> PlateLight:
+    """Return what the linear values of an estimate's photographs mean, which have to have primaries in common."""
+    tags = dict(zip(estimated.paths, estimated.tags, strict=True))
+    common_primaries(tags, plan.plates.primaries)
+    lut = response_lut(estimated.estimate, length=plan.lut_length)
+    return PlateLight.of(estimated.tags[0], lut, plan.plates)
+
+
+def _with_light(space: PlateColorSpace, light: PlateLight) -> PlateColorSpace:
+    """Return a plate's colour space with its exposure and its primaries; unknown ones are taken for Rec.709."""
+    treated = "" if light.plate.primaries else ", treated as Rec.709"
+    return replace(
+        space,
+        exposure=light.stops,
+        primaries=light.plate.primaries or REC709,
+        description=f"{space.description}; primaries {light.plate}{treated}",
+    )
 
 
 def _write_estimate(files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions) -> None:
