@@ -7,12 +7,12 @@ from typing import Any
 
 import numpy as np
 
+from crfnet_core.colorimetry import Chromaticity
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     DISPLAY_P3,
     REC709,
     REC2020,
-    Chromaticity,
     ColorTags,
     Primaries,
 )

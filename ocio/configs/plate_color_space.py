@@ -237,9 +237,9 @@ def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
 
 
 def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
-    """Return a transform that multiplies RGB by `rows`, shape (3, 3)."""
+    """Return a transform that multiplies RGB by `rows`, shape (3, 3), of 12 decimals, which every machine computes."""
     square = np.eye(4)
-    square[:3, :3] = rows
+    square[:3, :3] = np.round(rows, 12) + 0.0  # not -0
     return OCIO.MatrixTransform(matrix=square.ravel().tolist())
 
 

@@ -73,7 +73,7 @@ def linear_header(
         if attribute.name in KEPT_METADATA:
             header.attribute(attribute.name, attribute.type, attribute.value)
     header.attribute("compression", "zips")
-    for name, value in (_standard_attributes(header) | attributes).items():
+    for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
         else:
