@@ -24,6 +24,18 @@ DEPTHS = ("half", "float")
 #: Scene-linear value of a surface that reflects 18 % of the light.
 MIDDLE_GRAY = 0.18
 
+#: Encoded brightness at which cameras place such a surface by convention: 461/1000 of the largest value (ISO 12232,
+#: standard output sensitivity), which is what sRGB makes of 0.18; code 118 of 8 bits.
+GRAY_BRIGHTNESS = 0.4614
+
+#: What may be said of a plate's primaries: the first, the default, goes by the file's tags; the others are the names in
+#: `crfnet_core.metadata.color_tags.PHOTOGRAPHIC`.
+PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
+
+#: The spaces of linear EXR files: linear Rec.709, which is the role scene_linear of the configs that we write (the
+#: default); the plate's own primaries; and those of ACES.
+OUTPUT_SPACES = ("scene_linear", "plate", "ACEScg", "ACES2065-1")
+
 #: Estimation error (E_est) that gamma 2.2 usually makes: 3.14 on the 201 curves of DoRF, 3.65 on 22 camera bodies (P4).
 GAMMA_ERROR = 3.3
 

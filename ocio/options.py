@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ocio.defaults import DEPTHS, LUT_LENGTH, PRIORS, WINDOWS
+from ocio.defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS, WINDOWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -45,13 +45,23 @@ class PlateOptions:
     depth : {"half", "float"}
         Sample type of the EXR files.
     exposure : float
-        Stops by which the linear values are raised.
+        Stops by which the linear values are raised, after the anchor.
+    gray : float or None
+        The anchor: the encoded brightness of a surface that reflects 18 % of the light, which becomes a linear 0.18.
+        By default white is the anchor: brightness 1 becomes a linear 1.
+    primaries : {"auto", "rec709", "p3", "adobe", "prophoto", "rec2020"}
+        The primaries of the encoded plate; "auto" goes by its tags.
+    output_space : {"scene_linear", "plate", "ACEScg", "ACES2065-1"}
+        The space of the linear values: "scene_linear" is linear Rec.709, "plate" leaves the plate's own primaries.
     overwrite : bool
         Whether existing files may be replaced.
     """
 
     depth: str = DEPTHS[0]
     exposure: float = 0.0
+    gray: float | None = None
+    primaries: str = PRIMARIES[0]
+    output_space: str = OUTPUT_SPACES[0]
     overwrite: bool = False
 
 

@@ -2,6 +2,9 @@
 
 file_metadata   what is read: names, sizes, tables, profile
 color_tags      primaries and encodings as files tag them
+header_colors   the tags in a header: ICC profile, CICP, EXIF
+icc             the primaries of an ICC profile
+exif            what OpenImageIO leaves out of EXIF
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name

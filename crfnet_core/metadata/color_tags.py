@@ -4,12 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-#: CIE 1931 x and y.
-Chromaticity = tuple[float, float]
+import numpy as np
 
-#: White points: CIE D65 as video and sRGB round it, and ISO 22028's D50.
+from crfnet_core.colorimetry import Chromaticity, adaptation, rgb_to_xyz
+from crfnet_core.types import Float64Array
+
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
 D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
+D60: Chromaticity = (0.32168, 0.33767)
 
 
 @dataclass(frozen=True)
@@ -33,6 +36,10 @@ class Primaries:
     white: Chromaticity = D65
     interop_id: str = ""
 
+    def to_xyz(self) -> Float64Array:
+        """Return the matrix from linear RGB to CIE XYZ under its own white, shape (3, 3) (Eq. 35 of docs/METHOD.md)."""
+        return rgb_to_xyz(self.red, self.green, self.blue, self.white)
+
 
 #: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB).
 REC709 = Primaries("Rec.709", (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), interop_id="lin_rec709_scene")
@@ -48,6 +55,25 @@ PROPHOTO = Primaries("ProPhoto RGB", (0.734699, 0.265301), (0.159597, 0.840403),
 
 #: ITU-R BT.2020-2.
 REC2020 = Primaries("Rec.2020", (0.708, 0.292), (0.17, 0.797), (0.131, 0.046), interop_id="lin_rec2020_scene")
+
+#: SMPTE ST 2065-1 (ACES2065-1), and the Academy's S-2014-004 (ACEScg).
+AP0 = Primaries("ACES AP0", (0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), D60, "lin_ap0_scene")
+AP1 = Primaries("ACES AP1", (0.713, 0.293), (0.165, 0.83), (0.128, 0.044), D60, "lin_ap1_scene")
+
+#: The primaries that photographs have, by the names that users give them.
+PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophoto": PROPHOTO, "rec2020": REC2020}
+
+
+def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
+    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
+
+    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
+    configs of OpenColorIO. Colours outside the target's gamut become negative.
+    """
+    if source == target:
+        return np.eye(3)
+    adapted = adaptation(source.white, target.white) @ source.to_xyz()
+    return np.asarray(np.linalg.solve(target.to_xyz(), adapted))
 
 
 @dataclass(frozen=True)

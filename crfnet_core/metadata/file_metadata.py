@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.metadata.jpeg import JpegHeader, Table
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
@@ -105,6 +106,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         has_adobe=jpeg.has_adobe,
         profile=_text(header, "ICCProfile:profile_description") or _text(header, "dpx:Transfer"),
         file_format=file_format,
+        color=header_color_tags(header, file_format, jpeg.interop_index),
     )
 
 

@@ -8,6 +8,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
+from crfnet_core.metadata.exif import interoperability_index
+
 #: A quantization table: 64 divisors in the order of the file, which is a zigzag from low to high frequencies.
 Table = tuple[int, ...]
 
@@ -44,6 +46,8 @@ class JpegHeader:
         Whether it has a JFIF segment: libraries write one, cameras begin with EXIF instead.
     has_adobe : bool
         Whether it has an Adobe segment, which the programs of Adobe write, and other encoders for CMYK and RGB.
+    interop_index : str
+        EXIF InteroperabilityIndex, such as "R98"; empty if there is none.
     """
 
     scan: int = 0
@@ -53,6 +57,7 @@ class JpegHeader:
     subsampling: str = ""
     has_jfif: bool = False
     has_adobe: bool = False
+    interop_index: str = ""
 
 
 def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
@@ -61,6 +66,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
     sizes: list[tuple[int, int]] = []
     tables: dict[int, Table] = {}
     names: set[bytes] = set()
+    interop_index = ""
     for marker, scan, end in _segments(content):
         if marker in _START_OF_FRAME:
             frame = content[scan:end].ljust(6, b"\0")
@@ -70,6 +76,8 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
             tables.update(_tables(content[scan:end]))
         elif marker in (0xE0, 0xEE):
             names.add(content[scan : scan + 5])
+        elif marker == 0xE1 and content[scan : scan + 6] == b"Exif\0\0":
+            interop_index = interop_index or interoperability_index(content[scan + 6 : end])
     return JpegHeader(
         scan=scan,
         sizes=tuple(sizes),
@@ -78,6 +86,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
         subsampling=_subsampling(components),
         has_jfif=b"JFIF\0" in names,
         has_adobe=b"Adobe" in names,
+        interop_index=interop_index,
     )
 
 

@@ -3,15 +3,24 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import dataclass
 from pathlib import Path
 from typing import NoReturn, TypeAlias
 
 import shtab
 
-from ocio.defaults import DEPTHS, MAX_EXPOSURE, PRIORS
+from ocio.defaults import DEPTHS, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 #: Exit code of refused arguments and refused files.
 BAD_INPUT = 2
+
+
+@dataclass(frozen=True, kw_only=True)
+class Exposure:
+    """The exposure asked for: stops after the anchor, which is white or an encoded brightness of 18 % gray."""
+
+    stops: float = 0.0
+    gray: float | None = None
 
 
 class Parser(argparse.ArgumentParser):
@@ -60,7 +69,27 @@ def add_network(parser: argparse.ArgumentParser) -> None:
 def add_plate(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that write linear plates."""
     parser.add_argument("--depth", choices=DEPTHS, default=DEPTHS[0], help=f"of the linear EXR ({DEPTHS[0]})")
-    parser.add_argument("--exposure", type=stops, default=0.0, metavar="STOPS", help="gain of the linear EXR (0)")
+    parser.add_argument(
+        "--exposure",
+        type=exposure,
+        default=Exposure(),
+        metavar="STOPS|white|gray|gray=B",
+        help="gain of the linear EXR: stops; white at 1 (the default); 18 %% gray at 0.18, by its code 118 of"
+        " 255 or as picked, like gray=0.42",
+    )
+    parser.add_argument(
+        "--primaries",
+        choices=PRIMARIES,
+        default=PRIMARIES[0],
+        help=f"of the plate; auto: as it is tagged ({PRIMARIES[0]})",
+    )
+    parser.add_argument(
+        "--output-space",
+        choices=OUTPUT_SPACES,
+        default=OUTPUT_SPACES[0],
+        help="of the linear EXR: scene_linear of our config, that is Rec.709; the plate's own primaries; or ACES"
+        f" ({OUTPUT_SPACES[0]})",
+    )
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
     add_json(parser)
 
@@ -84,8 +113,20 @@ def count(text: str) -> int:
     return number
 
 
-def stops(text: str) -> float:
-    """Return the exposure in `text`, which must be within `MAX_EXPOSURE` stops."""
+def exposure(text: str) -> Exposure:
+    """Return the exposure in `text`: white, gray, gray=BRIGHTNESS, or stops within `MAX_EXPOSURE`."""
+    anchor, _, brightness = text.lower().replace("grey", "gray").partition("=")
+    if text == "white":
+        return Exposure()
+    if anchor == "gray":
+        return Exposure(gray=_brightness(brightness) if "=" in text else GRAY_BRIGHTNESS)
     if not abs(value := float(text)) <= MAX_EXPOSURE:
         raise argparse.ArgumentTypeError(f"{text} is not between -{MAX_EXPOSURE} and {MAX_EXPOSURE} stops")
+    return Exposure(stops=value)
+
+
+def _brightness(text: str) -> float:
+    """Return the encoded brightness in `text`, which must be above 0 and at most 1."""
+    if not 0 < (value := float(text)) <= 1:
+        raise argparse.ArgumentTypeError(f"a gray of {text} is not between 0 and 1; divide a code by 255")
     return value

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
@@ -40,7 +41,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print_json({"folder": str(arguments.out), "estimates": [document]})
     else:
-        _print_estimate(estimated, plan.files)
+        _print_estimate(estimated, document, plan.files)
 
 
 def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: OutputOptions) -> None:
@@ -70,9 +71,9 @@ def _has_matplotlib() -> bool:
     return False
 
 
-def _print_estimate(estimated: PhotographEstimate, files: OutputFiles) -> None:
+def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles) -> None:
     """Print what was read, found and written, and how to use it."""
-    lines = [*map(str, estimated.facts), *report.verdict_lines(estimated.estimate)]
+    lines = [*map(str, estimated.facts), *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
     print_lines(["", "The linear plate in oiiotool, with the LUT or the config:"])
     print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files))
@@ -80,9 +81,7 @@ def _print_estimate(estimated: PhotographEstimate, files: OutputFiles) -> None:
 
 def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:
     """Print the result of each photograph in one line, and what was written."""
-    print_lines(
-        f"{Path(record.photograph).name}: {record.error}" if record.error else record.summary for record in records
-    )
+    print_lines(record.error or record.summary for record in records)
     lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
     print_lines(["", f"Written to {folder}, for each photograph as for the first:", *lines])
     print_lines([f"All results, one JSON line each: {folder / pipeline.MANIFEST}"])

@@ -25,11 +25,12 @@ def run(arguments: argparse.Namespace) -> None:
     lut = pipeline.response_lut(estimate) if estimate else read_lut(arguments.lut)
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
+    document = report.plate_document(done, estimate)
     if arguments.json:
-        print_json(report.plate_document(done, estimate))
+        print_json(document)
     else:
         lines = [report.source_line(estimate), *report.verdict_lines(estimate)] if estimate else []
-        print_lines([*lines, *report.plate_lines(done)])
+        print_lines([*lines, *report.light_lines(document), *report.plate_lines(done)])
 
 
 def _estimate_frames(sequence: FrameSequence, arguments: argparse.Namespace) -> ResponseEstimate:

@@ -20,4 +20,11 @@ def estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOpti
 
 def plate_options(arguments: argparse.Namespace) -> PlateOptions:
     """Return how linear plates are written."""
-    return PlateOptions(depth=arguments.depth, exposure=arguments.exposure, overwrite=arguments.overwrite)
+    return PlateOptions(
+        depth=arguments.depth,
+        exposure=arguments.exposure.stops,
+        gray=arguments.exposure.gray,
+        primaries=arguments.primaries,
+        output_space=arguments.output_space,
+        overwrite=arguments.overwrite,
+    )

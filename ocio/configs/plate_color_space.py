@@ -11,6 +11,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
 from crfnet_core.types import Float64Array
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
@@ -38,7 +39,7 @@ REC709_TO_AP0 = (
 
 @dataclass(frozen=True)
 class PlateColorSpace:
-    """The colour space of a plate, which its camera's inverse response converts to linear Rec.709.
+    """The colour space of a plate: its camera's inverse response, an exposure, and its primaries.
 
     Parameters
     ----------
@@ -56,7 +57,9 @@ class PlateColorSpace:
         The names of the plate's files with `*` and `?`, for example "shot_plate01.*.png", for a file rule; they match
         in any folder, and upper and lower case differ.
     exposure : float
-        Stops added after the response.
+        Stops added after the response. They stand in the config as a transform of their own, to be edited there.
+    primaries : Primaries
+        In which the plate is encoded.
 
     Raises
     ------
@@ -72,6 +75,7 @@ class PlateColorSpace:
     encoding: str = "sdr-video"
     file_pattern: str | None = None
     exposure: float = 0.0
+    primaries: Primaries = REC709
 
     def __post_init__(self) -> None:
         lut_file = PureWindowsPath(self.lut_file)
@@ -123,9 +127,10 @@ def without_plate_rules(config: OCIO.Config) -> OCIO.Config:
 def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO.Config:
     """Return a copy of `config` with plates' colour spaces, and with their file rules before all other rules.
 
-    The profile version and everything else stay. After the response, the plate is converted from linear Rec.709 to the
-    config's reference space as the config's own linear Rec.709 space says, or else through its `aces_interchange`
-    role. Profile version 1 has neither aliases nor file rules: they are left out there.
+    The profile version and everything else stay. After the response and the exposure, the plate is converted from its
+    primaries to linear Rec.709, and from there to the config's reference space as the config's own linear Rec.709 space
+    says, or else through its `aces_interchange` role. Profile version 1 has neither aliases nor file rules: they are
+    left out there, and so is an exposure of 0.
 
     Parameters
     ----------
@@ -200,13 +205,14 @@ def _remove(config: OCIO.Config, name: str) -> None:
 
 
 def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform:
-    """Return one transform: the LUT, the exposure, and from linear Rec.709 to the reference space."""
+    """Return the LUT, the exposure, and the matrices from the plate's primaries to the reference space."""
     file_name = space.lut_file.replace("\\", "/")
     steps: list[OCIO.Transform] = [OCIO.FileTransform(src=file_name, interpolation=OCIO.INTERP_LINEAR)]
-    if space.exposure:
+    if space.exposure or config.getMajorVersion() >= 2:  # profile version 1 does not know this transform
         steps.append(OCIO.ExposureContrastTransform(OCIO.EXPOSURE_CONTRAST_LINEAR, exposure=space.exposure))
-    steps += rec709_to_reference(config)
-    return steps[0] if len(steps) == 1 else OCIO.GroupTransform(steps)
+    if space.primaries != REC709:
+        steps.append(matrix_transform(conversion_matrix(space.primaries, REC709)))
+    return OCIO.GroupTransform([*steps, *rec709_to_reference(config)])
 
 
 def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
@@ -223,7 +229,7 @@ def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
             return _space_to_reference(found)
     interchange = config.getColorSpace("aces_interchange")
     if interchange is not None:
-        return [_matrix(np.array(REC709_TO_AP0)), *_space_to_reference(interchange)]
+        return [matrix_transform(np.array(REC709_TO_AP0)), *_space_to_reference(interchange)]
     raise ConfigError("the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one")
 
 
@@ -236,10 +242,10 @@ def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
     return [] if backward is None else [OCIO.GroupTransform([backward], OCIO.TRANSFORM_DIR_INVERSE)]
 
 
-def _matrix(rows: Float64Array) -> OCIO.MatrixTransform:
-    """Return a transform that multiplies RGB by `rows`, shape (3, 3)."""
+def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
+    """Return a transform that multiplies RGB by `rows`, shape (3, 3), of 12 decimals, which every machine computes."""
     square = np.eye(4)
-    square[:3, :3] = rows
+    square[:3, :3] = np.round(rows, 12) + 0.0  # not -0
     return OCIO.MatrixTransform(matrix=square.ravel().tolist())
 
 

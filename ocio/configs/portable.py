@@ -9,10 +9,32 @@ from importlib.resources import files
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from ocio.configs.plate_color_space import REC709_TO_AP0, PlateColorSpace, add_plate_color_space
+from crfnet_core.metadata.color_tags import (
+    ADOBE_RGB,
+    DISPLAY_P3,
+    PROPHOTO,
+    REC709,
+    REC2020,
+    Primaries,
+    conversion_matrix,
+)
+from ocio.configs.plate_color_space import (
+    REC709_TO_AP0,
+    PlateColorSpace,
+    add_plate_color_space,
+    matrix_transform,
+)
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"
+
+#: Linear spaces of other primaries, in which linear plates may be: the name in Blender, and other names.
+LINEAR_SPACES = (
+    (DISPLAY_P3, "Linear DCI-P3 D65", ("lin_p3d65_scene", "lin_p3d65", "Linear P3-D65")),
+    (REC2020, "Linear Rec.2020", ("lin_rec2020_scene", "lin_rec2020")),
+    (ADOBE_RGB, "Linear AdobeRGB", ("lin_adobergb_scene", "lin_adobergb")),
+    (PROPHOTO, "Linear ProPhoto RGB", ("lin_prophoto",)),
+)
 
 
 def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
@@ -32,11 +54,27 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
         If two spaces share a name or an alias, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
+    for primaries, name, aliases in LINEAR_SPACES:
+        _add_linear_space(config, primaries, name, aliases)
     names = Counter(space.name.casefold() for space in spaces)
     for space in spaces:
         if names[space.name.casefold()] > 1:
             raise ConfigError(f"{space.name}: two plates have this name; rename one")
     return add_plate_color_space(config, *spaces)
+
+
+def _add_linear_space(config: OCIO.Config, primaries: Primaries, name: str, aliases: Sequence[str]) -> None:
+    """Add the linear space of some primaries to a config whose reference is linear Rec.709."""
+    space = OCIO.ColorSpace(
+        name=name,
+        aliases=list(aliases),
+        family="Scene-linear",
+        encoding="scene-linear",
+        description=f"Scene-linear light, {primaries.name} primaries.",
+        bitDepth=OCIO.BIT_DEPTH_F32,
+        toReference=matrix_transform(conversion_matrix(primaries, REC709)),
+    )
+    config.addColorSpace(space)
 
 
 def _template() -> str:

@@ -6,5 +6,6 @@ spi1d     Sony's .spi1d
 cube      the .cube format of Adobe and Resolve
 clf       the Academy's Common LUT Format
 response  the response of a LUT of its inverse
+exposure  the stops that put white at 1 or 18 % gray at 0.18
 files     read or write a LUT file of any of these formats, by its suffix
 """

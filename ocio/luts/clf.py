@@ -8,14 +8,11 @@ Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 213
 
 from __future__ import annotations
 
-import hashlib
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import escape
-
-import numpy as np
 
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
@@ -47,7 +44,7 @@ def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     """
     depth = 'inBitDepth="32f" outBitDepth="32f"'
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
-    lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{_identity(lut)}" compCLFversion="3.0">')
+    lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{lut.identity}" compCLFversion="3.0">')
     lines += [f"    <Description>{escape(comment)}</Description>" for comment in lut.comments]
     if lut.domain != (0.0, 1.0):
         ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)
@@ -82,12 +79,6 @@ def read_clf(path: str | Path) -> Lut1D:
     lut = source.lut(rows, length=length, channels=channels, domain=domain, comments=comments)
     scale = _scale(source, table, "outBitDepth", "LUT1D")
     return lut if scale == 1 else Lut1D(lut.values / scale, lut.domain, lut.comments)
-
-
-def _identity(lut: Lut1D) -> str:
-    """Return an id that depends on nothing but the table and its domain."""
-    content = np.array([*lut.domain, *lut.values], dtype="<f4").tobytes()
-    return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def _steps(source: LutText) -> tuple[list[ElementTree.Element], list[str]]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
@@ -73,6 +74,12 @@ class Lut1D:
             return NotImplemented
         same_table = self.domain == other.domain and np.array_equal(self.values, other.values)
         return same_table and self.comments == other.comments
+
+    @property
+    def identity(self) -> str:
+        """A name that depends on nothing but the table and its domain: a part of their SHA-256."""
+        content = np.array([*self.domain, *self.values], dtype="<f4").tobytes()
+        return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output for every pixel, by linear interpolation.

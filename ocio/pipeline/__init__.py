@@ -1,6 +1,6 @@
 """The one way from photographs to files, for the command and for the add-on.
 
-estimates  photographs or frames to the response estimated from them, its LUT and its exposure
+estimates  photographs or frames to the response estimated from them, and its LUT
 folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheet, document and config
 each       many photographs, one response each: written as they end, continued when interrupted
 manifest   the file in which they stand
@@ -12,11 +12,11 @@ called with (done, total); whatever it raises ends the step, which first removes
 space into the config that a program reads at its start, see `ocio.configs.installed`.
 """
 
+from ocio.luts.exposure import anchored_exposure
 from ocio.pipeline.delivery import bake_plates, export_luts
 from ocio.pipeline.each import estimate_each, find_photographs, plan_each
 from ocio.pipeline.estimates import (
     PhotographEstimate,
-    anchored_exposure,
     estimate_frames,
     estimate_photographs,
     load_network,

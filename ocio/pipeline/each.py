@@ -19,8 +19,8 @@ from ocio.configs.portable import portable_config
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.estimates import estimate_photographs, load_network, load_prior, response_lut
-from ocio.pipeline.folders import write_estimate
+from ocio.pipeline.estimates import estimate_photographs, load_network, load_prior
+from ocio.pipeline.folders import estimated_light, with_light, write_estimate
 from ocio.pipeline.manifest import MANIFEST, Manifest, PhotographRecord
 from ocio.pipeline.workers import cores, worker_pool
 from ocio.staging import staged_files
@@ -173,7 +173,7 @@ def estimate_each(
             _show(progress, done, len(tasks))
         names = [str(task.photo) for task in tasks]
         manifest.rewrite(dict.fromkeys([*names, *manifest.records]))
-        _write_configs(out, manifest, first.plates)
+        _write_configs(out, manifest)
     return [manifest.records[name] for name in names]
 
 
@@ -186,12 +186,12 @@ def estimate_one(task: Task) -> PhotographRecord:
             _check_absent(task.files.own)
         network, prior = _network_and_prior(task.options)
         estimated = estimate_photographs((task.photo,), network, prior, task.options)
-        lut = response_lut(estimated.estimate, length=task.outputs.lut_length)
+        light = estimated_light(estimated, task.plates, lut_length=task.outputs.lut_length)
         with output_folder(target), staged_files(target) as staged:
-            write_estimate(task.files.in_folder(staged), estimated, lut, task.plates)
+            write_estimate(task.files.in_folder(staged), estimated, light, task.plates)
     except (CRFNetError, OSError, MemoryError) as problem:
         return PhotographRecord(photograph=str(task.photo), error=one_line(problem) or "not enough memory")
-    return PhotographRecord.of(task.photo, task.folder, estimated.estimate)
+    return PhotographRecord.of(task.photo, task.folder, estimated.estimate, light)
 
 
 def _records(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
@@ -237,22 +237,24 @@ def _check_absent(paths: Iterable[Path]) -> None:
             raise PlateError(f"{path}: exists already; add --overwrite or move it away")
 
 
-def _write_configs(out: Path, manifest: Manifest, plates: PlateOptions) -> None:
+def _write_configs(out: Path, manifest: Manifest) -> None:
     """Write a config into each folder, with the colour spaces of all its photographs that have an estimate."""
-    folders: dict[Path, list[tuple[Path, OutputFiles]]] = {}
+    folders: dict[Path, list[PhotographRecord]] = {}
     for record in manifest.records.values():
         if not record.error:
-            photo = Path(record.photograph)
-            files = OutputFiles.named(out / record.folder, (photo,))
-            folders.setdefault(files.config, []).append((photo, files))
-    for config, members in folders.items():
-        if len(members) > MAX_COLOR_SPACES:
-            config.unlink(missing_ok=True)
+            folders.setdefault(out / record.folder, []).append(record)
+    for folder, records in folders.items():
+        photos = [Path(record.photograph) for record in records]
+        files = [OutputFiles.named(folder, [photo]) for photo in photos]
+        if len(files) > MAX_COLOR_SPACES:
+            files[0].config.unlink(missing_ok=True)
             continue
-        spaces = [files.plate_color_space(photo, exposure=plates.exposure) for photo, files in members]
-        _, first = members[0]
-        check = {first.color_space: read_lut(first.spi1d)}  # they all are made alike
-        write_config(config, portable_config(spaces), check=check, overwrite=True)
+        spaces = [
+            with_light(own.plate_color_space(photo), record.exposure, record.plate)
+            for own, photo, record in zip(files, photos, records, strict=True)
+        ]
+        check = {files[0].color_space: read_lut(files[0].spi1d)}  # they all are made alike
+        write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
 
 
 def _show(progress: Progress | None, done: int, total: int) -> None:

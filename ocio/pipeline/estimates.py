@@ -1,4 +1,4 @@
-"""From photographs or frames to the response that is estimated from them, its LUT and its exposure."""
+"""From photographs or frames to the response that is estimated from them, and its LUT."""
 
 from __future__ import annotations
 
@@ -6,17 +6,14 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
-from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
+from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Prior
-from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float32Array, Progress
-from ocio.defaults import LUT_LENGTH, MIDDLE_GRAY
+from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.options import EstimateOptions
 from ocio.plates.frames import FrameSequence, sample_frames
@@ -36,6 +33,8 @@ class PhotographEstimate:
         The photographs.
     facts : tuple of PhotoFacts
         What the report says of each photograph.
+    tags : tuple of ColorTags
+        What each file says of its primaries.
     preview : ndarray, float32, shape (h, w, 3)
         Every `stride`-th pixel of the first photograph, code values in [0, 1].
     stride : int
@@ -46,6 +45,7 @@ class PhotographEstimate:
 
     paths: tuple[Path, ...]
     facts: tuple[PhotoFacts, ...]
+    tags: tuple[ColorTags, ...]
     preview: Float32Array
     stride: int
     estimate: ResponseEstimate
@@ -106,19 +106,21 @@ def estimate_photographs(
         If a photograph cannot be read or is smaller than a window.
     """
     facts: list[PhotoFacts] = []
+    tags: list[ColorTags] = []
     previews: list[Float32Array] = []
 
     def photos() -> Iterator[Photo]:
         for path in paths:
             photo = read_photo(path)
             facts.append(PhotoFacts.of(photo))
+            tags.append(photo.metadata.color if photo.metadata else ColorTags())
             if not previews:
                 stride = _stride(facts[0])
                 previews.append(photo.pixels[::stride, ::stride].copy())
             yield photo
 
     estimate = _estimate(photos(), network, prior, options, progress)
-    return PhotographEstimate(tuple(paths), tuple(facts), previews[0], _stride(facts[0]), estimate)
+    return PhotographEstimate(tuple(paths), tuple(facts), tuple(tags), previews[0], _stride(facts[0]), estimate)
 
 
 def estimate_frames(
@@ -163,32 +165,6 @@ def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut
         If the length is not 2 to 65536.
     """
     return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))
-
-
-def anchored_exposure(curve: ResponseCurve, *, gray: float | None = None, stops: float = 0.0) -> float:
-    """Return the stops to add after the inverse response; a response alone leaves the exposure open.
-
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response.
-    gray : float or None
-        The encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18.
-        By default white is the anchor: brightness 1 becomes a linear 1.
-    stops : float
-        Stops added on top of the anchor.
-
-    Raises
-    ------
-    CRFNetError
-        If the gray is black in this response.
-    """
-    if gray is None:
-        return stops
-    irradiance = float(curve.inverse(gray))
-    if irradiance <= 0:
-        raise CRFNetError(f"a brightness of {gray:g} is black in this response; anchor a brighter gray")
-    return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
 
 
 def _estimate(

@@ -3,23 +3,24 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
-import PyOpenColorIO as OCIO
-
 from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text
+from crfnet_core.metadata.color_tags import REC709
 from ocio.configs.files import write_config
+from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D
 from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
 from ocio.plates.frames import FrameSequence
+from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
+from ocio.plates.primaries import PlatePrimaries, common_primaries
 from ocio.report import estimate_document, json_text
 from ocio.staging import staged_files
 
@@ -32,8 +33,8 @@ class OutputPlan:
     ----------
     files : OutputFiles
         The files, all in one folder, which need not exist yet.
-    config : PyOpenColorIO.Config
-        The config of the folder, with the colour space of the estimate.
+    space : PlateColorSpace
+        The colour space in the folder's config, before its exposure and primaries are known.
     plates : PlateOptions
         How the linear plates are written; `overwrite` holds for every file.
     lut_length : int
@@ -41,7 +42,7 @@ class OutputPlan:
     """
 
     files: OutputFiles
-    config: OCIO.Config
+    space: PlateColorSpace
     plates: PlateOptions
     lut_length: int
 
@@ -69,8 +70,9 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     """
     files = OutputFiles.named(folder, photos, has_sheet=outputs.has_sheet, has_linear=outputs.has_linear)
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
-    config = portable_config([files.plate_color_space(photos[0], exposure=plates.exposure)])
-    return OutputPlan(files, config, plates, outputs.lut_length)
+    space = files.plate_color_space(photos[0])
+    portable_config([space])
+    return OutputPlan(files, space, plates, outputs.lut_length)
 
 
 def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:
@@ -86,20 +88,47 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
     Raises
     ------
     CRFNetError
-        If a file cannot be written, a photograph has changed or gone, or the LUT length is out of range. The folder is
-        then as it was: either all files are written, or none.
+        If a file cannot be written, a photograph has changed or gone, the LUT length is out of range, photographs of
+        one estimate differ in their primaries, or these are unknown and have to be converted. The folder is then as it
+        was: either all files are written, or none.
     """
-    lut = response_lut(estimated.estimate, length=plan.lut_length)
+    light = estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
+    config = portable_config([with_light(plan.space, light.stops, light.plate)])
     folder = plan.files.report.parent
     with output_folder(folder), staged_files(folder) as staged:
         files = plan.files.in_folder(staged)
-        document = write_estimate(files, estimated, lut, plan.plates)
-        write_config(files.config, plan.config, check={files.color_space: lut})
+        document = write_estimate(files, estimated, light, plan.plates)
+        write_config(files.config, config, check={files.color_space: light.lut})
     return document
 
 
+def estimated_light(estimated: PhotographEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
+    """Return what the linear values of an estimate's photographs mean.
+
+    Raises
+    ------
+    CRFNetError
+        If the LUT length is out of range, the photographs differ in their primaries, or these are unknown and have to
+        be converted.
+    """
+    tags = dict(zip(estimated.paths, estimated.tags, strict=True))
+    common_primaries(tags, plates.primaries)
+    return PlateLight.of(estimated.tags[0], response_lut(estimated.estimate, length=lut_length), plates)
+
+
+def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries) -> PlateColorSpace:
+    """Return a plate's colour space with its exposure and its primaries; unknown ones are taken for Rec.709."""
+    treated = "" if plate.primaries else ", treated as Rec.709"
+    return replace(
+        space,
+        exposure=stops,
+        primaries=plate.primaries or REC709,
+        description=f"{space.description}; primaries {plate}{treated}",
+    )
+
+
 def write_estimate(
-    files: OutputFiles, estimated: PhotographEstimate, lut: Lut1D, plates: PlateOptions
+    files: OutputFiles, estimated: PhotographEstimate, light: PlateLight, plates: PlateOptions
 ) -> dict[str, Any]:
     """Write the files of one estimate, except the config, and return the document of its JSON file.
 
@@ -109,8 +138,8 @@ def write_estimate(
         Their names; none of them exists, as in a folder of `ocio.staging.staged_files`.
     estimated : PhotographEstimate
         The estimate.
-    lut : Lut1D
-        The inverse of its response, as `response_lut` returns it.
+    light : PlateLight
+        As `estimated_light` returns it.
     plates : PlateOptions
         How the linear plates are written.
 
@@ -120,14 +149,14 @@ def write_estimate(
         If a file cannot be written, or a photograph has changed or gone.
     """
     for path in files.luts:
-        write_lut(path, lut)
+        write_lut(path, light.lut)
     if files.linear:
         # Each photograph is read again: see `estimate_photographs`.
         for photo, linear in zip(estimated.paths, files.linear, strict=True):
-            linearize_plates(FrameSequence((photo,)), (linear,), lut, plates)
+            linearize_plates(FrameSequence((photo,)), (linear,), light.lut, plates)
     if files.sheet:
         _write_sheet(files.sheet, estimated)
-    document = estimate_document(estimated.estimate, estimated.facts, files)
+    document = estimate_document(estimated.estimate, estimated.facts, files, light)
     atomic_write_text(files.report, json_text(document), error=PlateError)
     return document
 

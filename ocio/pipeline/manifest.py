@@ -13,6 +13,9 @@ import numpy as np
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text
+from crfnet_core.metadata.color_tags import Primaries
+from ocio.plates.light import PlateLight
+from ocio.plates.primaries import PlatePrimaries
 from ocio.report import LikelyKind, result_line
 from ocio.report.documents import DECIMALS
 
@@ -38,6 +41,12 @@ class PhotographRecord:
         "good", "usable" or "do not trust".
     uncertainty, shape_uncertainty_stops : float
         The expected E_est, and the expected shape error in stops.
+    exposure : float
+        Stops added after the inverse response.
+    primaries : mapping, optional
+        The fields of the photograph's `Primaries`; None if they are unknown.
+    primaries_source : str
+        Who says so.
     summary : str
         The result in one line of words.
     error : str
@@ -51,11 +60,14 @@ class PhotographRecord:
     verdict: str = ""
     uncertainty: float | None = None
     shape_uncertainty_stops: float | None = None
+    exposure: float = 0.0
+    primaries: Mapping[str, Any] | None = None
+    primaries_source: str = ""
     summary: str = ""
     error: str = ""
 
     @classmethod
-    def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate) -> PhotographRecord:
+    def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate, light: PlateLight) -> PhotographRecord:
         """Return the record of an estimate."""
         kind = LikelyKind.of(estimate)
         return cls(
@@ -66,8 +78,21 @@ class PhotographRecord:
             verdict=estimate.verdict,
             uncertainty=round(estimate.uncertainty, DECIMALS),
             shape_uncertainty_stops=round(estimate.shape_uncertainty, DECIMALS),
+            exposure=light.stops,
+            primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
+            primaries_source=light.plate.source,
             summary=result_line(estimate),
         )
+
+    @property
+    def plate(self) -> PlatePrimaries:
+        """The primaries of the photograph."""
+        if self.primaries is None:
+            return PlatePrimaries(None, self.primaries_source)
+        fields: dict[str, Any] = {
+            name: tuple(value) if isinstance(value, list) else value for name, value in self.primaries.items()
+        }
+        return PlatePrimaries(Primaries(**fields), self.primaries_source)
 
 
 class Manifest:

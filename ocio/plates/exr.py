@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
@@ -12,9 +12,6 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
 from crfnet_core.image_io import first_line
-
-#: Colour space that linear plates declare: linear, with Rec.709 primaries, which the plate is assumed to have.
-COLOR_INTEROP_ID = "lin_rec709_scene"
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
 KEPT_METADATA = (
@@ -35,11 +32,26 @@ KEPT_METADATA = (
     "smpte:TimeCode",
 )
 
+#: OpenEXR's own names of metadata -> OpenImageIO's names of the same, the first that is there, which stay as well. The
+#: other standard attributes OpenImageIO names itself: expTime, aperture, capDate, framesPerSecond, timeCode, keyCode.
+STANDARD_NAMES = {
+    "cameraMake": ("Make",),
+    "cameraModel": ("Model",),
+    "lensModel": ("Exif:LensModel",),
+    "nominalFocalLength": ("Exif:FocalLength",),
+    "isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings"),
+}
+
+#: Those of them that are numbers, in millimetres and as ISO arithmetic speed.
+STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
+
 #: NumPy's types of the two depths.
 SAMPLE_TYPES: dict[str, np.dtype[np.floating[Any]]] = {"half": np.dtype(np.float16), "float": np.dtype(np.float32)}
 
 
-def linear_header(source: Any, *, channels: int, depth: str, comments: Sequence[str]) -> Any:
+def linear_header(
+    source: Any, *, channels: int, depth: str, attributes: Mapping[str, str | float | tuple[float, ...]]
+) -> Any:
     """Return the header of a linear plate.
 
     Parameters
@@ -50,8 +62,8 @@ def linear_header(source: Any, *, channels: int, depth: str, comments: Sequence[
         3, or 4 with alpha.
     depth : {"half", "float"}
         Sample type.
-    comments : sequence of str
-        Provenance of the LUT, kept as the attribute `crfnet:response`.
+    attributes : mapping
+        What the values mean, by name: a text, a number or several, as in `PlateLight.attributes`.
     """
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
     for name in ("x", "y", "full_x", "full_y", "full_width", "full_height"):
@@ -61,10 +73,22 @@ def linear_header(source: Any, *, channels: int, depth: str, comments: Sequence[
         if attribute.name in KEPT_METADATA:
             header.attribute(attribute.name, attribute.type, attribute.value)
     header.attribute("compression", "zips")
-    header.attribute("colorInteropID", COLOR_INTEROP_ID)
-    if comments:
-        header.attribute("crfnet:response", " | ".join(comments))
+    for name, value in {**_standard_attributes(header), **attributes}.items():
+        if isinstance(value, tuple):
+            header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
+        else:
+            header.attribute(name, value)
     return header
+
+
+def _standard_attributes(header: Any) -> dict[str, str | float]:
+    """Return the metadata in a header that OpenEXR has names of its own for, by these names."""
+    found: dict[str, str | float] = {}
+    for name, others in STANDARD_NAMES.items():
+        value = next((value for other in others if (value := header.getattribute(other))), None)
+        if value is not None:
+            found[name] = float(value) if name in STANDARD_NUMBERS else str(value)
+    return found
 
 
 def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> None:

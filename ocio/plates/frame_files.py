@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
 from crfnet_core.image_io import MAX_PIXELS, first_line, read_codes
+from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.types import Float32Array
 
 
@@ -29,12 +30,15 @@ class EncodedFrame:
         Coverage in [0, 1].
     header : OpenImageIO.ImageSpec
         The header of the file.
+    color : ColorTags
+        What the file says of its primaries.
     """
 
     samples: NDArray[Any]
     largest: int
     alpha: Float32Array | None
     header: Any
+    color: ColorTags = field(default_factory=ColorTags)
 
 
 def read_frame(path: Path) -> EncodedFrame:
@@ -57,7 +61,7 @@ def read_frame(path: Path) -> EncodedFrame:
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
     samples = values.pixels() if values.is_associated else values.codes
-    return EncodedFrame(samples, values.largest, alpha, values.header)
+    return EncodedFrame(samples, values.largest, alpha, values.header, values.metadata.color)
 
 
 def _read_encoded_exr(path: Path) -> EncodedFrame:

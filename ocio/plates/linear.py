@@ -8,7 +8,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor, as_completed
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
@@ -17,12 +17,15 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError, PlateError
 from crfnet_core.files import atomic_write, check_target
+from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
 from ocio.plates.frame_files import EncodedFrame, read_frame
 from ocio.plates.frames import FramePattern, FrameSequence, format_frames
+from ocio.plates.light import PlateLight, check_finished
+from ocio.plates.primaries import check_same_primaries, plate_primaries
 
 #: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8
@@ -48,11 +51,14 @@ class PlateReport:
         The files that existed already and were left alone.
     missing : tuple of int
         Numbers of the frames for which there is no plate.
+    light : PlateLight or None
+        What the numbers in the files mean.
     """
 
     written: tuple[Path, ...]
     skipped: tuple[Path, ...]
     missing: tuple[int, ...]
+    light: PlateLight | None = field(default=None, compare=False)
 
 
 def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]:
@@ -96,16 +102,17 @@ def linearize_plates(
     workers: int | None = None,
     progress: Progress | None = None,
 ) -> PlateReport:
-    """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: lut.apply(B) * 2 ** exposure.
+    """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
     Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused. Gray
     becomes RGB. Alpha is kept: the colour is divided by it where the file stores the product, and multiplied by it
     after the LUT, as OpenEXR requires. Rows and columns stay as stored, and so does the metadata that remains true.
-    The output is compressed with zips, carries the comments of the LUT, and has the same bytes in every run.
+    The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
+    The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
 
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
-    unless `overwrite` is set: the same call resumes an interrupted one. After a change of the LUT or the exposure,
-    overwrite or remove the files. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
+    unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure or space is
+    refused then. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
     Missing frames are only reported, and a frame that fails does not stop the others.
 
     Parameters
@@ -117,7 +124,7 @@ def linearize_plates(
     lut : Lut1D
         The inverse response: encoded brightness to linear irradiance.
     options : PlateOptions
-        Sample type, exposure, and whether finished frames are written again.
+        Sample type, exposure, primaries, space, and whether finished frames are written again.
     workers : int or None
         Frames linearised at a time; by default one per core, up to `MAX_WORKERS`.
     progress : callable or None
@@ -127,17 +134,21 @@ def linearize_plates(
     Raises
     ------
     PlateError
-        If a target cannot be written, an option is out of range, or, after all others are written, some frames
+        If a target cannot be written, an option is out of range, finished frames mean something else, the primaries
+        are unknown and have to be converted, or, after all others are written, some frames
         failed: the message names them.
     """
-    scale = _scale(lut, options)
     check_target(targets[0], overwrite=True, error=PlateError)
     jobs = dict(zip(targets, sequence.paths, strict=True))
+    first = _first_frame(sequence.paths)
+    light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
+    conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in jobs if not options.overwrite and target.exists())
+    check_finished(skipped, light)
     pending = {target: path for target, path in jobs.items() if target not in set(skipped)}
     _remove_leftovers(pending)
     failures: dict[Path, CRFNetError] = {}
-    with _started(pending, _worker_count(workers), _Conversion(lut, scale, options)) as futures:
+    with _started(pending, _worker_count(workers), conversion) as futures:
         _report(progress, len(skipped), len(jobs))
         for done, future in enumerate(as_completed(futures), len(skipped) + 1):
             try:
@@ -147,37 +158,67 @@ def linearize_plates(
             _report(progress, done, len(jobs))
     if failures:
         raise PlateError(_failure(failures, jobs, sequence))
-    return PlateReport(tuple(pending), skipped, sequence.missing)
+    return PlateReport(tuple(pending), skipped, sequence.missing, light)
+
+
+@dataclass(frozen=True, eq=False)
+class _FirstFrame:
+    """The first frame that can be read, whose tags hold for all; it is not read twice."""
+
+    path: Path
+    frame: EncodedFrame
+
+
+def _first_frame(paths: Sequence[Path]) -> _FirstFrame | None:
+    """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
+    for path in paths:
+        with suppress(CRFNetError):
+            return _FirstFrame(path, read_frame(path))
+    return None
 
 
 @dataclass(frozen=True, eq=False)
 class _Conversion:
-    """What is the same for every frame: the LUT, the factor of the exposure, and the options."""
+    """What is the same for every frame: what its light means, the factor of the exposure, the options, the first."""
 
-    lut: Lut1D
+    light: PlateLight
     scale: float
     options: PlateOptions
+    first: _FirstFrame | None
 
     def write(self, path: Path, target: Path) -> None:
         """Read one plate and write its linear EXR."""
-        frame = read_frame(path)
+        frame = self._read(path)
         pixels = self._linear_pixels(frame)
-        depth = self.options.depth
-        header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, comments=self.lut.comments)
+        attributes, depth = self.light.attributes, self.options.depth
+        header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
 
+    def _read(self, path: Path) -> EncodedFrame:
+        """Return a plate, which must have the primaries of the first."""
+        if self.first is None or path == self.first.path:
+            return self.first.frame if self.first else read_frame(path)
+        frame = read_frame(path)
+        found = plate_primaries(frame.color, self.options.primaries)
+        check_same_primaries(path, found, self.first.path, self.light.plate)
+        return frame
+
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
-        """Return lut.apply(B) * scale, times alpha, and alpha: shape (H, W, 3 or 4), of the output's sample type."""
+        """Return matrix @ lut.apply(B) * scale, times alpha, and alpha: (H, W, 3 or 4), of the output's type."""
         height, width, _ = frame.samples.shape
         linear = np.empty((height, width, 3 if frame.alpha is None else 4), SAMPLE_TYPES[self.options.depth])
         is_coded = frame.samples.dtype.kind == "u"
         codes = np.arange(frame.largest + 1) / frame.largest
-        table = (self.lut.apply(codes) * self.scale).astype(np.float32 if frame.alpha is not None else linear.dtype)
+        lut, matrix = self.light.lut, self.light.space.matrix
+        is_final = frame.alpha is None and matrix is None
+        table = (lut.apply(codes) * self.scale).astype(linear.dtype if is_final else np.float32)
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
             block = frame.samples[rows]  # (_ROWS, W, 3)
-            values = np.take(table, block) if is_coded else self.lut.apply(block) * np.float32(self.scale)
+            values = np.take(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
+            if matrix is not None:
+                values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
                 alpha = frame.alpha[rows, :, None]
                 values = values * alpha
@@ -186,17 +227,18 @@ class _Conversion:
         return linear
 
 
-def _scale(lut: Lut1D, options: PlateOptions) -> float:
+def _scale(light: PlateLight, options: PlateOptions) -> float:
     """Return the factor of the exposure, after checking that the sample type can hold the linear values."""
+    matrix = np.eye(3) if light.space.matrix is None else light.space.matrix
     if options.depth not in SAMPLE_TYPES:
         raise PlateError(f"depth {options.depth!r} is unknown; choose half or float")
     try:
-        scale = float(2.0**options.exposure)
+        scale = float(2.0**light.stops)
     except OverflowError:
         scale = np.inf
-    peak = float(np.abs(lut.values).max()) * scale
+    peak = float(np.abs(light.lut.values).max() * np.abs(matrix).sum(axis=1).max()) * scale
     if not 0 < scale < np.inf or not peak <= np.finfo(np.float32).max:
-        raise PlateError(f"an exposure of {options.exposure} stops is out of range; give one like -2 or 1.5")
+        raise PlateError(f"an exposure of {light.stops:g} stops is out of range; give one like -2 or 1.5")
     if not peak <= float(np.finfo(SAMPLE_TYPES[options.depth]).max):
         raise PlateError(f"values up to {peak:.6g} do not fit into half floats; ask for float, or for less exposure")
     return scale

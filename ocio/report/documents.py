@@ -14,8 +14,11 @@ from numpy.typing import ArrayLike
 
 from crfnet_core.estimate import ResponseEstimate, WindowEstimate
 from crfnet_core.network import ModelConfig
+from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ocio.luts.exposure import linear_gray
 from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles
+from ocio.plates.light import PlateLight
 from ocio.plates.linear import PlateReport
 from ocio.report.facts import LikelyKind, PhotoFacts, brightness_percent
 
@@ -32,7 +35,9 @@ def json_text(document: Mapping[str, Any]) -> str:
     return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
 
 
-def estimate_document(estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles) -> dict[str, Any]:
+def estimate_document(
+    estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles, light: PlateLight
+) -> dict[str, Any]:
     """Return everything known about an estimate, ready for JSON; file names are relative to the folder."""
     return {
         "photographs": [vars(photo) for photo in photos],
@@ -44,6 +49,7 @@ def estimate_document(estimate: ResponseEstimate, photos: Sequence[PhotoFacts], 
             "lower": _rounded(estimate.band[0]),
             "upper": _rounded(estimate.band[1]),
         },
+        **_light_document(light),
         "color_space": files.color_space,
         "files": _file_names(files),
     }
@@ -55,6 +61,7 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
         "written": [str(path) for path in report.written],
         "skipped": [str(path) for path in report.skipped],
         "missing": list(report.missing),
+        **(_light_document(report.light) if report.light else {}),
         "estimate": {"photographs": list(estimate.photos), **_trust(estimate)} if estimate else None,
     }
 
@@ -76,6 +83,26 @@ def lut_document(path: Path, lut: Lut1D) -> dict[str, Any]:
 def model_document(config: ModelConfig) -> dict[str, Any]:
     """Return what a model's configuration says, ready for JSON."""
     return {"kind": "model", **dataclasses.asdict(config)}
+
+
+def _light_document(light: PlateLight) -> dict[str, Any]:
+    """Return the primaries, the exposure and the space of linear plates, ready for JSON."""
+    primaries, gray = light.plate.primaries, linear_gray(light.lut)
+    corners = ("red", "green", "blue", "white")
+    return {
+        "primaries": {
+            "name": light.plate.name,
+            "source": light.plate.source,
+            **({corner: _rounded(getattr(primaries, corner)) for corner in corners} if primaries else {}),
+        },
+        "exposure": {
+            "stops": _rounded(light.stops),
+            "gray_brightness": GRAY_BRIGHTNESS,
+            "gray_linear": _rounded(gray * 2**light.stops),
+            "gray_stops": _rounded(np.log2(MIDDLE_GRAY / gray)) if gray > 0 else None,
+        },
+        "output_space": {"name": str(light.space), "interop_id": light.space.interop_id},
+    }
 
 
 def _trust(estimate: ResponseEstimate) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior import Family, Verdict
-from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR
+from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
 from ocio.output_files import OutputFiles
 from ocio.plates.frames import format_frames
 from ocio.plates.linear import PlateReport
@@ -31,6 +31,9 @@ VERDICTS = {
     Verdict.USABLE: "usable: look at the plate before you rely on it",
     Verdict.DO_NOT_TRUST: "not to be trusted: take another photograph of this camera, or several together",
 }
+
+#: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
+GRAY_TOLERANCE = 0.0005
 
 #: What to do if a picture is not to be trusted and of such a family.
 REMEDIES = {
@@ -90,6 +93,20 @@ def oiiotool_lines(photo: Path, files: OutputFiles) -> list[str]:
     ]
 
 
+def light_lines(document: Mapping[str, Any]) -> list[str]:
+    """Return the primaries and the exposure of linear plates, from an `estimate_document` or a `plate_document`."""
+    if "primaries" not in document:
+        return []
+    primaries, space = document["primaries"], document["output_space"]
+    is_unknown = "white" not in primaries
+    return [
+        f"Primaries: {primaries['name']} ({primaries['source']}); the linear EXR is {space['name']}"
+        f" ({space['interop_id']}).",
+        *(["Warning: colors are taken as they are; say what the primaries are with --primaries."] * is_unknown),
+        _exposure_line(document["exposure"]),
+    ]
+
+
 def plate_lines(report: PlateReport) -> list[str]:
     """Return which frames were written, left alone or missing, one line each."""
     lines = []
@@ -146,6 +163,15 @@ def _expectation(estimate: ResponseEstimate) -> str:
         f" {LAST_SHAPE_CODE}) and the curve by {curve}; gamma 2.2 is usually off by {GAMMA_SHAPE_ERROR:.1f} stop"
         f" and {gamma}."
     )
+
+
+def _exposure_line(exposure: Mapping[str, Any]) -> str:
+    """Return the exposure, where 18 % gray lies by it, and how many stops would put it right."""
+    code, linear, wanted = round(255 * exposure["gray_brightness"]), exposure["gray_linear"], exposure["gray_stops"]
+    line = f"Exposure: {exposure['stops']:+.2f} stop. Code {code}, by convention 18 % gray, is then {linear:.3f}"
+    if wanted is None or abs(linear - MIDDLE_GRAY) < GRAY_TOLERANCE:
+        return f"{line}."
+    return f"{line}; --exposure gray would make it {MIDDLE_GRAY}: {wanted:+.2f} stop."
 
 
 def _first_and_last(paths: Sequence[Path]) -> str:

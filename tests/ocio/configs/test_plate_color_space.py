@@ -5,8 +5,9 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, conversion_matrix
 from ocio.configs.files import write_config
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from ocio.configs.plate_color_space import REC709_TO_AP0, PlateColorSpace, add_plate_color_space
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
 from tests.helpers.configs import LUT, REC709_TO_AP1, SPACE, converted, loaded, rule_names
@@ -128,3 +129,39 @@ class TestAdding:
     def test_an_alias_of_our_own_space_is_refused(self):
         with pytest.raises(ConfigError, match="uses this name for 'CRF plate01'"):
             add_plate_color_space(portable_config([SPACE]), PlateColorSpace("crf_plate01", "a.spi1d"))
+
+
+class TestPrimaries:
+    PLATE = PlateColorSpace("CRF plate01", "plate01.spi1d", primaries=DISPLAY_P3, exposure=0.5)
+
+    @pytest.mark.parametrize("base", [*BUILT_IN, "studio-config-latest"])
+    def test_they_reach_aces_as_the_config_itself_converts_them(self, folder, base):
+        config = add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(base), self.PLATE)
+        write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
+        pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
+        found = converted(loaded(folder / "config.ocio"), "CRF plate01", "ACES2065-1", pixels)
+        base_config = OCIO.Config.CreateFromBuiltinConfig("studio-config-latest")
+        light = LUT.apply(pixels).astype(np.float32) * 2**0.5
+        expected = converted(base_config, "lin_p3d65_scene", "ACES2065-1", light)
+        np.testing.assert_allclose(found, expected, atol=1e-5)
+
+    @pytest.mark.parametrize("name", ["lin_p3d65_scene", "lin_adobergb_scene", "lin_rec2020_scene"])
+    @pytest.mark.parametrize("target", ["ACES2065-1", "ACEScg", "lin_rec709_scene"])
+    def test_linear_spaces_are_those_of_the_studio_config(self, name, target):
+        pixels = np.random.default_rng(0).uniform(-0.1, 2, (500, 3)).astype(np.float32)
+        expected = converted(OCIO.Config.CreateFromBuiltinConfig("studio-config-latest"), name, target, pixels)
+        np.testing.assert_allclose(converted(portable_config([]), name, target, pixels), expected, atol=1e-5)
+
+    @pytest.mark.parametrize(("target", "primaries"), [("ACES2065-1", AP0), ("ACEScg", AP1)])
+    @pytest.mark.parametrize("source", [REC709, DISPLAY_P3, ADOBE_RGB, REC2020])
+    def test_our_matrices_to_aces_are_those_of_opencolorio(self, source, target, primaries):
+        config = OCIO.Config.CreateFromBuiltinConfig("studio-config-latest")
+        found = converted(config, source.interop_id, target, np.eye(3, dtype=np.float32)).T
+        np.testing.assert_allclose(conversion_matrix(source, primaries), found, atol=1e-6)
+
+    def test_rec709_needs_no_matrix(self):
+        text = portable_config([SPACE]).serialize()
+        assert "MatrixTransform" not in text[text.index("name: CRF plate01") :]
+
+    def test_the_matrix_of_the_configs_is_ours(self):
+        np.testing.assert_allclose(conversion_matrix(REC709, AP0), REC709_TO_AP0, atol=1e-11)

@@ -8,6 +8,7 @@ import pytest
 
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
+from ocio.plates.exr import STANDARD_NAMES
 from ocio.plates.linear import PlateReport
 from tests.helpers.folders import listed
 from tests.helpers.images import write_image
@@ -149,7 +150,25 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
     assert (found["Make"], found["Orientation"], found["DateTime"]) == ("Canon", 6, "2001:02:03 04:05:06")
     assert found["FNumber"] == pytest.approx(2.8)
     assert found["ExposureTime"] == pytest.approx(0.02)
+    assert found["crfnet:exposure"] == 0
+    assert found["crfnet:lut"] == LUT.identity
     assert not {"ICCProfile", "Exif:ColorSpace", "Software"} & set(found)
+
+
+def test_metadata_has_the_names_of_openexr(tmp_path, out):
+    exif = {"Exif__LensModel": "EF50mm", "Exif__FocalLength": 50.0, "Exif__PhotographicSensitivity": 200}
+    camera = {"Make": "Canon", "Model": "EOS 20D", "ExposureTime": 0.02, "FNumber": 2.8}
+    linearize(write_image(tmp_path / "a.jpg", SMALL[..., :3], **exif, **camera), out / "a.exr", LUT)
+    found = attributes(read_exr(out / "a.exr")[1])
+    assert {name: found.get(name) for name in STANDARD_NAMES} == {
+        "cameraMake": "Canon",
+        "cameraModel": "EOS 20D",
+        "lensModel": "EF50mm",
+        "nominalFocalLength": 50.0,
+        "isoSpeed": 200.0,
+    }
+    content = (out / "a.exr").read_bytes()
+    assert all(name.encode() in content for name in (*STANDARD_NAMES, "expTime", "aperture", "Make"))
 
 
 def test_time_code_and_rate_are_kept(tmp_path, out):

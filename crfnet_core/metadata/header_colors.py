@@ -1,0 +1,116 @@
+"""The colour tags in an image file's header: ICC profile, CICP and EXIF, the most telling first."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+
+from crfnet_core.colorimetry import Chromaticity
+from crfnet_core.metadata.color_tags import (
+    ADOBE_RGB,
+    DISPLAY_P3,
+    REC709,
+    REC2020,
+    ColorTags,
+    Primaries,
+)
+from crfnet_core.metadata.icc import read_icc
+
+#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
+C: Chromaticity = (0.310, 0.316)
+DCI: Chromaticity = (0.314, 0.351)
+
+_SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
+
+#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified".
+CICP_PRIMARIES = {
+    1: REC709,
+    4: Primaries("BT.470 M", (0.67, 0.33), (0.21, 0.71), (0.14, 0.08), C),
+    5: Primaries("Rec.601 (625 lines)", (0.64, 0.33), (0.29, 0.60), (0.15, 0.06)),
+    6: Primaries("Rec.601 (525 lines)", *_SMPTE_C),
+    7: Primaries("SMPTE 240M", *_SMPTE_C),
+    8: Primaries("film", (0.681, 0.319), (0.243, 0.692), (0.145, 0.049), C),
+    9: REC2020,
+    11: Primaries("DCI-P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), DCI),
+    12: DISPLAY_P3,
+    22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
+}
+
+#: TransferCharacteristics of ITU-T H.273, Table 3, that are no ordinary picture for a display.
+CICP_TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
+
+#: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
+EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
+
+#: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.
+DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
+
+#: What is said of an ICC profile that gives no primaries.
+TABLES = "ICC profile of tables"
+
+
+def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
+    """Return what an open file says of its colours; the first of these that says something is believed.
+
+    The ICC profile comes before CICP, but in PNG after it (PNG Specification, third edition, 4.3); EXIF is last. A
+    profile that works by tables gives no primaries, and then nothing else is asked for them.
+
+    Parameters
+    ----------
+    header : OpenImageIO.ImageSpec
+        Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes) and "Exif:ColorSpace".
+    file_format : str
+        As in `FileMetadata`.
+    interop_index : str
+        EXIF InteroperabilityIndex, which OpenImageIO does not read.
+    """
+    tags = [_icc_tags(header), cicp_tags(_sequence(header, "CICP"))]
+    ordered = [*(reversed(tags) if file_format == "PNG" else tags), _exif_tags(header, interop_index)]
+    found = [each for each in ordered if each.source]
+    first = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
+    transfer = next((each.transfer for each in found if each.transfer), "")
+    return ColorTags(first.primaries, transfer, first.source)
+
+
+def cicp_tags(codes: Sequence[int], source: str = "CICP") -> ColorTags:
+    """Return what code points of ITU-T H.273 say: at least ColourPrimaries and TransferCharacteristics.
+
+    Codes that are unspecified or reserved say nothing.
+    """
+    if len(codes) < 2:
+        return ColorTags()
+    primaries, transfer = CICP_PRIMARIES.get(codes[0]), CICP_TRANSFERS.get(codes[1], "")
+    return ColorTags(primaries, transfer, source) if primaries or transfer else ColorTags()
+
+
+def _icc_tags(header: Any) -> ColorTags:
+    """Return what the ICC profile says."""
+    profile = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
+    if profile is None or not profile.is_rgb:
+        return ColorTags()
+    codes = cicp_tags(profile.cicp)
+    primaries = profile.primaries or codes.primaries
+    return ColorTags(primaries, codes.transfer, "ICC profile" if primaries else TABLES)
+
+
+def _exif_tags(header: Any, interop_index: str) -> ColorTags:
+    """Return what EXIF says; that of an uncalibrated picture says nothing."""
+    space = _attribute(header, "Exif:ColorSpace")
+    primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index)
+    return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
+
+
+def _sequence(header: Any, name: str) -> Sequence[int]:
+    """Return an array of whole numbers in the header; empty where it is absent."""
+    value = _attribute(header, name)
+    return () if value is None or isinstance(value, str | int | float) else value
+
+
+def _attribute(header: Any, name: str) -> Any:
+    """Return a value in the header; None where it is absent or no value of Python's."""
+    try:
+        return header.getattribute(name)
+    except (RuntimeError, TypeError, ValueError):
+        return None

@@ -1,0 +1,43 @@
+"""The exposure of a linear plate, in stops: anchored at white, or at 18 % gray."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.response import ResponseCurve
+from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ocio.luts.lut1d import Lut1D
+
+
+def anchored_exposure(response: ResponseCurve | Lut1D, *, gray: float | None = None, stops: float = 0.0) -> float:
+    """Return the stops to add after the inverse response (Eq. 31 of docs/METHOD.md).
+
+    A response alone leaves the exposure open.
+
+    Parameters
+    ----------
+    response : ResponseCurve or Lut1D
+        The response, or its inverse as a LUT.
+    gray : float or None
+        The encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18.
+        By default white is the anchor: brightness 1 becomes a linear 1.
+    stops : float
+        Stops added on top of the anchor.
+
+    Raises
+    ------
+    CRFNetError
+        If the gray is black in this response.
+    """
+    if gray is None:
+        return stops
+    irradiance = linear_gray(response, gray)
+    if irradiance <= 0:
+        raise CRFNetError(f"a brightness of {gray:g} is black in this response; anchor a brighter gray")
+    return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
+
+
+def linear_gray(response: ResponseCurve | Lut1D, gray: float = GRAY_BRIGHTNESS) -> float:
+    """Return the linear value of an encoded brightness, by default that at which cameras place 18 % gray."""
+    return float(response.inverse(gray) if isinstance(response, ResponseCurve) else response.apply(gray))

@@ -1,0 +1,117 @@
+"""What the numbers of a linear plate mean, and whether frames that are there already mean the same."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import OpenImageIO as oiio
+
+from crfnet_core.errors import PlateError
+from crfnet_core.metadata.color_tags import ColorTags
+from ocio.luts.exposure import anchored_exposure
+from ocio.luts.lut1d import Lut1D
+from ocio.options import PlateOptions
+from ocio.plates.linear_space import LinearSpace, linear_space
+from ocio.plates.primaries import PlatePrimaries, plate_primaries
+
+#: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and who says so.
+RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
+PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
+
+#: Largest difference in stops between exposures that are the same.
+SAME_EXPOSURE = 1e-3
+
+
+@dataclass(frozen=True)
+class PlateLight:
+    """What the numbers of a linear plate mean.
+
+    Parameters
+    ----------
+    lut : Lut1D
+        The inverse response.
+    stops : float
+        The exposure: stops added after it.
+    plate : PlatePrimaries
+        The primaries of the encoded plate.
+    space : LinearSpace
+        The space of the linear values.
+    """
+
+    lut: Lut1D
+    stops: float
+    plate: PlatePrimaries
+    space: LinearSpace
+
+    @classmethod
+    def of(cls, tags: ColorTags, lut: Lut1D, options: PlateOptions) -> PlateLight:
+        """Return what the options make of a plate with these tags.
+
+        Raises
+        ------
+        CRFNetError
+            If the gray is black, or unknown primaries are to be converted.
+        """
+        plate = plate_primaries(tags, options.primaries)
+        stops = anchored_exposure(lut, gray=options.gray, stops=options.exposure)
+        return cls(lut, stops, plate, linear_space(plate, options.output_space))
+
+    @property
+    def attributes(self) -> dict[str, str | float | tuple[float, ...]]:
+        """The attributes of the OpenEXR file by name; those that would be empty are left out.
+
+        Beside an interop name there are no chromaticities (Color Interop Forum's recommendation for OpenEXR).
+        """
+        attributes: dict[str, str | float | tuple[float, ...]] = {
+            "colorInteropID": self.space.interop_id,
+            "chromaticities": self.space.chromaticities,
+            RESPONSE: " | ".join(self.lut.comments),
+            LUT: self.lut.identity,
+            EXPOSURE: self.stops,
+            PRIMARIES: self.plate.name,
+            PRIMARIES_SOURCE: self.plate.source,
+        }
+        return {name: value for name, value in attributes.items() if value not in ("", ())}
+
+
+def check_finished(frames: Iterable[Path], light: PlateLight) -> None:
+    """Check that finished frames mean the same as those that will stand beside them.
+
+    Files that say nothing, or cannot be read, pass: they were not written by this command.
+
+    Raises
+    ------
+    PlateError
+        If a frame has another exposure, LUT or space, or was made of other primaries.
+    """
+    for path in frames:
+        written = _attributes(path)
+        if EXPOSURE in written and (difference := _difference(written, light)):
+            raise PlateError(
+                f"{path}: is there already, with {difference}; repeat that, add --overwrite or change --out"
+            )
+
+
+def _difference(written: dict[str, Any], light: PlateLight) -> str:
+    """Return in words how a finished frame differs; empty if it does not."""
+    if abs(written[EXPOSURE] - light.stops) > SAME_EXPOSURE:
+        return f"an exposure of {written[EXPOSURE]:+.3g} stops, not {light.stops:+.3g}"
+    for name, words in ((PRIMARIES, "primaries"), ("colorInteropID", "color space")):
+        if name in written and written[name] != light.attributes[name]:
+            return f"the {words} {written[name]}, not {light.attributes[name]}"
+    return "another LUT" if written.get(LUT) != light.lut.identity else ""
+
+
+def _attributes(path: Path) -> dict[str, Any]:
+    """Return what the header of an OpenEXR file holds, by name; nothing if it cannot be read."""
+    source = oiio.ImageInput.open(str(path))
+    if source is None:
+        oiio.geterror()
+        return {}
+    try:
+        return {attribute.name: attribute.value for attribute in source.spec().extra_attribs}
+    finally:
+        source.close()

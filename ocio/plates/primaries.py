@@ -1,0 +1,84 @@
+"""The primaries of an encoded plate: as its file tags them, as the user says, or by convention."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+from crfnet_core.errors import PlateError
+from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, ColorTags, Primaries
+from ocio.defaults import PRIMARIES
+
+#: The source of primaries that the user gave, and of those of a file without tags, which is taken for sRGB.
+CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
+
+
+@dataclass(frozen=True)
+class PlatePrimaries:
+    """The primaries in which a plate is encoded.
+
+    Parameters
+    ----------
+    primaries : Primaries or None
+        None if the file says something that cannot be expressed by primaries.
+    source : str
+        Who says so: "ICC profile", "CICP", "EXIF", `CHOSEN` or `BY_CONVENTION`.
+    """
+
+    primaries: Primaries | None
+    source: str
+
+    @property
+    def name(self) -> str:
+        """As people know them, or "unknown"."""
+        return self.primaries.name if self.primaries else "unknown"
+
+    def __str__(self) -> str:
+        """Return the name and the source in words."""
+        return f"{self.name} ({self.source})"
+
+
+def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimaries:
+    """Return the primaries of a plate.
+
+    Parameters
+    ----------
+    tags : ColorTags
+        What its file says.
+    choice : {"auto", "rec709", "p3", "adobe", "prophoto", "rec2020"}
+        "auto" goes by the tags, and takes a file without any for Rec.709, as the sRGB standard has it.
+
+    Raises
+    ------
+    PlateError
+        If there is no such choice.
+    """
+    if choice in PHOTOGRAPHIC:
+        return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
+    if choice != PRIMARIES[0]:
+        raise PlateError(f"primaries {choice!r} are unknown; choose {', '.join(PRIMARIES[:-1])} or {PRIMARIES[-1]}")
+    return PlatePrimaries(tags.primaries, tags.source) if tags.source else PlatePrimaries(REC709, BY_CONVENTION)
+
+
+def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0]) -> PlatePrimaries:
+    """Return the primaries that several plates have in common; see `plate_primaries`.
+
+    Raises
+    ------
+    PlateError
+        If two plates differ.
+    """
+    (first, found), *others = ((path, plate_primaries(each, choice)) for path, each in tags.items())
+    for path, other in others:
+        check_same_primaries(path, other, first, found)
+    return found
+
+
+def check_same_primaries(path: Path, found: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
+    """Raise a PlateError if a plate has other primaries than the first one that it goes together with."""
+    if found.primaries != expected.primaries:
+        raise PlateError(
+            f"{path}: its primaries are {found}, those of {first.name} {expected};"
+            f" give them apart, or say with --primaries which all have"
+        )

@@ -1,0 +1,232 @@
+"""Primaries and matrices, judged by colour-science; what ICC profiles, CICP and EXIF say of them."""
+
+import itertools
+import struct
+
+import numpy as np
+import pytest
+
+from crfnet_core.colorimetry import adaptation, chromaticity_of, rgb_to_xyz, xyz_of
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata.color_tags import (
+    ADOBE_RGB,
+    AP0,
+    AP1,
+    D50,
+    D65,
+    DISPLAY_P3,
+    PHOTOGRAPHIC,
+    PROPHOTO,
+    REC709,
+    REC2020,
+    ColorTags,
+    Primaries,
+    conversion_matrix,
+)
+from crfnet_core.metadata.exif import interoperability_index
+from crfnet_core.metadata.header_colors import CICP_PRIMARIES, TABLES, cicp_tags
+from crfnet_core.metadata.icc import SAME_COLORANTS, read_icc
+from tests.helpers.color_profiles import exif_segment, matrix_profile, numbers, profile, write_tagged
+from tests.helpers.crafted_files import with_jpeg_segment
+from tests.helpers.images import write_image
+
+colour = pytest.importorskip("colour")
+
+#: Primaries of a display that is none of the named ones, with the white of an old lamp.
+OWN = Primaries("own", (0.66, 0.34), (0.24, 0.67), (0.145, 0.055), (0.333, 0.342))
+
+#: colour-science's names.
+NAMES = {
+    "sRGB": REC709,
+    "Display P3": DISPLAY_P3,
+    "Adobe RGB (1998)": ADOBE_RGB,
+    "ProPhoto RGB": PROPHOTO,
+    "ITU-R BT.2020": REC2020,
+    "ACES2065-1": AP0,
+    "ACEScg": AP1,
+}
+
+GRAY = np.full((16, 16, 3), 128, np.uint8)
+
+
+def corners(primaries):
+    return [*primaries.red, *primaries.green, *primaries.blue, *primaries.white]
+
+
+class TestMatrices:
+    @pytest.mark.parametrize("name", NAMES)
+    def test_chromaticities_are_those_of_colour_science(self, name):
+        space = colour.RGB_COLOURSPACES[name]
+        expected = [*np.ravel(space.primaries), *space.whitepoint]
+        np.testing.assert_allclose(corners(NAMES[name]), expected, atol=1e-4)
+
+    @pytest.mark.parametrize("name", NAMES)
+    def test_rgb_to_xyz_is_the_normalised_primary_matrix(self, name):
+        primaries = NAMES[name]
+        expected = colour.models.normalised_primary_matrix(corners(primaries)[:6], primaries.white)
+        np.testing.assert_allclose(primaries.to_xyz(), expected, atol=1e-12)
+
+    @pytest.mark.parametrize(("source", "target"), [*itertools.permutations(NAMES, 2)])
+    def test_conversions_are_those_of_colour_science(self, source, target):
+        spaces = [colour.RGB_COLOURSPACES[name].copy() for name in (source, target)]
+        for space, name in zip(spaces, (source, target), strict=True):
+            # Their own chromaticities of ProPhoto have four digits, so ours go in.
+            space.primaries, space.whitepoint = np.reshape(corners(NAMES[name])[:6], (3, 2)), NAMES[name].white
+            space.use_derived_transformation_matrices(True)
+        expected = colour.matrix_RGB_to_RGB(*spaces, chromatic_adaptation_transform="Bradford")
+        np.testing.assert_allclose(conversion_matrix(NAMES[source], NAMES[target]), expected, atol=1e-9)
+
+    @pytest.mark.parametrize(("source", "target"), [*itertools.permutations(NAMES.values(), 2)])
+    def test_white_stays_white(self, source, target):
+        np.testing.assert_allclose(conversion_matrix(source, target) @ np.ones(3), 1, atol=1e-12)
+
+    def test_a_conversion_to_itself_is_exact(self):
+        np.testing.assert_array_equal(conversion_matrix(PROPHOTO, PROPHOTO), np.eye(3))
+
+    def test_adaptation_moves_the_white(self):
+        np.testing.assert_allclose(adaptation(D65, D50) @ xyz_of(D65), xyz_of(D50), atol=1e-12)
+
+    def test_a_chromaticity_comes_back(self):
+        assert chromaticity_of(3 * xyz_of((0.3, 0.6))) == pytest.approx((0.3, 0.6))
+
+    def test_primaries_on_a_line_are_refused(self):
+        with pytest.raises(np.linalg.LinAlgError):
+            rgb_to_xyz((0.1, 0.1), (0.2, 0.2), (0.3, 0.3), D65)
+
+
+class TestIccProfiles:
+    @pytest.mark.parametrize("version", [2, 4])
+    @pytest.mark.parametrize("chad", [True, False])
+    @pytest.mark.parametrize("named", PHOTOGRAPHIC.values(), ids=PHOTOGRAPHIC)
+    def test_named_primaries_are_known_by_their_matrix(self, named, version, chad):
+        assert read_icc(matrix_profile(named, version=version, states_adaptation=chad)).primaries is named
+
+    def test_named_primaries_are_far_apart(self):
+        columns = [adaptation(named.white, D50) @ named.to_xyz() for named in PHOTOGRAPHIC.values()]
+        nearest = min(np.abs(one - other).max() for one, other in itertools.combinations(columns, 2))
+        assert nearest > 30 * SAME_COLORANTS
+
+    def test_rounding_does_not_hide_them(self):
+        # The colourants of the sRGB profile of 1998, rounded to four digits.
+        columns = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
+        tags = {f"{name}XYZ": numbers(b"XYZ ", xyz) for name, xyz in zip("rgb", columns, strict=True)}
+        assert read_icc(profile(tags, version=2)).primaries is REC709
+
+    @pytest.mark.parametrize(("version", "chad"), [(2, False), (2, True), (4, True)])
+    def test_others_are_found_under_their_own_white(self, version, chad):
+        found = read_icc(matrix_profile(OWN, version=version, states_adaptation=chad)).primaries
+        np.testing.assert_allclose(corners(found), corners(OWN), atol=2e-4)
+        assert (found.name, found.interop_id) == ("primaries of its own", "")
+
+    def test_without_a_word_on_adaptation_the_white_is_d50(self):
+        found = read_icc(matrix_profile(OWN, version=4, states_adaptation=False)).primaries
+        assert found.white == pytest.approx(D50, abs=2e-4)
+
+    @pytest.mark.parametrize(
+        "icc",
+        [
+            matrix_profile(DISPLAY_P3, A2B0=b"mft2".ljust(52, b"\0")),
+            profile({"A2B0": b"mft2".ljust(52, b"\0")}, pcs=b"Lab "),
+            profile({}),
+            profile({"rXYZ": b"XYZ ", "gXYZ": b"", "bXYZ": bytes(20)}),
+            profile({name: numbers(b"XYZ ", (0.3214, 0.3333, 0.275)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
+            profile({name: numbers(b"XYZ ", (0.5, 0.5, 0.5)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
+            matrix_profile(OWN, chad=numbers(b"sf32", np.zeros(9))),
+        ],
+        ids=["tables too", "tables", "empty", "short", "three equal", "not white", "no adaptation"],
+    )
+    def test_what_gives_no_primaries_is_unknown(self, icc):
+        assert read_icc(icc).primaries is None
+
+    def test_a_gray_profile_says_nothing_of_primaries(self):
+        assert not read_icc(profile({}, color=b"GRAY")).is_rgb
+
+    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp"])
+    def test_other_bytes_are_no_profile(self, icc):
+        assert read_icc(icc) is None
+
+    def test_any_part_of_a_profile_is_read_without_an_error(self):
+        whole = matrix_profile(DISPLAY_P3)
+        for length in range(len(whole)):
+            read_icc(whole[:length])
+
+    def test_the_profile_of_little_cms(self):
+        ImageCms = pytest.importorskip("PIL.ImageCms")
+        srgb = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+        assert read_icc(srgb).primaries is REC709
+
+
+class TestFiles:
+    """What is read of whole files."""
+
+    @staticmethod
+    def tags(path):
+        return read_photo(path).metadata.color
+
+    @pytest.mark.parametrize("name", ["a.jpg", "a.png", "a.tif", "a.webp"])
+    def test_an_icc_profile_is_read(self, tmp_path, name):
+        path = write_tagged(tmp_path / name, GRAY, matrix_profile(DISPLAY_P3))
+        assert self.tags(path) == ColorTags(DISPLAY_P3, "", "ICC profile")
+
+    def test_a_profile_of_tables_is_unknown_whatever_exif_says(self, tmp_path):
+        icc = profile({"A2B0": b"mft2".ljust(52, b"\0")})
+        assert self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc, Exif__ColorSpace=1)) == ColorTags(source=TABLES)
+
+    def test_a_profile_comes_before_exif(self, tmp_path):
+        path = write_tagged(tmp_path / "a.jpg", GRAY, matrix_profile(ADOBE_RGB), Exif__ColorSpace=1)
+        assert self.tags(path).primaries is ADOBE_RGB
+
+    @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
+    def test_exif_is_read(self, tmp_path, space, primaries):
+        found = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
+        assert (found.primaries, found.source) == (primaries, "EXIF" if primaries else "")
+
+    @pytest.mark.parametrize("order", ["<", ">"])
+    @pytest.mark.parametrize(("index", "primaries"), [(b"R03", ADOBE_RGB), (b"R98", REC709), (b"THM", None)])
+    def test_the_interoperability_index_of_dcf_is_read(self, tmp_path, order, index, primaries):
+        path = write_image(tmp_path / "a.jpg", GRAY)
+        path.write_bytes(with_jpeg_segment(path.read_bytes(), 0xE1, exif_segment(index, order=order)))
+        assert self.tags(path).primaries == primaries
+
+    def test_damaged_exif_says_nothing(self):
+        whole = exif_segment(b"R03")[6:]
+        assert interoperability_index(whole) == "R03"
+        assert {interoperability_index(whole[:length]) for length in range(len(whole) - 8)} == {""}
+        assert interoperability_index(b"II*\0" + struct.pack("<I", 2**32 - 1)) == ""
+
+    def test_a_file_without_tags_says_nothing(self, tmp_path):
+        assert self.tags(write_image(tmp_path / "a.jpg", GRAY)) == ColorTags()
+
+    @pytest.mark.parametrize(
+        ("codes", "expected"),
+        [
+            ((12, 13, 0, 1), ColorTags(DISPLAY_P3, "", "CICP")),
+            ((9, 16, 0, 1), ColorTags(REC2020, "PQ", "CICP")),
+            ((9, 18, 0, 1), ColorTags(REC2020, "HLG", "CICP")),
+            ((2, 2, 0, 1), ColorTags(ADOBE_RGB, "", "ICC profile")),
+            ((2, 18, 0, 1), ColorTags(ADOBE_RGB, "HLG", "ICC profile")),
+        ],
+    )
+    def test_in_png_cicp_comes_before_the_profile(self, tmp_path, codes, expected):
+        import OpenImageIO as oiio
+
+        path = write_tagged(tmp_path / "a.png", GRAY, matrix_profile(ADOBE_RGB), CICP=(oiio.TypeDesc("int[4]"), codes))
+        if oiio.ImageBuf(str(path)).spec().getattribute("CICP") is None:
+            pytest.skip("this OpenImageIO writes no CICP into PNG")
+        assert self.tags(path) == expected
+
+    def test_a_profile_may_hold_cicp(self, tmp_path):
+        icc = matrix_profile(REC2020, cicp=b"cicp" + bytes(4) + bytes([9, 16, 0, 1]))
+        assert self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc)) == ColorTags(REC2020, "PQ", "ICC profile")
+
+
+@pytest.mark.parametrize("code", CICP_PRIMARIES)
+def test_cicp_primaries_make_a_white(code):
+    primaries = CICP_PRIMARIES[code]
+    np.testing.assert_allclose(primaries.to_xyz().sum(axis=1), xyz_of(primaries.white), atol=1e-12)
+    assert cicp_tags((code, 1)) == ColorTags(primaries, "", "CICP")
+
+
+@pytest.mark.parametrize("codes", [(), (1,), (2, 2), (0, 0), (3, 3, 0, 0), (200, 200)])
+def test_codes_that_are_unspecified_say_nothing(codes):
+    assert cicp_tags(codes) == ColorTags()

@@ -1,0 +1,78 @@
+"""ICC profiles and EXIF data made by hand, and pictures that carry them."""
+
+from __future__ import annotations
+
+import struct
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crfnet_core.colorimetry import adaptation, xyz_of
+from crfnet_core.metadata.color_tags import D50, Primaries
+from tests.helpers.images import write_image
+
+
+def matrix_profile(primaries: Primaries, *, version: int = 4, states_adaptation: bool = True, **more: bytes) -> bytes:
+    """Return an ICC profile of a matrix and gamma 2.2; `more` are further tags, or others in place of those.
+
+    Version 4 says by the tag `chad` how it was adapted to D50; version 2 without it by the media white `wtpt`.
+    """
+    to_d50 = adaptation(primaries.white, D50)
+    columns = to_d50 @ primaries.to_xyz()
+    white = xyz_of(D50) if version >= 4 else xyz_of(primaries.white)
+    tags = {
+        **{f"{name}XYZ": numbers(b"XYZ ", column) for name, column in zip("rgb", columns.T, strict=True)},
+        **{f"{name}TRC": b"curv" + struct.pack(">IIHH", 0, 1, round(2.2 * 256), 0) for name in "rgb"},
+        "wtpt": numbers(b"XYZ ", white),
+        **({"chad": numbers(b"sf32", to_d50.ravel())} if states_adaptation else {}),
+        **more,
+    }
+    return profile(tags, version=version)
+
+
+def profile(tags: dict[str, bytes], *, version: int = 4, color: bytes = b"RGB ", pcs: bytes = b"XYZ ") -> bytes:
+    """Return an ICC profile of these tagged elements."""
+    table, content = struct.pack(">I", len(tags)), b""
+    start = 128 + 4 + 12 * len(tags)
+    for name, element in tags.items():
+        table += struct.pack(">4sII", name.encode(), start + len(content), len(element))
+        content += element.ljust(-(-len(element) // 4) * 4, b"\0")
+    size = start + len(content)
+    head = struct.pack(">I4sB3s4s4s4s12s4s", size, b"test", version, bytes(3), b"mntr", color, pcs, bytes(12), b"acsp")
+    return head.ljust(128, b"\0") + table + content
+
+
+def numbers(kind: bytes, values: ArrayLike) -> bytes:
+    """Return an element of s15Fixed16 numbers."""
+    fixed = np.rint(np.ravel(values) * 65536).astype(int).tolist()
+    return kind + bytes(4) + struct.pack(f">{len(fixed)}i", *fixed)
+
+
+def write_tagged(path: Path, codes: NDArray[Any], icc: bytes, **attributes: Any) -> Path:
+    """Write code values with an ICC profile; JPEG without chroma subsampling."""
+    import OpenImageIO as oiio
+
+    content = (oiio.TypeDesc(f"uint8[{len(icc)}]"), np.frombuffer(icc, np.uint8))
+    return write_image(
+        path, codes, ICCProfile=content, Compression="jpeg:100" if path.suffix == ".jpg" else "none", **attributes
+    )
+
+
+def exif_segment(index: bytes, *, order: str = "<", space: int = 65535) -> bytes:
+    """Return an EXIF segment of JPEG with a ColorSpace and an InteroperabilityIndex."""
+    first = _directory([(0x8769, 4, 1, struct.pack(f"{order}I", 26))], order)
+    details = [(0xA001, 3, 1, struct.pack(f"{order}H", space)), (0xA005, 4, 1, struct.pack(f"{order}I", 56))]
+    interop = [(1, 2, 4, index.ljust(4, b"\0"))]
+    signature = {"<": b"II*\0", ">": b"MM\0*"}[order]
+    content = signature + struct.pack(f"{order}I", 8) + first + _directory(details, order)
+    return b"Exif\0\0" + content + _directory(interop, order)
+
+
+def _directory(entries: list[tuple[int, int, int, bytes]], order: str) -> bytes:
+    """Return a TIFF directory of values of up to four bytes."""
+    rows = b"".join(
+        struct.pack(f"{order}HHI", tag, kind, count) + value.ljust(4, b"\0") for tag, kind, count, value in entries
+    )
+    return struct.pack(f"{order}H", len(entries)) + rows + bytes(4)

@@ -1,0 +1,218 @@
+"""Primaries, spaces and exposures through the whole command, judged by colour-science and OpenColorIO."""
+
+import json
+
+import numpy as np
+import pytest
+
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata.color_tags import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709
+from crfnet_core.response import ResponseCurve
+from ocio.arguments.parts import BAD_INPUT
+from ocio.luts.files import read_lut, write_lut
+from ocio.luts.lut1d import inverse_response_lut
+from tests.helpers.color_profiles import matrix_profile, profile, write_tagged
+from tests.helpers.configs import converted, loaded
+from tests.helpers.folders import listed
+from tests.helpers.images import read_image
+from tests.helpers.plates import attributes, read_exr
+
+colour = pytest.importorskip("colour")
+
+#: A response that is no standard one, and light of all colours in it.
+CURVE = ResponseCurve.from_samples(1 - (1 - np.linspace(0, 1, 4096)) ** 2)
+LIGHT = np.random.default_rng(0).uniform(0.02, 0.95, (24, 32, 3))
+
+#: Our primaries, and colour-science's names of them.
+SPACES = {"p3": (DISPLAY_P3, "Display P3"), "adobe": (ADOBE_RGB, "Adobe RGB (1998)"), "rec709": (REC709, "sRGB")}
+
+TABLES = profile({"A2B0": b"mft2".ljust(52, b"\0")})
+
+
+def to_space(light, source, target):
+    """Return linear light in another space of colour-science, adapted by Bradford."""
+    spaces = [colour.RGB_COLOURSPACES[name].copy() for name in (source, target)]
+    for space in spaces:
+        space.use_derived_transformation_matrices(True)
+    return light @ colour.matrix_RGB_to_RGB(*spaces, chromatic_adaptation_transform="Bradford").T
+
+
+@pytest.fixture(scope="module")
+def lut_file(tmp_path_factory):
+    """The inverse of the response, with an entry for every code of 16 bits."""
+    path = tmp_path_factory.mktemp("lut") / "known.spi1d"
+    write_lut(path, inverse_response_lut(CURVE, length=65536))
+    return path
+
+
+@pytest.fixture
+def tagged(tmp_path):
+    """Write the light as a camera would encode it in these primaries: tagged(name, icc) -> path."""
+
+    def write(name, icc):
+        largest = 255 if name.endswith(".jpg") else 65535
+        codes = np.rint(CURVE.forward(LIGHT) * largest).astype(np.uint8 if largest == 255 else np.uint16)
+        return write_tagged(tmp_path / name, codes, icc)
+
+    return write
+
+
+@pytest.fixture
+def linearized(crfnet, lut_file, tmp_path):
+    """Run `crfnet linearize` to float: linearized(plate, ...) -> pixels and attributes."""
+
+    def run(plate, *arguments):
+        out = tmp_path / "linear.exr"
+        done = crfnet(
+            *("linearize", plate, "--lut", lut_file, "--out", out, "--depth", "float", "--overwrite"), *arguments
+        )
+        assert (done.code, done.err) == (0, "")
+        pixels, spec = read_exr(out)
+        return pixels, attributes(spec)
+
+    return run
+
+
+class TestPrimaries:
+    @pytest.mark.parametrize("output", ["ACES2065-1", "ACEScg", "scene_linear"])
+    @pytest.mark.parametrize("name", SPACES)
+    def test_the_colors_are_the_true_ones(self, tagged, linearized, name, output):
+        primaries, source = SPACES[name]
+        target = "sRGB" if output == "scene_linear" else output
+        pixels, found = linearized(tagged("a.tif", matrix_profile(primaries)), "--output-space", output)
+        expected = to_space(LIGHT, source, target)
+        if target == "ACES2065-1":
+            assert np.abs(pixels / expected - 1).max() < 1e-3
+        np.testing.assert_allclose(pixels, expected, atol=5e-4)
+        assert (found["crfnet:primaries"], found["crfnet:primariesSource"]) == (primaries.name, "ICC profile")
+        ids = {"ACES2065-1": "lin_ap0_scene", "ACEScg": "lin_ap1_scene", "scene_linear": "lin_rec709_scene"}
+        assert found["colorInteropID"] == ids[output]
+        assert "chromaticities" not in found
+
+    @pytest.mark.parametrize("name", SPACES)
+    def test_a_jpeg_has_the_colors_of_its_codes(self, tagged, linearized, name):
+        primaries, source = SPACES[name]
+        plate = tagged("a.jpg", matrix_profile(primaries))
+        expected = to_space(CURVE.inverse(read_photo(plate).pixels), source, "ACES2065-1")
+        pixels, _ = linearized(plate, "--output-space", "ACES2065-1")
+        np.testing.assert_allclose(pixels, expected, atol=1e-4, rtol=1e-3)
+
+    def test_colors_outside_of_rec709_stay_negative(self, tmp_path, linearized):
+        codes = np.zeros((16, 16, 3), np.uint8)
+        codes[..., 1] = 255
+        pixels, _ = linearized(write_tagged(tmp_path / "a.png", codes, matrix_profile(DISPLAY_P3)))
+        np.testing.assert_allclose(pixels[0, 0], to_space(np.array([0, 1, 0]), "Display P3", "sRGB"), atol=1e-4)
+        assert pixels[0, 0, 0] < -0.2
+
+    @pytest.mark.parametrize(
+        ("primaries", "interop_id"),
+        [(DISPLAY_P3, "lin_p3d65_scene"), (ADOBE_RGB, "lin_adobergb_scene"), (PROPHOTO, "unknown")],
+    )
+    def test_the_plates_own_space_is_named_or_described(self, tagged, linearized, primaries, interop_id):
+        pixels, found = linearized(tagged("a.tif", matrix_profile(primaries)), "--output-space", "plate")
+        np.testing.assert_allclose(pixels, LIGHT, atol=5e-4)
+        assert found["colorInteropID"] == interop_id
+        expected = [*PROPHOTO.red, *PROPHOTO.green, *PROPHOTO.blue, *PROPHOTO.white]
+        if primaries is PROPHOTO:
+            np.testing.assert_allclose(found["chromaticities"], expected, atol=1e-6)
+        else:
+            assert "chromaticities" not in found
+
+    def test_what_is_given_outweighs_the_tag(self, tagged, linearized):
+        plate = tagged("a.tif", matrix_profile(ADOBE_RGB))
+        pixels, found = linearized(plate, "--primaries", "p3")
+        np.testing.assert_allclose(pixels, to_space(LIGHT, "Display P3", "sRGB"), atol=5e-4)
+        assert (found["crfnet:primaries"], found["crfnet:primariesSource"]) == ("Display P3", "as given")
+
+    def test_unknown_primaries_are_left_and_called_unknown(self, tagged, linearized):
+        pixels, found = linearized(tagged("a.tif", TABLES))
+        np.testing.assert_allclose(pixels, LIGHT, atol=5e-4)
+        assert (found["colorInteropID"], found["crfnet:primaries"]) == ("unknown", "unknown")
+        assert "chromaticities" not in found
+
+    def test_unknown_primaries_are_not_converted_to_aces(self, crfnet, tagged, lut_file, tmp_path):
+        arguments = ("linearize", tagged("a.tif", TABLES), "--lut", lut_file, "--out", tmp_path / "a.exr")
+        done = crfnet(*arguments, "--output-space", "ACEScg")
+        assert done.code == BAD_INPUT
+        assert done.err == (
+            "crfnet: error: the plate's primaries are unknown (ICC profile of tables), so it cannot be converted to"
+            " ACEScg; say what they are: --primaries\n"
+        )
+        assert not (tmp_path / "a.exr").exists()
+        assert crfnet(*arguments, "--output-space", "ACEScg", "--primaries", "rec2020").code == 0
+
+    def test_photographs_of_one_response_have_primaries_in_common(self, estimate, plate, tmp_path):
+        pixels = (read_photo(plate).pixels * 255).round().astype(np.uint8)
+        other = write_tagged(tmp_path / "p3.jpg", pixels, matrix_profile(DISPLAY_P3))
+        done = estimate(plate, other)
+        assert done.code == BAD_INPUT
+        assert (
+            "p3.jpg: its primaries are Display P3 (ICC profile), those of plate.jpg Rec.709 (no tag, so by" in done.err
+        )
+        assert "give them apart, or say with --primaries which all have" in done.err
+        assert not (tmp_path / "out").exists()
+        assert estimate(plate, other, "--primaries", "p3").code == 0
+        assert estimate(plate, other, "--each", "--overwrite").code == 0
+
+    def test_a_frame_of_other_primaries_fails(self, crfnet, tagged, lut_file, tmp_path):
+        for number, primaries in enumerate((DISPLAY_P3, DISPLAY_P3, REC709), 1):
+            tagged(f"shot.{number}.tif", matrix_profile(primaries))
+        out = tmp_path / "l.%d.exr"
+        done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
+        assert done.code == BAD_INPUT
+        assert "1 of 3 frames failed (3)" in done.err
+        assert "shot.3.tif: its primaries are Rec.709 (ICC profile), those of shot.1.tif Display P3" in done.err
+        assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
+
+
+class TestConfig:
+    @pytest.fixture
+    def folder(self, crfnet, plate, fixed_model, tmp_path):
+        """What `crfnet estimate` writes for the bundled photograph, tagged as Display P3: folder(...) -> the folder."""
+
+        def run(*arguments):
+            pixels = (read_photo(plate).pixels * 255).round().astype(np.uint8)
+            photo = write_tagged(tmp_path / "shot.png", pixels, matrix_profile(DISPLAY_P3))
+            out = ("--out", tmp_path / "look", "--no-sheet", "--overwrite", "--depth", "float")
+            done = crfnet("estimate", photo, *out, "--model", fixed_model, *arguments)
+            assert (done.code, done.err) == (0, "")
+            return tmp_path / "look"
+
+        return run
+
+    @pytest.mark.parametrize("output", ["scene_linear", "ACES2065-1", "ACEScg", "plate"])
+    @pytest.mark.parametrize("exposure", ["white", "gray"])
+    def test_its_processor_equals_the_exr(self, folder, plate, tolerance, output, exposure):
+        look = folder("--output-space", output, "--exposure", exposure)
+        space = "lin_p3d65_scene" if output == "plate" else output
+        codes = read_photo(plate).pixels[::8, ::8].reshape(-1, 3)
+        found = converted(loaded(look / "config.ocio"), "CRF shot", space, codes)
+        expected = read_image(look / "shot_linear.exr")[::8, ::8].reshape(-1, 3)
+        np.testing.assert_allclose(found, expected, atol=2 * tolerance.plate)
+
+    def test_it_equals_the_lut_and_the_matrix_of_colour_science(self, folder, plate):
+        look = folder()
+        codes = read_photo(plate).pixels[::8, ::8].reshape(-1, 3)
+        light = read_lut(look / "shot.spi1d").apply(codes.astype(np.float64))
+        found = converted(loaded(look / "config.ocio"), "CRF shot", "ACES2065-1", codes)
+        np.testing.assert_allclose(found, to_space(light, "Display P3", "ACES2065-1"), atol=1e-4)
+
+    def test_the_exposure_can_be_edited_after_the_lut(self, folder):
+        path = folder("--exposure", "0.5") / "config.ocio"
+        text = path.read_text(encoding="utf-8")
+        steps = text[text.index("name: CRF shot\n") :]
+        assert steps.index("FileTransform") < steps.index("ExposureContrastTransform") < steps.index("MatrixTransform")
+        before = converted(loaded(path), "CRF shot", "scene_linear", [[0.5, 0.5, 0.5]])
+        assert text.count("exposure: 0.5,") == 1
+        path.write_text(text.replace("exposure: 0.5,", "exposure: 1.5,"), encoding="utf-8")
+        np.testing.assert_allclose(
+            converted(loaded(path), "CRF shot", "scene_linear", [[0.5, 0.5, 0.5]]), 2 * before, rtol=1e-5
+        )
+
+    def test_everything_names_the_primaries(self, folder, tmp_path):
+        look = folder("--json")
+        found = json.loads((look / "shot.json").read_text(encoding="utf-8"))
+        assert (found["primaries"]["name"], found["primaries"]["source"]) == ("Display P3", "ICC profile")
+        assert found["primaries"]["green"] == [0.265, 0.69]
+        assert found["output_space"] == {"name": "linear Rec.709", "interop_id": "lin_rec709_scene"}
+        assert "primaries Display P3 (ICC profile)" in (look / "config.ocio").read_text(encoding="utf-8")
