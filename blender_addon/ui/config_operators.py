@@ -19,9 +19,9 @@ import bpy
 from .. import lazy_import
 from ..scene import color_management
 from ..work.errors import expected_errors
-from ..work.wording import american
-from . import comparison
 from .estimate_box import draw_text
+from .image_editor import comparison
+from .operator_base import failed
 from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.
@@ -33,7 +33,6 @@ _CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 #: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
 #: because the interface is drawn without `ocio`.
 RECORD = Path("camera_response", "installed.json")
-
 
 #: How many letters fit into a line of the preferences.
 _LETTERS = 60
@@ -60,8 +59,7 @@ class CRF_OT_restore_config(bpy.types.Operator):
         try:
             restored = lazy_import.load("ocio.configs.installed").restore(folder)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         _redraw(context)
         done = "removed, so Blender uses its own again" if restored.is_removed else "again as it was"
         self.report({"INFO"}, f"The config is {done} after a restart: {restored.config}")
@@ -83,8 +81,7 @@ class CRF_OT_remove_color_space(bpy.types.Operator):
         try:
             lazy_import.load("ocio.configs.installed").uninstall(color_management.user_folder(), self.color_space)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         _redraw(context)
         self.report({"INFO"}, f'"{self.color_space}" is gone after a restart')
         return {"FINISHED"}

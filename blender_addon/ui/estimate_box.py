@@ -12,7 +12,7 @@ import bpy.utils.previews
 from ..scene import plates, stored_estimate
 from ..work import curve_picture
 from ..work.wording import capitalized, says_too_little
-from .image_tools import CRF_OT_compare
+from .image_editor.image_tools import CRF_OT_compare
 
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered

@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 
 from ..scene import color_management, stored_estimate
-from . import comparison
+from .image_editor import comparison
 
 
 @bpy.app.handlers.persistent

@@ -11,7 +11,7 @@ from ..scene import plates, stored_estimate
 from . import running
 from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_text, letters_of
-from .image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
+from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import bpy
 
-from .. import lazy_import
-from ..scene import plates, stored_estimate
-from ..work.errors import AddonError, expected_errors
-from ..work.wording import american
+from ... import lazy_import
+from ...scene import plates, stored_estimate
+from ...work.errors import AddonError, expected_errors
+from ..operator_base import failed
 from . import comparison
 
 if TYPE_CHECKING:
@@ -54,8 +54,7 @@ class CRF_OT_compare(bpy.types.Operator):
             node_group = lazy_import.load(".scene.node_group")
             comparison.begin(space, _linear_pixels(space), node_group.linear_rec709())
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         return {"FINISHED"}
 
 
@@ -94,8 +93,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
         try:
             gray = self._pick(context.space_data, place)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         self.report({"INFO"}, f"Gray is {gray:.3f}")
         return {"FINISHED"}
 
