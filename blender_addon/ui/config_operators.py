@@ -214,7 +214,9 @@ def _redraw(context: bpy.types.Context) -> None:
             area.tag_redraw()
 
 
-_CLASSES = (CRF_OT_restore_config, CRF_OT_remove_color_space, CRF_OT_save_and_restart)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_restore_config, CRF_OT_remove_color_space, CRF_OT_save_and_restart)
+)
 
 
 def register() -> None:
@@ -222,11 +224,9 @@ def register() -> None:
     global _read_at_start
     if _read_at_start is None:
         _read_at_start = _fingerprint()
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Unregister the operators; what Blender read at its start stays in mind for the session."""
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

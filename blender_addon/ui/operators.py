@@ -193,17 +193,17 @@ def _is_busy(operator: type[bpy.types.Operator]) -> bool:
     return run is not None
 
 
-_CLASSES = (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
+)
 
 
 def register() -> None:
     """Register the operators."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Cancel what runs, and unregister the operators."""
     running.stop()
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -167,13 +167,12 @@ def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     return column
 
 
-_CLASSES = (CRF_PT_image, CRF_PT_clip, CRF_PT_node)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_PT_image, CRF_PT_clip, CRF_PT_node))
 
 
 def register() -> None:
     """Register the panels, and add the entries to the menus."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
     for name in MENUS:
         getattr(bpy.types, name).append(draw_menu_entries)
 
@@ -182,5 +181,4 @@ def unregister() -> None:
     """Remove the entries, and unregister the panels."""
     for name in MENUS:
         getattr(bpy.types, name).remove(draw_menu_entries)
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -143,13 +143,12 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     return {name: getattr(settings, name) for name in names}
 
 
-_CLASSES = (CRF_Photograph, CRF_PlateSettings)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_Photograph, CRF_PlateSettings))
 
 
 def register() -> None:
     """Add the settings to images and clips."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
 
@@ -158,5 +157,4 @@ def unregister() -> None:
     """Remove the settings from images and clips."""
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         del kind.camera_response_settings
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -167,17 +167,17 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
 
 
-_CLASSES = (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
+)
 
 
 def register() -> None:
     """Register the tools."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Show the plates again, and unregister the tools."""
     comparison.end_all()
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -50,11 +50,4 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Register the operator."""
-    bpy.utils.register_class(CRF_OT_add_look)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    bpy.utils.unregister_class(CRF_OT_add_look)
+register, unregister = bpy.utils.register_classes_factory((CRF_OT_add_look,))

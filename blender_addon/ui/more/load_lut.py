@@ -65,11 +65,4 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Register the operator."""
-    bpy.utils.register_class(CRF_OT_load_lut)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    bpy.utils.unregister_class(CRF_OT_load_lut)
+register, unregister = bpy.utils.register_classes_factory((CRF_OT_load_lut,))

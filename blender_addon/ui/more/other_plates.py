@@ -156,16 +156,4 @@ def _what_was_done(source: plates.Datablock) -> str:
     return "it is stored only" if mode == "ESTIMATE" else "it is applied as to this plate"
 
 
-_CLASSES = (CRF_OtherPlate, CRF_OT_copy_response)
-
-
-def register() -> None:
-    """Register the operator."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+register, unregister = bpy.utils.register_classes_factory((CRF_OtherPlate, CRF_OT_copy_response))
