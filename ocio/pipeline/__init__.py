@@ -9,7 +9,7 @@ called with (done, total); whatever it raises ends the step, which first removes
 space into the config that a program reads at its start, see `ocio.configs.installed`.
 """
 
-from ocio.pipeline.delivery import bake_plates, export_luts
+from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
 from ocio.pipeline.estimates import (
     PhotographEstimate,
     anchored_exposure,
@@ -24,6 +24,7 @@ from ocio.pipeline.folders import OutputPlan, plan_outputs, write_estimates
 __all__ = [
     "OutputPlan",
     "PhotographEstimate",
+    "all_or_none",
     "anchored_exposure",
     "bake_plates",
     "estimate_frames",
