@@ -150,8 +150,7 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
     elif clip is None:
         clip = plate.copy()
         clip.name = baked.files[0].name
-        clip.pop(stored_estimate.KEY, None)
-        clip.property_unset("camera_response_settings")
+        stored_estimate.remove(clip)
         clip.use_proxy = False  # its proxies show the plate
     clip.filepath = _path_like(plate, first)  # reads the files again
     clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset

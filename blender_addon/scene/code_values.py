@@ -51,8 +51,7 @@ def _is_current(copy: Datablock, plate: Datablock) -> bool:
 def _file_copy(plate: Datablock) -> Datablock:
     """Return a copy of an image or clip that is a file, packed or not."""
     copy = plate.copy()
-    copy.pop(stored_estimate.KEY, None)
-    copy.property_unset("camera_response_settings")
+    stored_estimate.remove(copy)
     copy.colorspace_settings.name = data_space()
     return copy
 

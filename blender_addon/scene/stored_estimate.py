@@ -58,6 +58,12 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
         datablock[KEY][PENDING_COLOR_SPACE] = pending
 
 
+def remove(datablock: Datablock) -> None:
+    """Remove the estimate and the settings from a copy of a plate, which is no plate itself."""
+    datablock.pop(KEY, None)
+    datablock.property_unset("camera_response_settings")
+
+
 def is_stored(datablock: Datablock | None) -> bool:
     """Return whether an image or clip has a stored estimate of a layout that is read."""
     entries: Any = datablock.get(KEY) if datablock is not None else None

@@ -19,6 +19,7 @@ import bpy
 from .. import lazy_import
 from ..scene import color_management
 from ..work.errors import expected_errors
+from ..work.job import CONFIG_VARIABLES
 from .estimate_box import draw_text
 from .image_editor import comparison
 from .operator_base import failed
@@ -26,9 +27,6 @@ from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.
 _read_at_start: str | None = None
-
-#: Environment variables that name a config. Blender 5.2 sets OCIO itself, and must not hand it on.
-_CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 
 #: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
 #: because the interface is drawn without `ocio`.
@@ -124,7 +122,7 @@ def start_blender(file: str) -> None:
     """Start another Blender with a file; raise an OSError if it cannot be started."""
     environment = dict(os.environ)
     if not color_management.environment_config():
-        for name in _CONFIG_VARIABLES:
+        for name in CONFIG_VARIABLES:
             environment.pop(name, None)
     subprocess.Popen([bpy.app.binary_path, file], env=environment, start_new_session=True)
 

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 import bpy
 
 from ..scene import plates, stored_estimate
+from ..work.job import WITHOUT_FILES
 from . import running
 from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_text, letters_of
@@ -15,7 +16,7 @@ from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
-from .plate_settings import WITHOUT_FILES, is_applied, is_to_be_applied
+from .plate_settings import is_applied, is_to_be_applied
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")

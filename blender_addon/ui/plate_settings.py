@@ -4,6 +4,7 @@
 import bpy
 
 from ..scene import stored_estimate
+from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
@@ -35,9 +36,6 @@ _MODES = {number: name for name, number in _NUMBERS.items()}
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
-
-#: The ways to apply a response that write no file.
-WITHOUT_FILES = ("ESTIMATE", "NODES")
 
 
 class PlateChoices:

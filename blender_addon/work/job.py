@@ -31,6 +31,14 @@ class ApplyMode(StrEnum):
     EXPORT = "EXPORT"
 
 
+#: The modes that write no file.
+WITHOUT_FILES = (ApplyMode.ESTIMATE, ApplyMode.NODES)
+
+#: Environment variables that name Blender's OpenColorIO config; Blender 4.5 knows the first only. Blender 5.2 sets it
+#: itself, so a Blender that is started must not inherit them.
+CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
+
+
 class Anchor(StrEnum):
     """Which brightness has a given linear value."""
 
