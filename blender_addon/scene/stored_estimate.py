@@ -17,7 +17,7 @@ from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
-    from crfnet_core.types import Float64Array
+    from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
     from .plates import Datablock
 
@@ -94,6 +94,28 @@ def curve_and_band(datablock: Datablock) -> Float64Array:
     """Return the stored response and the lower and upper end of its band, shape (3, 1024)."""
     entries = datablock[KEY]
     return np.array([entries[name].to_list() for name in ("brightness", "lower", "upper")])
+
+
+def photos(datablock: Datablock) -> list[str]:
+    """Return the names of the photographs or frames that were analysed, those of the plate first."""
+    return datablock[KEY]["photos"].splitlines()
+
+
+def windows(datablock: Datablock) -> tuple[IndexArray, IndexArray, BoolArray]:
+    """Return the windows that were analysed.
+
+    Returns
+    -------
+    places : ndarray, intp, shape (N, 4)
+        The fields of `crfnet_core.windows.Window`: x, y, step, filled.
+    photos : ndarray, intp, shape (N,)
+        Which of the photographs each window lies in.
+    agrees : ndarray, bool, shape (N,)
+        Whether the window agrees with the others.
+    """
+    entries = datablock[KEY]
+    places, in_photos, kept = (list(entries[f"window_{name}"]) for name in ("places", "photos", "kept"))
+    return np.array(places, np.intp).reshape(-1, 4), np.array(in_photos, np.intp), np.array(kept, bool)
 
 
 def restored(datablock: Datablock) -> ResponseEstimate:

@@ -12,6 +12,7 @@ import bpy.utils.previews
 from ..scene import plates, stored_estimate
 from ..work import curve_picture
 from ..work.wording import capitalized, says_too_little
+from .image_editor import analyzed_windows
 from .image_editor.image_tools import CRF_OT_compare
 
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
@@ -68,6 +69,7 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     draw_text(box, CAPTION, letters)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
+        draw_text(box, analyzed_windows.draw_switch(box, context), letters)
     _, *others = stored_estimate.lines(datablock)
     warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:

@@ -17,6 +17,7 @@ REGISTERED = (
     "config_operators",
     "estimate_box",
     "handlers",
+    "image_editor.analyzed_windows",
     "image_editor.comparison",
     "image_editor.image_tools",
     "more.add_look",
