@@ -10,8 +10,7 @@ from typing import TypeAlias
 import bpy
 
 from .node_building import GAP, WIDTH
-from .node_group import is_group_of
-from .node_links import compositor_trees, neighbors_behind, nodes_behind
+from .node_links import compositor_trees, is_group_of, neighbors_behind, nodes_behind
 from .plates import Datablock, datablock_of_node, shown_by_node
 
 #: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.

@@ -28,8 +28,8 @@ from .node_building import (
     math_node,
     multiply_by_alpha,
 )
-from .node_group import is_group_of, linear_rec709, made_for, new_group, working_space
-from .node_links import compositor_trees
+from .node_group import linear_rec709, made_for, new_group, working_space
+from .node_links import compositor_trees, is_group_of
 from .plates import Datablock
 
 #: The custom property of these node groups and their images; its value is the plate's image or clip.

@@ -69,7 +69,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     draw_text(box, CAPTION, letters)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
-        draw_text(box, analyzed_windows.draw_switch(box, context), letters)
+        if where := analyzed_windows.draw_switch(box, context):
+            draw_text(box, where, letters)
     _, *others = stored_estimate.lines(datablock)
     warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:

@@ -7,11 +7,11 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..scene import plates, stored_estimate
+from ..scene import code_values, node_links, plates, stored_estimate
 from ..work.job import WITHOUT_FILES
 from . import running
 from .config_operators import draw_restart
-from .estimate_box import draw_estimate, draw_text, letters_of
+from .estimate_box import draw_estimate, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
@@ -56,6 +56,7 @@ class ResponsePanel:
         is_stored = stored_estimate.is_stored(datablock)
         if is_stored:
             draw_estimate(layout, context, datablock)
+            _draw_warnings(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
             _draw_settings(layout, context, datablock)
 
@@ -96,6 +97,19 @@ def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
     row = layout.row(align=True)
     row.progress(factor=run.task.percent / 100, text=run.text)
     row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
+
+
+def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw what no longer fits the estimate: another file, nodes that show the earlier one or linearise twice."""
+    warnings = []
+    if stored_estimate.is_file_changed(datablock, plates.file_state(datablock)):
+        warnings.append("The file has changed since the estimate: estimate again.")
+    if code_values.is_outdated(datablock):
+        warnings.append("Its nodes show the earlier file until it is applied as Nodes.")
+    if twice := node_links.linearized_twice(datablock):
+        warnings.append(twice)
+    if warnings:
+        draw_paragraphs(layout, warnings, letters_of(context), icon="ERROR")
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
