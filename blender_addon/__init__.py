@@ -32,14 +32,14 @@ def _registered() -> tuple[ModuleType, ...]:
         config_operators,
         estimate_box,
         handlers,
-        image_tools,
         operators,
         panel,
         photographs,
         plate_settings,
         preferences,
     )
+    from .ui.image_editor import analyzed_windows, image_tools
     from .ui.more import add_look, load_lut, other_plates
 
-    tools = (operators, image_tools, photographs, config_operators, add_look, load_lut, other_plates)
+    tools = (operators, image_tools, analyzed_windows, photographs, config_operators, add_look, load_lut, other_plates)
     return (preferences, plate_settings, *tools, estimate_box, panel, handlers)

@@ -30,6 +30,8 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
+    if job.estimation.stored is None:
+        stored_estimate.set_entry(datablock, stored_estimate.FILE_STATE, job.plate.file_state)
     if job.estimation.origin:
         stored_estimate.set_entry(datablock, stored_estimate.ORIGIN, job.estimation.origin)
     remember_settings(datablock, job)
@@ -150,8 +152,7 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
     elif clip is None:
         clip = plate.copy()
         clip.name = baked.files[0].name
-        clip.pop(stored_estimate.KEY, None)
-        clip.property_unset("camera_response_settings")
+        stored_estimate.remove(clip)
         clip.use_proxy = False  # its proxies show the plate
     clip.filepath = _path_like(plate, first)  # reads the files again
     clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset

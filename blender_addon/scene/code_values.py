@@ -15,7 +15,7 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .plates import CODE_VALUES_OF, Datablock
+from .plates import CODE_VALUES_OF, Datablock, has_own_file
 
 
 def code_values(plate: Datablock) -> Datablock:
@@ -25,7 +25,7 @@ def code_values(plate: Datablock) -> Datablock:
     """
     earlier = next(_copies(plate), None)
     if earlier is not None and _is_current(earlier, plate):
-        earlier.colorspace_settings.name = data_space()
+        earlier.colorspace_settings.name = data_space()  # by this, Blender reads the files again, too
         return earlier
     copy = _painted_copy(plate) if _is_painted(plate) else _file_copy(plate)
     if earlier is not None:
@@ -36,6 +36,11 @@ def code_values(plate: Datablock) -> Datablock:
     return copy
 
 
+def is_outdated(plate: Datablock) -> bool:
+    """Return whether the nodes of a plate show another file than the plate, which has been given a new one since."""
+    return has_own_file(plate) and not all(_is_current(copy, plate) for copy in _copies(plate))
+
+
 def _copies(plate: Datablock) -> Iterator[Datablock]:
     """Yield the copies of a plate, of which there is at most one unless the user has duplicated it."""
     yield from (copy for copy in _collection(plate) if copy.get(CODE_VALUES_OF) == plate)
@@ -43,16 +48,13 @@ def _copies(plate: Datablock) -> Iterator[Datablock]:
 
 def _is_current(copy: Datablock, plate: Datablock) -> bool:
     """Return whether a copy reads the same files as its plate; packed pixels may have changed."""
-    if isinstance(plate, bpy.types.Image) and (plate.packed_file or _is_painted(plate)):
-        return False
-    return (copy.filepath, copy.source) == (plate.filepath, plate.source)
+    return has_own_file(plate) and (copy.filepath, copy.source) == (plate.filepath, plate.source)
 
 
 def _file_copy(plate: Datablock) -> Datablock:
     """Return a copy of an image or clip that is a file, packed or not."""
     copy = plate.copy()
-    copy.pop(stored_estimate.KEY, None)
-    copy.property_unset("camera_response_settings")
+    stored_estimate.remove(copy)
     copy.colorspace_settings.name = data_space()
     return copy
 

@@ -9,6 +9,7 @@ from pathlib import Path
 import bpy
 
 from .. import lazy_import
+from ..work.job import CONFIG_VARIABLES
 
 #: The name under which Blender looks for a config. It is `ocio.defaults.CONFIG_NAME` again, because `ocio` comes as a
 #: wheel, and the add-on has to start without it.
@@ -38,7 +39,7 @@ def environment_config() -> str:
 
     Blender 5.2 itself sets the variable OCIO to the config that it has found, which demands nothing.
     """
-    names = ("BLENDER_OCIO", "OCIO") if bpy.app.version >= (5, 0, 0) else ("OCIO",)
+    names = CONFIG_VARIABLES[::-1] if bpy.app.version >= (5, 0, 0) else CONFIG_VARIABLES[:1]
     demanded = next((os.environ[name] for name in names if os.environ.get(name)), "")
     is_usual = demanded and Path(demanded).resolve() in (_own_config().resolve(), _user_config().resolve())
     return "" if is_usual else demanded

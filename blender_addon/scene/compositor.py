@@ -9,15 +9,9 @@ from typing import TypeAlias
 
 import bpy
 
-from .node_group import is_group_of
-from .node_links import compositor_trees, neighbors_behind, nodes_behind
+from .node_building import GAP, WIDTH
+from .node_links import compositor_trees, is_group_of, neighbors_behind, nodes_behind
 from .plates import Datablock, datablock_of_node, shown_by_node
-
-#: Distance between a plate's node and its node group, in units of the node editor.
-_GAP = 60
-
-#: The width of the node of a node group, in units of the node editor.
-_WIDTH = 220
 
 #: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -177,8 +171,8 @@ def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.N
     """Return a new node of the group between a plate's node and the nodes that it was linked to."""
     node = tree.nodes.new("CompositorNodeGroup")
     node.node_tree = group
-    node.width = _WIDTH
-    node.location = (source.location.x + source.width + _GAP, source.location.y)
+    node.width = WIDTH
+    node.location = (source.location.x + source.width + GAP, source.location.y)
     node.parent = source.parent
     _make_room(source, node)
     for target in [link.to_socket for link in source.outputs["Image"].links]:
@@ -193,7 +187,7 @@ def _make_room(source: bpy.types.Node, node: bpy.types.Node) -> None:
     nearest = min((_left(other) for other in behind), default=None)
     if nearest is None:
         return
-    missing = _left(node) + node.width + _GAP - nearest
+    missing = _left(node) + node.width + GAP - nearest
     if missing > 0:
         for other in behind:
             other.location.x += missing

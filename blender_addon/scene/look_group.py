@@ -18,6 +18,8 @@ from crfnet_core.response import SAMPLES
 
 from .color_management import color_spaces, data_space
 from .node_building import (
+    GAP,
+    WIDTH,
     NodeGrid,
     combine_node,
     convert_color_space,
@@ -26,8 +28,8 @@ from .node_building import (
     math_node,
     multiply_by_alpha,
 )
-from .node_group import is_group_of, linear_rec709, made_for, new_group, working_space
-from .node_links import compositor_trees
+from .node_group import linear_rec709, made_for, new_group, working_space
+from .node_links import compositor_trees, is_group_of
 from .plates import Datablock
 
 #: The custom property of these node groups and their images; its value is the plate's image or clip.
@@ -38,9 +40,6 @@ CODE_VALUES = "Code Values"
 
 #: Names of sRGB, the encoding of displays, in common configs.
 SRGB = ("sRGB", "sRGB Encoded Rec.709 (sRGB)", "sRGB - Texture", "Utility - sRGB - Texture")
-
-#: Distance between the node and the output of the tree, in units of the node editor.
-_GAP, _WIDTH = 60, 220
 
 
 def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> None:
@@ -166,10 +165,10 @@ def _node_before_output(tree: bpy.types.NodeTree) -> bpy.types.Node:
     if LOOK in (getattr(earlier, "node_tree", None) or {}):
         return earlier
     node = tree.nodes.new("CompositorNodeGroup")
-    node.width = _WIDTH
+    node.width = WIDTH
     if output is not None:
         node.location = output.location
-        output.location.x += _WIDTH + _GAP
+        output.location.x += WIDTH + GAP
     return node
 
 

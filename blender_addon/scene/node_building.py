@@ -8,6 +8,9 @@ import bpy
 #: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
+#: The distance between a group's node and its neighbours, and its width, in units of the node editor.
+GAP, WIDTH = 60, 220
+
 #: Nodes that Blender 5.0 replaced by those of shaders.
 _MATH, _COMBINE = (
     ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")

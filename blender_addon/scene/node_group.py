@@ -33,14 +33,11 @@ from .node_building import (
     math_node,
     multiply_by_alpha,
 )
+from .node_links import PLATE
 from .plates import Datablock
 
 #: Width and height of the LUT image.
 SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
-
-#: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
-#: earlier versions, the plate's name, which two plates may share.
-PLATE = "camera_response_of"
 
 _CHANNELS = ("Red", "Green", "Blue")
 
@@ -73,12 +70,6 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
     sockets["Exposure"].default_value = exposure
     _add_nodes(group, _lut_image(plate, f".{group.name} LUT", curve), source)
     return group
-
-
-def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "") -> bool:
-    """Return whether a node tree is a plate's node group, or one that an earlier version made for a plate of a name."""
-    owner = None if tree is None else tree.get(PLATE)
-    return owner is not None and owner in (plate, name)
 
 
 def check_config() -> None:

@@ -1,11 +1,17 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which nodes lie behind a node, through reroutes, other nodes and node groups."""
+"""Which nodes lie behind a node, through reroutes, other nodes and node groups; and what is linearised twice there."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 
 import bpy
+
+from .plates import Datablock, datablock_of_node, shown_by_node
+
+#: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
+#: earlier versions, the plate's name, which two plates may share.
+PLATE = "camera_response_of"
 
 
 def nodes_behind(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
@@ -33,6 +39,33 @@ def compositor_trees() -> Iterator[bpy.types.NodeTree]:
     yield from (tree for tree in bpy.data.node_groups if tree.bl_idname == "CompositorNodeTree")
     if bpy.app.version < (5, 0, 0):  # later, these are node groups, too
         yield from (scene.node_tree for scene in bpy.data.scenes if scene.node_tree is not None)
+
+
+def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "") -> bool:
+    """Return whether a node tree is a plate's node group, or one that an earlier version made for a plate of a name."""
+    owner = None if tree is None else tree.get(PLATE)
+    return owner is not None and owner in (plate, name)
+
+
+def linearized_twice(plate: Datablock) -> str:
+    """Return why a plate is linearised twice in a compositor of the file, and what to do; empty if it is not."""
+    for node in (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate):
+        groups = [other for other in nodes_behind(node) if _linearizes(other)]
+        if groups and shown_by_node(node) == plate and not plate.colorspace_settings.is_data:
+            return f'Linearized twice: "{_title(node)}" shows no code values. Apply as Nodes to mend it.'
+        if any(_linearizes(other) for group in groups for other in nodes_behind(group)):
+            return f'Linearized twice: two node groups follow "{_title(node)}". Remove one.'
+    return ""
+
+
+def _linearizes(node: bpy.types.Node) -> bool:
+    """Return whether a node holds the node group of a plate, of whatever plate."""
+    return node.type == "GROUP" and node.node_tree is not None and PLATE in node.node_tree
+
+
+def _title(node: bpy.types.Node) -> str:
+    """Return what stands in the head of a node."""
+    return node.label or node.name
 
 
 def _followers(node: bpy.types.Node) -> Iterator[bpy.types.Node]:

@@ -34,6 +34,11 @@ COMPARED_PLATE = "camera_response_plate"
 Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
+def is_in_editor(context: bpy.types.Context) -> bool:
+    """Return whether one of the `EDITORS` is active; it is not where a script runs, which names its plate."""
+    return context.area is not None and context.area.type in EDITORS
+
+
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, that of the active node.
 
@@ -189,16 +194,42 @@ def plate_of(datablock: Datablock) -> Plate:
     """
     if problem := obstacle(datablock):
         raise AddonError(problem)
-    if isinstance(datablock, bpy.types.Image) and (datablock.packed_file or datablock.source == "GENERATED"):
+    if not has_own_file(datablock):
         name, content = name_and_content(datablock)
         return _plate(datablock, name, folder=None, has_metadata=isinstance(content, bytes), content=content)
-    path = Path(bpy.path.abspath(datablock.filepath, library=datablock.library))
+    path = _path(datablock)
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
         raise AddonError(
             f"{datablock.filepath or datablock.name}: there is no such file; find it with File, External Data"
         )
     decoder = _decoder(datablock, path)
     return _plate(datablock, path, folder=path.parent, has_metadata=decoder is None, decoder=decoder)
+
+
+def file_state(datablock: Datablock) -> str:
+    """Return the name, the size in bytes and the time in seconds of a plate's file, a line each.
+
+    It is empty if the file is not found, or the plate has none of its own. Of a sequence it is one of the frames. The
+    folder does not count, so that a project can be moved.
+    """
+    if not datablock.filepath or not has_own_file(datablock):
+        return ""
+    path = _path(datablock)
+    try:
+        found = path.stat()
+    except OSError:
+        return ""
+    return f"{path.name}\n{found.st_size}\n{found.st_mtime:.0f}"
+
+
+def has_own_file(datablock: Datablock) -> bool:
+    """Return whether the code values of an image or clip lie in files on disk, not in the .blend file or in memory."""
+    return not isinstance(datablock, bpy.types.Image) or not (datablock.packed_file or datablock.source == "GENERATED")
+
+
+def _path(datablock: Datablock) -> Path:
+    """Return the file of an image or clip."""
+    return Path(bpy.path.abspath(datablock.filepath, library=datablock.library))
 
 
 def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
@@ -209,6 +240,7 @@ def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
         datablock_name=datablock.name,
         uid=datablock.session_uid,
         color_space=datablock.colorspace_settings.name,
+        file_state=file_state(datablock),
         **details,
     )
 

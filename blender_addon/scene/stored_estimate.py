@@ -17,7 +17,7 @@ from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
-    from crfnet_core.types import Float64Array
+    from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
     from .plates import Datablock
 
@@ -34,6 +34,10 @@ EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
 #: The entry that says where a response comes from, in words, if it was not estimated from its plate.
 ORIGIN = "origin"
 
+#: The entry with the state of the plate's file that was analysed, see `plates.file_state`; and how far the times of a
+#: file and its copy may differ, in seconds, because archives and some file systems round them.
+FILE_STATE, _SAME_TIME = "file_state", 2
+
 #: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
 #: drawn without the estimator.
 DO_NOT_TRUST = "do not trust"
@@ -41,6 +45,8 @@ DO_NOT_TRUST = "do not trust"
 
 def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
     """Store an estimate on its image or clip, which still gets the colour space that it waits for.
+
+    What is known of the file that was analysed stays, too: the estimate may be the stored one again.
 
     Parameters
     ----------
@@ -52,10 +58,17 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
         What the panel says of the estimate.
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
-    pending = pending_color_space(datablock)
+    kept = {name: datablock[KEY].get(name) for name in (PENDING_COLOR_SPACE, FILE_STATE) if is_stored(datablock)}
     datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
-    if pending:
-        datablock[KEY][PENDING_COLOR_SPACE] = pending
+    for name, value in kept.items():
+        if value:
+            set_entry(datablock, name, value)
+
+
+def remove(datablock: Datablock) -> None:
+    """Remove the estimate and the settings from a copy of a plate, which is no plate itself."""
+    datablock.pop(KEY, None)
+    datablock.property_unset("camera_response_settings")
 
 
 def is_stored(datablock: Datablock | None) -> bool:
@@ -90,6 +103,28 @@ def curve_and_band(datablock: Datablock) -> Float64Array:
     return np.array([entries[name].to_list() for name in ("brightness", "lower", "upper")])
 
 
+def photos(datablock: Datablock) -> list[str]:
+    """Return the names of the photographs or frames that were analysed, those of the plate first."""
+    return datablock[KEY]["photos"].splitlines()
+
+
+def windows(datablock: Datablock) -> tuple[IndexArray, IndexArray, BoolArray]:
+    """Return the windows that were analysed.
+
+    Returns
+    -------
+    places : ndarray, intp, shape (N, 4)
+        The fields of `crfnet_core.windows.Window`: x, y, step, filled.
+    photos : ndarray, intp, shape (N,)
+        Which of the photographs each window lies in.
+    agrees : ndarray, bool, shape (N,)
+        Whether the window agrees with the others.
+    """
+    entries = datablock[KEY]
+    places, in_photos, kept = (list(entries[f"window_{name}"]) for name in ("places", "photos", "kept"))
+    return np.array(places, np.intp).reshape(-1, 4), np.array(in_photos, np.intp), np.array(kept, bool)
+
+
 def restored(datablock: Datablock) -> ResponseEstimate:
     """Return the stored estimate.
 
@@ -119,6 +154,19 @@ def origin(datablock: Datablock) -> str:
 def exposure(datablock: Datablock) -> float:
     """Return the stops that the linear plate was given; 0 if that was not stored."""
     return datablock[KEY].get(EXPOSURE, 0.0)
+
+
+def is_file_changed(datablock: Datablock, state: str) -> bool:
+    """Return whether the file that was analysed was another one than that of a state, or has been changed since.
+
+    It is False if that is unknown, as of estimates of earlier versions, or the response comes from elsewhere.
+    """
+    earlier = datablock[KEY].get(FILE_STATE, "")
+    if not earlier or not state or origin(datablock):
+        return False
+    *file, time = earlier.split("\n")
+    *present_file, present_time = state.split("\n")
+    return file != present_file or abs(int(time) - int(present_time)) > _SAME_TIME
 
 
 def pending_color_space(datablock: Datablock | None) -> str:

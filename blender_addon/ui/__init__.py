@@ -2,11 +2,11 @@
 """What the user sees of the add-on, and the job that is gathered from it.
 
 operators         "Estimate Camera Response", "Apply Camera Response", "Cancel"
+operator_base     what operators share: the plate that a script names, and how they report a problem
 running           the one run that is under way, and how its progress is shown
 panel             the sidebar panel and the menu entries of three editors
 estimate_box      what the panel shows of an estimate
-comparison        the linear plate in the place of the plate, for looking only
-image_tools       before and after, the eyedropper for gray, and frames that Blender took for UDIM tiles
+image_editor      what only the Image Editor has: before and after, the eyedropper for gray
 photographs       further photographs of the same camera
 config_operators  what is in the OpenColorIO config: list it, take it out, restart
 plate_settings    what can be chosen for one plate

@@ -19,21 +19,18 @@ import bpy
 from .. import lazy_import
 from ..scene import color_management
 from ..work.errors import expected_errors
-from ..work.wording import american
-from . import comparison
+from ..work.job import CONFIG_VARIABLES
 from .estimate_box import draw_text
+from .image_editor import comparison
+from .operator_base import failed
 from .preferences import absolute
 
 #: What Blender read at its start; set when the add-on is first enabled in a session.
 _read_at_start: str | None = None
 
-#: Environment variables that name a config. Blender 5.2 sets OCIO itself, and must not hand it on.
-_CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
-
 #: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
 #: because the interface is drawn without `ocio`.
 RECORD = Path("camera_response", "installed.json")
-
 
 #: How many letters fit into a line of the preferences.
 _LETTERS = 60
@@ -60,8 +57,7 @@ class CRF_OT_restore_config(bpy.types.Operator):
         try:
             restored = lazy_import.load("ocio.configs.installed").restore(folder)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         _redraw(context)
         done = "removed, so Blender uses its own again" if restored.is_removed else "again as it was"
         self.report({"INFO"}, f"The config is {done} after a restart: {restored.config}")
@@ -83,8 +79,7 @@ class CRF_OT_remove_color_space(bpy.types.Operator):
         try:
             lazy_import.load("ocio.configs.installed").uninstall(color_management.user_folder(), self.color_space)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         _redraw(context)
         self.report({"INFO"}, f'"{self.color_space}" is gone after a restart')
         return {"FINISHED"}
@@ -127,7 +122,7 @@ def start_blender(file: str) -> None:
     """Start another Blender with a file; raise an OSError if it cannot be started."""
     environment = dict(os.environ)
     if not color_management.environment_config():
-        for name in _CONFIG_VARIABLES:
+        for name in CONFIG_VARIABLES:
             environment.pop(name, None)
     subprocess.Popen([bpy.app.binary_path, file], env=environment, start_new_session=True)
 
@@ -217,7 +212,9 @@ def _redraw(context: bpy.types.Context) -> None:
             area.tag_redraw()
 
 
-_CLASSES = (CRF_OT_restore_config, CRF_OT_remove_color_space, CRF_OT_save_and_restart)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_restore_config, CRF_OT_remove_color_space, CRF_OT_save_and_restart)
+)
 
 
 def register() -> None:
@@ -225,11 +222,9 @@ def register() -> None:
     global _read_at_start
     if _read_at_start is None:
         _read_at_start = _fingerprint()
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Unregister the operators; what Blender read at its start stays in mind for the session."""
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -12,7 +12,8 @@ import bpy.utils.previews
 from ..scene import plates, stored_estimate
 from ..work import curve_picture
 from ..work.wording import capitalized, says_too_little
-from .image_tools import CRF_OT_compare
+from .image_editor import analyzed_windows
+from .image_editor.image_tools import CRF_OT_compare
 
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
@@ -27,6 +28,9 @@ VERDICTS = {
 
 #: The same of a picture that hardly tells one response from another, whatever its verdict.
 MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the picture says too little of its response.")
+
+#: The same of a response that was loaded from a LUT file.
+LOADED_WORDS = ("Loaded", "FILE", "")
 
 #: What the picture of the curve shows.
 CAPTION = "Code value by stops below white. Blue: 90 % band. Dashed: gamma 2.2."
@@ -49,8 +53,6 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     """Draw the stored estimate of a plate in one box."""
     letters = letters_of(context)
     word, icon, advice = _verdict_words(datablock)
-    if stored_estimate.is_loaded(datablock):
-        word, icon, advice = "Loaded", "FILE", ""
     box = layout.box()
     column = box.column(align=True)
     row = column.row()
@@ -67,6 +69,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     draw_text(box, CAPTION, letters)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
+        if where := analyzed_windows.draw_switch(box, context):
+            draw_text(box, where, letters)
     _, *others = stored_estimate.lines(datablock)
     warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:
@@ -79,6 +83,8 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
 
 def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
     """Return the verdict in a word or two, its icon, and what follows from it or an empty text."""
+    if stored_estimate.is_loaded(datablock):
+        return LOADED_WORDS
     verdict = stored_estimate.verdict(datablock)
     if says_too_little(verdict, stored_estimate.warnings(datablock)):
         return MEAN_OF_CAMERAS

@@ -14,7 +14,7 @@ from ocio.options import EstimateOptions
 from ..scene import color_management, node_group, plates
 from ..scene.stored_estimate import origin, restored
 from ..work.errors import AddonError
-from ..work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
+from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
 from .plate_settings import CHOICES
 from .preferences import absolute, preferences
 
@@ -109,7 +109,7 @@ def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
 
     It is Blender's for a colour space; else that of the preferences, the plate or the .blend file, the first there is.
     """
-    if mode in (ApplyMode.ESTIMATE, ApplyMode.NODES):
+    if mode in WITHOUT_FILES:
         return None
     if mode is ApplyMode.COLORSPACE:
         return color_management.user_folder()

@@ -13,7 +13,7 @@ from typing import Any
 import bpy
 
 from ..scene import color_management, stored_estimate
-from . import comparison
+from .image_editor import analyzed_windows, comparison
 
 
 @bpy.app.handlers.persistent
@@ -31,10 +31,17 @@ def end_comparisons(*_arguments: Any) -> None:
     comparison.end_all()
 
 
+@bpy.app.handlers.persistent
+def end_analyzed_windows(_path: str = "") -> None:
+    """Draw no windows over the plates of another file."""
+    analyzed_windows.switch_off()
+
+
 #: The handlers: Blender's name of the occasion, and the function.
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("load_post", set_pending_color_spaces),
     ("load_post", end_comparisons),
+    ("load_post", end_analyzed_windows),
     ("save_pre", end_comparisons),
     ("undo_pre", end_comparisons),
     ("undo_post", end_comparisons),

@@ -11,9 +11,11 @@ import bpy
 
 from .. import lazy_import
 from ..scene import plates, stored_estimate
-from ..work.errors import AddonError, CancelledError, expected_errors
-from ..work.wording import american, report_line
-from . import comparison, running
+from ..work.errors import AddonError, expected_errors
+from ..work.wording import report_line
+from . import running
+from .image_editor import comparison
+from .operator_base import ChosenPlate, failed
 from .plate_settings import CHOICES, PlateChoices, remember_applied
 from .preferences import APPLY_MODES
 
@@ -25,7 +27,7 @@ if TYPE_CHECKING:
 WITHHELD = "not applied; to use it all the same, press Apply Anyway"
 
 
-class PlateOperator(PlateChoices):
+class PlateOperator(ChosenPlate, PlateChoices):
     """What "Estimate Camera Response" and "Apply Camera Response" share.
 
     A script, and Blender in the background, calls `execute`, which returns when the job is done. The interface calls
@@ -33,14 +35,6 @@ class PlateOperator(PlateChoices):
     data changes before the job has succeeded, so an error or Esc leaves everything as it was.
     """
 
-    image: bpy.props.StringProperty(
-        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
-    )
-    clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
     apply: bpy.props.EnumProperty(
         name="Apply As", description="What becomes of the response", items=APPLY_MODES, default="ESTIMATE"
     )
@@ -61,7 +55,7 @@ class PlateOperator(PlateChoices):
             job = self._gather_job(context)
             return self._apply(context, lazy_import.load(".work.run").run(job))
         except expected_errors() as problem:
-            return self._fail(problem)
+            return failed(self, problem)
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Start the job in another thread, and a timer that watches it."""
@@ -69,7 +63,7 @@ class PlateOperator(PlateChoices):
             job = self._gather_job(context)
             run = lazy_import.load(".work.run").run
         except expected_errors() as problem:
-            return self._fail(problem)
+            return failed(self, problem)
         context.window_manager.modal_handler_add(self)
         doing = "Applying" if self.is_estimated else "Estimating"
         self._run = running.start(context, job.plate.name, lambda progress: run(job, progress), doing=doing)
@@ -89,7 +83,7 @@ class PlateOperator(PlateChoices):
         try:
             return self._apply(context, self._run.task.result())
         except expected_errors() as problem:
-            return self._fail(problem)
+            return failed(self, problem)
 
     def cancel(self, _context: bpy.types.Context) -> None:
         """Cancel the job, because Blender closes or opens another file."""
@@ -98,19 +92,17 @@ class PlateOperator(PlateChoices):
 
     def _gather_job(self, context: bpy.types.Context) -> "Job":
         """Return the job; arguments of the call take precedence over the settings of the plate."""
-        datablock = plates.chosen_datablock(context, self.image, self.clip)
+        datablock = self.estimated_plate(context) if self.is_estimated else self.chosen_plate(context)
         if self.is_estimated:
-            self._check_stored(datablock)
+            self._check_trust(datablock)
         arguments = {name: getattr(self, name) for name in CHOICES if self.properties.is_property_set(name)}
         gather = lazy_import.load(".ui.gather")
         return gather.gather_job(
             datablock, is_estimated=self.is_estimated, despite_verdict=self.anyway, arguments=arguments
         )
 
-    def _check_stored(self, datablock: plates.Datablock) -> None:
-        """Raise an AddonError unless the plate has an estimate that is to be trusted, or is applied anyway."""
-        if not stored_estimate.is_stored(datablock):
-            raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
+    def _check_trust(self, datablock: plates.Datablock) -> None:
+        """Raise an AddonError unless the plate's response is to be trusted, or is applied anyway."""
         if stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST and not self.anyway:
             raise AddonError(f"{datablock.name}: the response is not to be trusted; {WITHHELD}")
 
@@ -122,16 +114,11 @@ class PlateOperator(PlateChoices):
             remember_applied(plates.datablock_of_plate(completed.job.plate))
         running.redraw_editors(context.window_manager)
         if completed.problem is not None:  # the estimate is stored, so this is a step that can be undone
-            self._fail(completed.problem)
+            failed(self, completed.problem)
             return {"FINISHED"}
         message = report_line(completed.job.plate.name, completed.estimate, WITHHELD if completed.is_withheld else done)
         self.report({"WARNING"} if completed.is_doubtful else {"INFO"}, message)
         return {"FINISHED"}
-
-    def _fail(self, problem: Exception) -> set[str]:
-        """Report why nothing was done; that the user canceled is no error."""
-        self.report({"INFO" if isinstance(problem, CancelledError) else "ERROR"}, american(str(problem)))
-        return {"CANCELLED"}
 
 
 class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
@@ -149,7 +136,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
         """Return whether there is a plate and no other run, and tell why if not; a script names its plate."""
         if _is_busy(cls):
             return False
-        if context.area is None or context.area.type not in plates.EDITORS:
+        if not plates.is_in_editor(context):
             return True
         if why := plates.obstacle_in(context):
             cls.poll_message_set(why)
@@ -171,7 +158,7 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
         """Return whether the plate has an estimate and there is no run; a script names its plate."""
         if _is_busy(cls):
             return False
-        if context.area is None or context.area.type not in plates.EDITORS:
+        if not plates.is_in_editor(context):
             return True
         if stored_estimate.is_stored(plates.active_datablock(context)):
             return True
@@ -206,17 +193,17 @@ def _is_busy(operator: type[bpy.types.Operator]) -> bool:
     return run is not None
 
 
-_CLASSES = (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_estimate_response, CRF_OT_apply_response, CRF_OT_cancel_run)
+)
 
 
 def register() -> None:
     """Register the operators."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Cancel what runs, and unregister the operators."""
     running.stop()
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -7,15 +7,16 @@ from typing import TYPE_CHECKING
 
 import bpy
 
-from ..scene import plates, stored_estimate
+from ..scene import code_values, node_links, plates, stored_estimate
+from ..work.job import WITHOUT_FILES
 from . import running
 from .config_operators import draw_restart
-from .estimate_box import draw_estimate, draw_text, letters_of
-from .image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
+from .estimate_box import draw_estimate, draw_paragraphs, draw_text, letters_of
+from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
 from .photographs import draw_photographs
-from .plate_settings import WITHOUT_FILES, is_applied, is_to_be_applied
+from .plate_settings import is_applied, is_to_be_applied
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
 MENUS = ("IMAGE_MT_image", "CLIP_MT_clip", "NODE_MT_node")
@@ -55,6 +56,7 @@ class ResponsePanel:
         is_stored = stored_estimate.is_stored(datablock)
         if is_stored:
             draw_estimate(layout, context, datablock)
+            _draw_warnings(layout, context, datablock)
         if is_stored or not plates.obstacle(datablock):
             _draw_settings(layout, context, datablock)
 
@@ -95,6 +97,19 @@ def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
     row = layout.row(align=True)
     row.progress(factor=run.task.percent / 100, text=run.text)
     row.operator(CRF_OT_cancel_run.bl_idname, text="", icon="CANCEL")
+
+
+def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
+    """Draw what no longer fits the estimate: another file, nodes that show the earlier one or linearise twice."""
+    warnings = []
+    if stored_estimate.is_file_changed(datablock, plates.file_state(datablock)):
+        warnings.append("The file has changed since the estimate: estimate again.")
+    if code_values.is_outdated(datablock):
+        warnings.append("Its nodes show the earlier file until it is applied as Nodes.")
+    if twice := node_links.linearized_twice(datablock):
+        warnings.append(twice)
+    if warnings:
+        draw_paragraphs(layout, warnings, letters_of(context), icon="ERROR")
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -167,13 +182,12 @@ def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
     return column
 
 
-_CLASSES = (CRF_PT_image, CRF_PT_clip, CRF_PT_node)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_PT_image, CRF_PT_clip, CRF_PT_node))
 
 
 def register() -> None:
     """Register the panels, and add the entries to the menus."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
     for name in MENUS:
         getattr(bpy.types, name).append(draw_menu_entries)
 
@@ -182,5 +196,4 @@ def unregister() -> None:
     """Remove the entries, and unregister the panels."""
     for name in MENUS:
         getattr(bpy.types, name).remove(draw_menu_entries)
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

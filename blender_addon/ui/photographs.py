@@ -16,7 +16,10 @@ class CRF_OT_add_photographs(bpy.types.Operator):
 
     bl_idname = "crf.add_photographs"
     bl_label = "Add Photographs of This Camera"
-    bl_description = "Add photographs that the same camera took with the same settings: several give a better estimate"
+    bl_description = (
+        "Add photographs that the same camera took with the same settings: the response is estimated from all of them"
+        " together. On real cameras this has made it a little better only"
+    )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
     directory: bpy.props.StringProperty(subtype="DIR_PATH", options={"HIDDEN", "SKIP_SAVE"})
@@ -83,16 +86,4 @@ def draw_photographs(layout: bpy.types.UILayout, settings: bpy.types.PropertyGro
     column.operator(CRF_OT_add_photographs.bl_idname, text="Add Photos", icon="ADD")
 
 
-_CLASSES = (CRF_OT_add_photographs, CRF_OT_remove_photograph)
-
-
-def register() -> None:
-    """Register the operators."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
-
-
-def unregister() -> None:
-    """Unregister the operators."""
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+register, unregister = bpy.utils.register_classes_factory((CRF_OT_add_photographs, CRF_OT_remove_photograph))

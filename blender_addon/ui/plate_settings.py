@@ -4,6 +4,7 @@
 import bpy
 
 from ..scene import stored_estimate
+from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
 
 #: The anchors of the exposure, `work.job.Anchor`.
@@ -35,10 +36,6 @@ _MODES = {number: name for name, number in _NUMBERS.items()}
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
-
-
-#: The ways to apply a response that write no file.
-WITHOUT_FILES = ("ESTIMATE", "NODES")
 
 
 class PlateChoices:
@@ -144,13 +141,12 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     return {name: getattr(settings, name) for name in names}
 
 
-_CLASSES = (CRF_Photograph, CRF_PlateSettings)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_Photograph, CRF_PlateSettings))
 
 
 def register() -> None:
     """Add the settings to images and clips."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         kind.camera_response_settings = bpy.props.PointerProperty(type=CRF_PlateSettings)
 
@@ -159,5 +155,4 @@ def unregister() -> None:
     """Remove the settings from images and clips."""
     for kind in (bpy.types.Image, bpy.types.MovieClip):
         del kind.camera_response_settings
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -95,11 +95,4 @@ def absolute(folder: str) -> Path | None:
     return Path(bpy.path.abspath(folder)) if folder else None
 
 
-def register() -> None:
-    """Register the preferences."""
-    bpy.utils.register_class(CRF_AddonPreferences)
-
-
-def unregister() -> None:
-    """Unregister the preferences."""
-    bpy.utils.unregister_class(CRF_AddonPreferences)
+register, unregister = bpy.utils.register_classes_factory((CRF_AddonPreferences,))

@@ -18,13 +18,10 @@ from crfnet_core.types import Progress
 from ocio.plates.frames import FrameSequence
 
 from .errors import AddonError
-from .job import BlenderDecoder, Plate
+from .job import CONFIG_VARIABLES, BlenderDecoder, Plate
 
 #: Seconds between two looks for a decoded frame.
 _TICK = 0.05
-
-#: Environment variables that would give the other Blender another OpenColorIO config than its own.
-_CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 
 
 class FrameDecoder:
@@ -106,7 +103,7 @@ def running_decoder(plate: Plate, decoder: BlenderDecoder, folder: Path) -> Iter
     AddonError
         If Blender cannot be started.
     """
-    environment = {name: value for name, value in os.environ.items() if name not in _CONFIG_VARIABLES}
+    environment = {name: value for name, value in os.environ.items() if name not in CONFIG_VARIABLES}
     environment["BLENDER_USER_RESOURCES"] = str(folder / "user")  # not there: Blender's own config, no add-ons
     arguments = [*decoder.command, *(["--deinterlace"] if decoder.is_deinterlaced else [])]
     with (folder / "errors.txt").open("w", encoding="utf-8") as errors:

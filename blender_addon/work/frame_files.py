@@ -125,9 +125,7 @@ def _temporary_folder(plate: Plate) -> Iterator[Path]:
     try:
         temporary = tempfile.TemporaryDirectory(prefix="crf_", ignore_cleanup_errors=True)
     except OSError as problem:
-        raise AddonError(
-            f"{plate.name}: no temporary file can be written ({problem.strerror}); free some space"
-        ) from None
+        raise _no_room(plate, problem) from None
     with temporary as folder:
         yield Path(folder)
 
@@ -141,10 +139,13 @@ def _written(plate: Plate, folder: Path, sequence: FrameSequence, _progress: Pro
         elif plate.content is not None:
             _write_png(path, plate.content)
     except OSError as problem:
-        raise AddonError(
-            f"{plate.name}: no temporary file can be written ({problem.strerror}); free some space"
-        ) from None
+        raise _no_room(plate, problem) from None
     return replace(sequence, paths=(path,))
+
+
+def _no_room(plate: Plate, problem: OSError) -> AddonError:
+    """Return the error that a temporary file of a plate cannot be written."""
+    return AddonError(f"{plate.name}: no temporary file can be written ({problem.strerror}); free some space")
 
 
 def _write_png(path: Path, codes: Uint8Array) -> None:

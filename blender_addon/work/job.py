@@ -31,6 +31,14 @@ class ApplyMode(StrEnum):
     EXPORT = "EXPORT"
 
 
+#: The modes that write no file.
+WITHOUT_FILES = (ApplyMode.ESTIMATE, ApplyMode.NODES)
+
+#: Environment variables that name Blender's OpenColorIO config; Blender 4.5 knows the first only. Blender 5.2 sets it
+#: itself, so a Blender that is started must not inherit them.
+CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
+
+
 class Anchor(StrEnum):
     """Which brightness has a given linear value."""
 
@@ -79,6 +87,8 @@ class Plate:
         The folder for new files unless the user chooses one; None for a plate without a file of its own.
     has_metadata : bool
         Whether the file may say how it was made; not if it was written from pixels in Blender, or by its decoder.
+    file_state : str
+        The file as it was when the job was gathered, see `scene.plates.file_state`; empty without a file of its own.
     content : bytes, ndarray of uint8 with shape (H, W, 3 or 4), or None
         The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
     decoder : BlenderDecoder or None
@@ -93,6 +103,7 @@ class Plate:
     color_space: str
     folder: Path | None
     has_metadata: bool = True
+    file_state: str = ""
     content: bytes | Uint8Array | None = field(default=None, repr=False, compare=False)
     decoder: BlenderDecoder | None = None
 
@@ -112,6 +123,7 @@ class Plate:
         color_space: str,
         folder: Path | None,
         has_metadata: bool = True,
+        file_state: str = "",
         content: bytes | Uint8Array | None = None,
         decoder: BlenderDecoder | None = None,
     ) -> Plate:
@@ -136,6 +148,7 @@ class Plate:
             color_space=color_space,
             folder=folder,
             has_metadata=has_metadata,
+            file_state=file_state,
             content=content,
             decoder=decoder,
         )

@@ -29,7 +29,7 @@ from .errors import AddonError, CancelledError
 from .frame_files import frames_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 from .target_check import check_targets
-from .wording import is_loaded, panel_line
+from .wording import is_loaded, loaded_line, panel_line
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
@@ -69,7 +69,7 @@ class CompletedJob:
     def lines(self) -> tuple[str, ...]:
         """The verdict and the warnings in words, one line each."""
         if is_loaded(self.estimate):
-            return (f"The response is {self.estimate.model}: this is no estimate, so there is no verdict.",)
+            return (loaded_line(self.estimate.model),)
         return tuple(map(panel_line, verdict_lines(self.estimate)))
 
     @property

@@ -13,11 +13,8 @@ from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets
 
 from .errors import AddonError
-from .job import ApplyMode, Job
+from .job import WITHOUT_FILES, ApplyMode, Job
 from .writers import baked_name, output_files
-
-#: The modes that write no file.
-_WITHOUT_FILES = (ApplyMode.ESTIMATE, ApplyMode.NODES)
 
 
 def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
@@ -37,7 +34,7 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
     CRFNetError
         If the folder cannot be written to, or holds a config that OpenColorIO refuses.
     """
-    if job.output.mode in _WITHOUT_FILES:
+    if job.output.mode in WITHOUT_FILES:
         return
     if job.output.folder is None:
         raise AddonError(

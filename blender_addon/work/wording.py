@@ -39,7 +39,6 @@ _SENTENCES = {
     "do not trust": "the response is not to be trusted",
 }
 
-
 #: How the model of a response is named that was loaded from a LUT file, so that it is no estimate and has no verdict.
 LOADED = "loaded from "
 
@@ -47,6 +46,11 @@ LOADED = "loaded from "
 def is_loaded(estimate: ResponseEstimate) -> bool:
     """Return whether a response was loaded from a LUT file."""
     return estimate.model.startswith(LOADED)
+
+
+def loaded_line(model: str) -> str:
+    """Return what the panel says of a response that was loaded from a LUT file, in place of a verdict."""
+    return f"The response is {model}: this is no estimate, so there is no verdict."
 
 
 def american(text: str) -> str:

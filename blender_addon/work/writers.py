@@ -8,20 +8,13 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.files import check_target
 from crfnet_core.types import Progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
-from ocio.output_files import (
-    OutputFiles,
-    check_folder,
-    new_files_removed_on_failure,
-    output_folder,
-    plain_stem,
-)
-from ocio.pipeline import bake_plates, export_luts
+from ocio.output_files import OutputFiles, plain_stem
+from ocio.pipeline import all_or_none, bake_plates, export_luts
 from ocio.plates.frames import FramePattern, FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
@@ -114,17 +107,12 @@ def _bake_decoded(
     progress: Progress | None,
 ) -> None:
     """Do as `bake_plates`, with a few decoded frames on the disk at a time."""
-    folder = targets[0].parent
-    check_folder(folder)
-    with output_folder(folder):
-        for target in targets:
-            check_target(target, overwrite=options.overwrite)
-        with new_files_removed_on_failure(targets):
-            for start in range(0, len(targets), FRAMES_DECODED):
-                part = slice(start, start + FRAMES_DECODED)
-                frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
-                so_far = counted_from(progress, start, len(targets))
-                linearize_plates(read(frames, so_far), targets[part], lut, options)
+    with all_or_none(targets, overwrite=options.overwrite):
+        for start in range(0, len(targets), FRAMES_DECODED):
+            part = slice(start, start + FRAMES_DECODED)
+            frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
+            so_far = counted_from(progress, start, len(targets))
+            linearize_plates(read(frames, so_far), targets[part], lut, options)
     if progress is not None:
         progress(len(targets), len(targets))
 

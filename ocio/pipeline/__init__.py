@@ -13,7 +13,7 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 """
 
 from ocio.luts.exposure import anchored_exposure
-from ocio.pipeline.delivery import bake_plates, export_luts
+from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
 from ocio.pipeline.each import estimate_each, find_photographs, plan_each
 from ocio.pipeline.estimates import (
     PhotographEstimate,
@@ -31,6 +31,7 @@ __all__ = [
     "OutputPlan",
     "PhotographEstimate",
     "PhotographRecord",
+    "all_or_none",
     "anchored_exposure",
     "bake_plates",
     "estimate_each",

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
 from pathlib import Path
 
 from crfnet_core.files import check_target
@@ -48,13 +49,8 @@ def bake_plates(
     CRFNetError
         If a target exists and may not be replaced, the folder cannot be written to, or a frame fails.
     """
-    folder = targets[0].parent
-    check_folder(folder)
-    with output_folder(folder):
-        for target in targets:
-            check_target(target, overwrite=options.overwrite)
-        with new_files_removed_on_failure(targets):
-            linearize_plates(sequence, targets, lut, options, progress=progress)
+    with all_or_none(targets, overwrite=options.overwrite):
+        linearize_plates(sequence, targets, lut, options, progress=progress)
 
 
 def export_luts(files: OutputFiles, space: PlateColorSpace, lut: Lut1D, *, overwrite: bool = False) -> tuple[Path, ...]:
@@ -79,12 +75,33 @@ def export_luts(files: OutputFiles, space: PlateColorSpace, lut: Lut1D, *, overw
         If a file exists and may not be replaced, or cannot be written, or OpenColorIO refuses the config.
     """
     written = (*files.luts, files.config)
-    check_folder(files.config.parent)
-    with output_folder(files.config.parent):
-        for path in written:
-            check_target(path, overwrite=overwrite)
-        with new_files_removed_on_failure(written):
-            for path in files.luts:
-                write_lut(path, lut, overwrite=overwrite)
-            write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=overwrite)
+    with all_or_none(written, overwrite=overwrite):
+        for path in files.luts:
+            write_lut(path, lut, overwrite=overwrite)
+        write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=overwrite)
     return written
+
+
+@contextmanager
+def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[None]:
+    """Make the folder of files for a block that writes them; if it fails or is cancelled, remove what is new.
+
+    Parameters
+    ----------
+    targets : sequence of Path
+        The files, all in one folder.
+    overwrite : bool
+        Whether existing files may be replaced.
+
+    Raises
+    ------
+    CRFNetError
+        If a file exists and may not be replaced, or the folder cannot be made or written to.
+    """
+    folder = targets[0].parent
+    check_folder(folder)
+    with output_folder(folder):
+        for target in targets:
+            check_target(target, overwrite=overwrite)
+        with new_files_removed_on_failure(targets):
+            yield

@@ -14,15 +14,17 @@ LIGHT = ("background", "curve_picture", "errors", "job", "wording")
 
 #: Modules of `ui` that Blender imports when it enables the add-on.
 REGISTERED = (
-    "comparison",
     "config_operators",
     "estimate_box",
     "handlers",
-    "image_tools",
+    "image_editor.analyzed_windows",
+    "image_editor.comparison",
+    "image_editor.image_tools",
     "more.add_look",
     "more.load_lut",
     "more.other_plates",
     "more.panel",
+    "operator_base",
     "operators",
     "panel",
     "photographs",
@@ -114,7 +116,7 @@ def test_what_is_registered_imports_no_estimator(addon_folder, module):
     assert of_work <= set(LIGHT)
 
 
-@pytest.mark.parametrize("room", ["ui", "ui/more", "scene", "work"])
+@pytest.mark.parametrize("room", ["ui", "ui/image_editor", "ui/more", "scene", "work"])
 def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     modules = {path.stem for path in (addon_folder / room).glob("*.py")} - {"__init__"}
     modules |= {path.parent.name for path in (addon_folder / room).glob("*/__init__.py")}

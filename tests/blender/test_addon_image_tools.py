@@ -109,7 +109,7 @@ def test_the_switch_is_drawn_in_the_image_editor_only(image, in_editor):
 
 
 def test_gray_is_the_mean_of_a_few_pixels():
-    from blender_addon.ui.image_tools import mean_around
+    from blender_addon.ui.image_editor.image_tools import mean_around
     from blender_addon.work.errors import AddonError
 
     codes = np.zeros((100, 200, 4), np.float32)
@@ -140,7 +140,7 @@ class Picking:
 
 @pytest.fixture
 def picker(addon):
-    from blender_addon.ui.image_tools import CRF_OT_pick_gray
+    from blender_addon.ui.image_editor.image_tools import CRF_OT_pick_gray
 
     class Driven:
         invoke, modal, cancel, _pick = (vars(CRF_OT_pick_gray)[name] for name in ("invoke", "modal", "cancel", "_pick"))

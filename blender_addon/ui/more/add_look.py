@@ -7,11 +7,11 @@ import bpy
 
 from ... import lazy_import
 from ...scene import plates, stored_estimate
-from ...work.errors import AddonError, expected_errors
-from ...work.wording import american
+from ...work.errors import expected_errors
+from ..operator_base import ChosenPlate, failed
 
 
-class CRF_OT_add_look(bpy.types.Operator):
+class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
     """Put the plate's "Camera Look" before the output of the compositor."""
 
     bl_idname = "crf.add_look"
@@ -23,19 +23,10 @@ class CRF_OT_add_look(bpy.types.Operator):
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
-    image: bpy.props.StringProperty(
-        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
-    )
-    clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
-
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether the plate of the compositor has a response, and tell why if not; a script names its plate."""
-        if context.area is None or context.area.type not in plates.EDITORS:
+        if not plates.is_in_editor(context):
             return True
         if context.area.type != "NODE_EDITOR":
             cls.poll_message_set("The look is added in the compositor")
@@ -48,25 +39,15 @@ class CRF_OT_add_look(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the node, or bring the one that is there up to date."""
         try:
-            plate = plates.chosen_datablock(context, self.image, self.clip)
-            if not stored_estimate.is_stored(plate):
-                raise AddonError(f"{plate.name}: has no estimate yet; estimate its response first")
+            plate = self.estimated_plate(context)
             tree = lazy_import.load(".scene.apply").shown_tree(context)
             curve, stops = stored_estimate.restored(plate).curve, stored_estimate.exposure(plate)
             name = plates.plate_of(plate).name
             lazy_import.load(".scene.look_group").add_look(tree, plate, name, curve, stops)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         self.report({"INFO"}, f"{plate.name}: its look is before the output; set View Transform to Standard")
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Register the operator."""
-    bpy.utils.register_class(CRF_OT_add_look)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    bpy.utils.unregister_class(CRF_OT_add_look)
+register, unregister = bpy.utils.register_classes_factory((CRF_OT_add_look,))

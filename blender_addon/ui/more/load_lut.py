@@ -9,11 +9,13 @@ import bpy
 from ... import lazy_import
 from ...scene import plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
-from ...work.wording import LOADED, american
-from .. import comparison, running
+from ...work.wording import LOADED, loaded_line
+from .. import running
+from ..image_editor import comparison
+from ..operator_base import ChosenPlate, failed
 
 
-class CRF_OT_load_lut(bpy.types.Operator):
+class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
     """Choose a LUT file whose response the plate gets."""
 
     bl_idname = "crf.load_lut"
@@ -24,14 +26,6 @@ class CRF_OT_load_lut(bpy.types.Operator):
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
-    image: bpy.props.StringProperty(
-        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
-    )
-    clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
     filepath: bpy.props.StringProperty(name="File", description="The LUT file", subtype="FILE_PATH")
     filter_glob: bpy.props.StringProperty(default="*.spi1d;*.cube;*.clf", options={"HIDDEN", "SKIP_SAVE"})
 
@@ -40,7 +34,7 @@ class CRF_OT_load_lut(bpy.types.Operator):
         """Return whether there is a plate and no run; a script names its plate."""
         if running.current() is not None:
             return False
-        if context.area is None or context.area.type not in plates.EDITORS:
+        if not plates.is_in_editor(context):
             return True
         datablock = plates.active_datablock(context)
         return datablock is not None and not plates.obstacle(datablock)
@@ -53,7 +47,7 @@ class CRF_OT_load_lut(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Store the response on the plate."""
         try:
-            plate = plates.chosen_datablock(context, self.image, self.clip)
+            plate = self.chosen_plate(context)
             if problem := plates.obstacle(plate):
                 raise AddonError(problem)
             path = Path(bpy.path.abspath(self.filepath))
@@ -62,22 +56,13 @@ class CRF_OT_load_lut(bpy.types.Operator):
             model = f"{LOADED}{path.name}"
             loaded = lazy_import.load(".work.estimate_record").loaded_estimate(curve, model)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         comparison.end_all()
-        line = f"The response is {model}: this is no estimate, so there is no verdict."
-        stored_estimate.store(plate, loaded, lines=[line])
+        stored_estimate.store(plate, loaded, lines=[loaded_line(model)])
         stored_estimate.set_entry(plate, stored_estimate.ORIGIN, f"Loaded from {path.name}")
         running.redraw_editors(context.window_manager)
         self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
         return {"FINISHED"}
 
 
-def register() -> None:
-    """Register the operator."""
-    bpy.utils.register_class(CRF_OT_load_lut)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    bpy.utils.unregister_class(CRF_OT_load_lut)
+register, unregister = bpy.utils.register_classes_factory((CRF_OT_load_lut,))

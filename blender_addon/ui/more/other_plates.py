@@ -10,8 +10,9 @@ import bpy
 from ... import lazy_import
 from ...scene import plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
-from ...work.wording import american
-from .. import comparison, running
+from .. import running
+from ..image_editor import comparison
+from ..operator_base import ChosenPlate, failed
 from ..plate_settings import CHOICES, remember_applied
 
 if TYPE_CHECKING:
@@ -31,7 +32,7 @@ class CRF_OtherPlate(bpy.types.PropertyGroup):
         return plates.chosen_datablock(bpy.context, *names)
 
 
-class CRF_OT_copy_response(bpy.types.Operator):
+class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
     """Apply the response of the active plate to other plates, with its settings."""
 
     bl_idname = "crf.copy_response"
@@ -42,14 +43,6 @@ class CRF_OT_copy_response(bpy.types.Operator):
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
-    image: bpy.props.StringProperty(
-        name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
-    )
-    clip: bpy.props.StringProperty(
-        name="Movie Clip",
-        description="Name of the movie clip; empty for the active plate",
-        options={"HIDDEN", "SKIP_SAVE"},
-    )
     targets: bpy.props.CollectionProperty(type=CRF_OtherPlate, options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -57,7 +50,7 @@ class CRF_OT_copy_response(bpy.types.Operator):
         """Return whether the plate has a response and there is no run; a script names its plate."""
         if running.current() is not None:
             return False
-        if context.area is None or context.area.type not in plates.EDITORS:
+        if not plates.is_in_editor(context):
             return True
         return stored_estimate.is_stored(plates.active_datablock(context))
 
@@ -84,15 +77,15 @@ class CRF_OT_copy_response(bpy.types.Operator):
         """Apply it to one plate after the other, once all of them are known to be usable."""
         done = 0
         try:
-            source = plates.chosen_datablock(context, self.image, self.clip)
+            source = self.estimated_plate(context)
             jobs = [_job(source, datablock) for datablock in self._chosen(source)]
             comparison.end_all()
             for job in jobs:
                 _apply(context, source, job)
                 done += 1
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"FINISHED"} if done else {"CANCELLED"}
+            result = failed(self, problem)
+            return {"FINISHED"} if done else result
         running.redraw_editors(context.window_manager)
         self.report(
             {"INFO"}, f"{source.name}: its response is that of {done} more plates now; {_what_was_done(source)}"
@@ -101,8 +94,6 @@ class CRF_OT_copy_response(bpy.types.Operator):
 
     def _chosen(self, source: plates.Datablock) -> list[plates.Datablock]:
         """Return the plates that get the response."""
-        if not stored_estimate.is_stored(source):
-            raise AddonError(f"{source.name}: has no estimate yet; estimate its response first")
         chosen = [target.datablock for target in self.targets if target.is_chosen]
         chosen = [datablock for datablock in dict.fromkeys(chosen) if datablock != source]
         if not chosen:
@@ -165,16 +156,4 @@ def _what_was_done(source: plates.Datablock) -> str:
     return "it is stored only" if mode == "ESTIMATE" else "it is applied as to this plate"
 
 
-_CLASSES = (CRF_OtherPlate, CRF_OT_copy_response)
-
-
-def register() -> None:
-    """Register the operator."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
-
-
-def unregister() -> None:
-    """Unregister the operator."""
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+register, unregister = bpy.utils.register_classes_factory((CRF_OtherPlate, CRF_OT_copy_response))

@@ -7,10 +7,10 @@ from typing import TYPE_CHECKING, ClassVar
 
 import bpy
 
-from .. import lazy_import
-from ..scene import plates, stored_estimate
-from ..work.errors import AddonError, expected_errors
-from ..work.wording import american
+from ... import lazy_import
+from ...scene import plates, stored_estimate
+from ...work.errors import AddonError, expected_errors
+from ..operator_base import failed
 from . import comparison
 
 if TYPE_CHECKING:
@@ -54,8 +54,7 @@ class CRF_OT_compare(bpy.types.Operator):
             node_group = lazy_import.load(".scene.node_group")
             comparison.begin(space, _linear_pixels(space), node_group.linear_rec709())
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         return {"FINISHED"}
 
 
@@ -94,8 +93,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
         try:
             gray = self._pick(context.space_data, place)
         except expected_errors() as problem:
-            self.report({"ERROR"}, american(str(problem)))
-            return {"CANCELLED"}
+            return failed(self, problem)
         self.report({"INFO"}, f"Gray is {gray:.3f}")
         return {"FINISHED"}
 
@@ -169,17 +167,17 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
 
 
-_CLASSES = (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory(
+    (CRF_OT_compare, CRF_OT_pick_gray, CRF_OT_read_as_sequence)
+)
 
 
 def register() -> None:
     """Register the tools."""
-    for kind in _CLASSES:
-        bpy.utils.register_class(kind)
+    _register_classes()
 
 
 def unregister() -> None:
     """Show the plates again, and unregister the tools."""
     comparison.end_all()
-    for kind in reversed(_CLASSES):
-        bpy.utils.unregister_class(kind)
+    _unregister_classes()

@@ -14,9 +14,9 @@ from typing import TYPE_CHECKING
 import bpy
 import numpy as np
 
-from .. import lazy_import
-from ..scene.plates import COMPARED_PLATE, compared_plate
-from ..work.errors import AddonError
+from ... import lazy_import
+from ...scene.plates import COMPARED_PLATE, compared_plate
+from ...work.errors import AddonError
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve

@@ -1,0 +1,171 @@
+"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearise twice."""
+
+import os
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+from .test_addon_panel import drawn_in, labels
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+CHANGED = "The file has changed since the estimate"
+EARLIER = "Its nodes show the earlier file"
+TWICE = "Linearized twice"
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name)
+    return image
+
+
+@pytest.fixture
+def tree(addon):
+    from blender_addon.scene.compositor import compositor_tree
+
+    return compositor_tree(bpy.context.scene)
+
+
+@pytest.fixture
+def told(in_editor):
+    """Return which of the warnings the panel draws for an image."""
+
+    def draw(image):
+        words = " ".join(labels(drawn_in(image, in_editor)))
+        return [warning for warning in (CHANGED, EARLIER, TWICE) if warning in words]
+
+    return draw
+
+
+def apply_nodes(image):
+    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}
+
+
+def other_file(folder, codes, name="other.png"):
+    return write_image(folder / name, 255 - codes)
+
+
+class TestAnotherFile:
+    def test_nothing_is_told_while_it_is_the_same(self, image, told, tmp_path):
+        assert told(image) == []
+        apply_nodes(image)
+        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+        assert told(bpy.data.images["plate.png"]) == []
+
+    def test_a_copy_of_the_project_is_the_same(self, image, told, plate_file, tmp_path):
+        (tmp_path / "moved").mkdir()
+        copy = tmp_path / "moved" / plate_file.name
+        copy.write_bytes(plate_file.read_bytes())
+        time = plate_file.stat().st_mtime + 1.9  # as an archive rounds it
+        os.utime(copy, (time, time))
+        image.filepath = str(copy)
+        assert told(image) == []
+
+    def test_a_new_file_is_told_until_it_is_estimated(self, image, told, tmp_path, codes):
+        image.filepath = str(other_file(tmp_path, codes))
+        assert told(image) == [CHANGED]
+        bpy.ops.crf.apply_response(image=image.name, apply="EXPORT")  # the estimate is still the earlier file's
+        assert told(image) == [CHANGED]
+        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        assert told(image) == []
+
+    def test_a_file_that_was_written_anew_is_told(self, image, told, plate_file, codes):
+        other_file(plate_file.parent, codes, plate_file.name)
+        time = plate_file.stat().st_mtime + 60
+        os.utime(plate_file, (time, time))
+        assert told(image) == [CHANGED]
+
+    def test_nodes_show_the_earlier_file_until_they_are_applied(self, image, told, tmp_path, codes, tree, composited):
+        from blender_addon.scene import stored_estimate
+
+        apply_nodes(image)
+        image.filepath = str(other_file(tmp_path, codes))
+        assert told(image) == [CHANGED, EARLIER]
+        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        assert told(image) == [EARLIER]
+        apply_nodes(image)
+        assert told(image) == []
+        (group,) = (node for node in tree.nodes if node.type == "GROUP")
+        expected = stored_estimate.restored(image).curve.inverse((255 - codes) / 255)
+        assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 1e-6
+
+    def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, tree, composited):
+        """The nodes have read its earlier pixels."""
+        from blender_addon.scene import stored_estimate
+
+        apply_nodes(image)
+        (group,) = (node for node in tree.nodes if node.type == "GROUP")
+        curve = stored_estimate.restored(image).curve
+        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse(codes / 255)).max() < 1e-6
+        other_file(plate_file.parent, codes, plate_file.name)
+        apply_nodes(image)
+        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
+
+    def test_images_without_a_file_and_earlier_estimates_say_nothing(self, image, told, plate_file):
+        del image["camera_response"]["file_state"]
+        plate_file.write_bytes(b"another")
+        assert told(image) == []
+
+    def test_packed_images_say_nothing(self, addon, plate_file, told):
+        image = bpy.data.images.load(str(plate_file))
+        image.pack()
+        bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+        plate_file.unlink()
+        assert told(image) == []
+
+    def test_a_response_from_elsewhere_is_not_that_of_a_file(self, image, told, tmp_path, codes):
+        other = bpy.data.images.load(str(other_file(tmp_path, codes)))
+        bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
+        other.filepath = image.filepath
+        assert told(other) == []
+
+
+class TestTwice:
+    @pytest.fixture
+    def by_hand(self, image, tree):
+        """The plate's node group, put by hand behind a node that shows the plate."""
+        apply_nodes(image)
+        group = next(node for node in tree.nodes if node.type == "GROUP").node_tree
+        for node in list(tree.nodes):
+            if node.type in ("IMAGE", "GROUP"):
+                tree.nodes.remove(node)
+        source, node = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeGroup")
+        source.image, node.node_tree = image, group
+        tree.links.new(source.outputs["Image"], node.inputs["Image"])
+        return source
+
+    def test_a_group_behind_the_plate_itself_is_told(self, image, told, by_hand):
+        assert told(image) == [TWICE]
+        image.colorspace_settings.name = "Non-Color"  # now these are code values
+        assert told(image) == []
+
+    def test_applying_mends_it(self, image, told, by_hand, codes, composited):
+        from blender_addon.scene import stored_estimate
+
+        apply_nodes(image)
+        assert told(image) == []
+        (link,) = by_hand.outputs["Image"].links
+        expected = stored_estimate.restored(image).curve.inverse(codes / 255)
+        assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-6
+
+    def test_two_groups_in_a_row_are_told(self, image, told, tree):
+        apply_nodes(image)
+        assert told(image) == []
+        first = next(node for node in tree.nodes if node.type == "GROUP")
+        second = tree.nodes.new("CompositorNodeGroup")
+        second.node_tree = first.node_tree
+        tree.links.new(first.outputs[0], second.inputs["Image"])
+        assert told(image) == [TWICE]
+
+    def test_the_look_behind_the_group_is_no_second_one(self, image, told, tree):
+        apply_nodes(image)
+        bpy.ops.crf.add_look(image=image.name)
+        group = next(node for node in tree.nodes if node.type == "GROUP" and "Response" in node.node_tree.name)
+        look = next(node for node in tree.nodes if node.type == "GROUP" and "Look" in node.node_tree.name)
+        tree.links.new(group.outputs[0], look.inputs["Image"])
+        assert told(image) == []
