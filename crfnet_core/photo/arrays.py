@@ -170,7 +170,7 @@ def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:
     largest, found = 2**bits - 1, int(codes.max())
     if found > largest:
         raise PhotoError(f"{name}: holds code {found}, but bit_depth={bits} ends at {largest}; give its own bit_depth")
-    return np.divide(codes, np.float32(largest), dtype=np.float32)
+    return np.asarray(np.divide(codes, np.float32(largest), dtype=np.float32))
 
 
 def _divided(color: Float32Array, alpha: Float32Array) -> Float32Array:
