@@ -16,7 +16,7 @@ from crfnet_core.files import atomic_write_text
 from crfnet_core.metadata.color_tags import Primaries
 from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
-from ocio.report import LikelyKind, result_line
+from ocio.report import result_line
 from ocio.report.documents import DECIMALS
 
 #: File name of the manifest in the output folder.
@@ -69,7 +69,7 @@ class PhotographRecord:
     @classmethod
     def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate, light: PlateLight) -> PhotographRecord:
         """Return the record of an estimate."""
-        kind = LikelyKind.of(estimate)
+        kind = estimate.likely_kind
         return cls(
             photograph=str(photograph),
             folder=folder.as_posix(),
