@@ -8,8 +8,6 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text
@@ -17,7 +15,6 @@ from crfnet_core.metadata.color_tags import Primaries
 from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line
-from ocio.report.documents import DECIMALS
 
 #: File name of the manifest in the output folder.
 MANIFEST = "estimates.jsonl"
@@ -73,11 +70,11 @@ class PhotographRecord:
         return cls(
             photograph=str(photograph),
             folder=folder.as_posix(),
-            weights=tuple(np.round(estimate.weights, DECIMALS).tolist()),
+            weights=tuple(estimate.weights.tolist()),
             family=kind.words if kind else "",
             verdict=estimate.verdict,
-            uncertainty=round(estimate.uncertainty, DECIMALS),
-            shape_uncertainty_stops=round(estimate.shape_uncertainty, DECIMALS),
+            uncertainty=estimate.uncertainty,
+            shape_uncertainty_stops=estimate.shape_uncertainty,
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
