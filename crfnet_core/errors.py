@@ -21,6 +21,10 @@ class CurveError(CRFNetError):
     """Samples that describe no camera response."""
 
 
+class EstimateError(CRFNetError):
+    """A document that holds no estimate, or one of a later version."""
+
+
 class LutError(CRFNetError):
     """A lookup table that is malformed or cannot be written."""
 

@@ -5,7 +5,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -24,89 +24,17 @@ from crfnet_core.posterior import (
     independent_share,
     scene_similarities,
 )
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
 from crfnet_core.types import Float32Array, Float64Array, Progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
+
+__all__ = ["ResponseEstimate", "WindowEstimate", "estimate_response"]
 
 #: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
 
 #: Samples along each side of the thumbnails by which photographs of one scene are recognised.
 THUMBNAIL = 16
-
-
-@dataclass(frozen=True)
-class WindowEstimate:
-    """One window's part in an estimate.
-
-    Parameters
-    ----------
-    photo : int
-        Which of the photographs the window was cut from.
-    window : Window
-        Where it lies and how much of the range it covers.
-    weights : ndarray, float64, shape (11,)
-        The EMoR weights that follow from this window alone.
-    expected_error : float
-        The E_est that is expected of them.
-    kept : bool
-        Whether the window agrees with the others (`pooling.inliers`). Without learned pooling, only such windows count.
-    """
-
-    photo: int
-    window: Window
-    weights: Float64Array
-    expected_error: float
-    kept: bool
-
-
-@dataclass(frozen=True)
-class ResponseEstimate:
-    """A response, its evidence, and how far to trust it.
-
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The estimated response.
-    weights : ndarray, float64, shape (11,)
-        Its EMoR weights.
-    windows : tuple of WindowEstimate
-        What each window says by itself.
-    uncertainty : float
-        The expected E_est of this estimate.
-    shape_uncertainty : float
-        Its expected shape error, in stops: see `crfnet_core.metrics.shape_error`.
-    band : ndarray, float64, shape (2, 1024)
-        Lower and upper end of the 90 % credible band around the response.
-    families : dict
-        Family -> the probability that the response is of this family; their sum is 1.
-    verdict : Verdict
-        All this in one word.
-    prior : str
-        Name of the prior.
-    origins : tuple of FileOrigin
-        What the metadata of each photograph says of how it was made; empty if metadata is ignored.
-    warnings : tuple of str
-        What makes a poor estimate likely, in words.
-    model : str
-        Name and hash of the network.
-    photos : tuple of str
-        File names of the photographs.
-    """
-
-    curve: ResponseCurve
-    weights: Float64Array
-    windows: tuple[WindowEstimate, ...]
-    uncertainty: float
-    shape_uncertainty: float
-    band: Float64Array
-    families: Mapping[Family, float]
-    verdict: Verdict
-    prior: str
-    origins: tuple[FileOrigin, ...]
-    warnings: tuple[str, ...]
-    model: str
-    photos: tuple[str, ...]
 
 
 def estimate_response(
@@ -151,10 +79,9 @@ def estimate_response(
     Raises
     ------
     PhotoError
-        If there is no photograph, or one is smaller than a window.
+        If there is no photograph, one is smaller than a window, or something else is given.
     """
-    photos = (photos,) if isinstance(photos, Photo) else photos
-    sources = [_choose_windows(photo, windows, seed, coverage) for photo in photos]
+    sources = [_choose_windows(photo, windows, seed, coverage) for photo in _checked(photos)]
     if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
     bank = bank or ResponseBank.load()
@@ -199,6 +126,19 @@ class _Reading:
 
     evidence: Evidence
     windows: tuple[Evidence, ...]
+
+
+def _checked(photos: Photo | Iterable[Photo]) -> Iterator[Photo]:
+    """Yield the photographs, one by one; refuse what is none, such as a file's name or an array."""
+    several: Iterable[object] = (photos,)
+    if isinstance(photos, Iterable) and not isinstance(photos, str | np.ndarray):
+        several = photos
+    for photo in several:
+        if not isinstance(photo, Photo):
+            raise PhotoError(
+                f"a {type(photo).__name__} is no Photo; read_photo makes one of a file, Photo.from_array of an array"
+            )
+        yield photo
 
 
 def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Source:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response import SAMPLES, ResponseCurve
 
 #: The 8-bit codes between which the shape of a response matters: outside, black level and clipping rule.
 FIRST_SHAPE_CODE, LAST_SHAPE_CODE = 16, 240
@@ -14,6 +14,15 @@ FIRST_SHAPE_CODE, LAST_SHAPE_CODE = 16, 240
 def estimation_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     """Return E_est = ||f - f_hat||_2 over the responses at 1024 uniform irradiances (RMSE times 32): Eq. 32."""
     return float(np.linalg.norm(true.brightness - estimated.brightness))
+
+
+def brightness_percent(error: float) -> float:
+    """Return an estimation error as a root mean square in percent of the brightness range.
+
+    E_est is the Euclidean distance between two responses of `SAMPLES` samples, so the root mean square is
+    E_est / sqrt(SAMPLES).
+    """
+    return float(100 * error / np.sqrt(SAMPLES))
 
 
 def linearization_error(
@@ -35,6 +44,7 @@ def linearization_error(
     float
         The error, relative to the peak of the photograph linearised by the true response.
     """
+    brightness = np.asarray(brightness, dtype=np.float64)
     irradiance = true.inverse(brightness)
     weights = np.ones_like(irradiance) if counts is None else np.asarray(counts, dtype=np.float64)
     squares = (irradiance - estimated.inverse(brightness)) ** 2

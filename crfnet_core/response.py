@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any, overload
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import CurveError
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float32Array, Float64Array, IndexArray, same_fields
 
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
 SAMPLES = 1024
@@ -16,12 +19,20 @@ SAMPLES = 1024
 #: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
 LEAST_SLOPE = 1e-4
 
+#: Arrays of more values than this are interpolated by `_PiecewiseLinear`: so many at once fit into a core's cache.
+BLOCK = 32768
 
-@dataclass(frozen=True)
+#: Cells of equal width by which it finds the segment of a value.
+CELLS = 16384
+
+
+@dataclass(frozen=True, eq=False)
 class ResponseCurve:
     """A strictly increasing response f with f(0) = 0 and f(1) = 1, linear between its samples.
 
-    Build one with `from_samples`; the constructor only checks.
+    Build one with `from_samples`; the constructor only checks. As arrays, a response is `brightness` over
+    `irradiance`. Its methods `forward` and `inverse` take numbers and arrays of any shape; single precision stays
+    single precision. Curves are equal if their samples are.
 
     Parameters
     ----------
@@ -35,7 +46,6 @@ class ResponseCurve:
     """
 
     brightness: Float64Array
-    _irradiance: Float64Array = field(init=False, repr=False, compare=False)
 
     def __post_init__(self) -> None:
         brightness = np.array(self.brightness, dtype=np.float64)
@@ -45,7 +55,16 @@ class ResponseCurve:
             raise CurveError("a response must increase strictly from 0 to 1; use from_samples")
         brightness.flags.writeable = False
         object.__setattr__(self, "brightness", brightness)
-        object.__setattr__(self, "_irradiance", np.linspace(0, 1, SAMPLES))
+
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, ResponseCurve) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(self.brightness.tobytes())
+
+    def __reduce__(self) -> tuple[type[ResponseCurve], tuple[Float64Array]]:
+        """Return how copies and other processes make the same curve: checked and read-only again, without tables."""
+        return type(self), (self.brightness,)
 
     @classmethod
     def from_samples(cls, samples: ArrayLike) -> ResponseCurve:
@@ -90,13 +109,136 @@ class ResponseCurve:
             raise CurveError(f"a gamma must be above 0, found {exponent}")
         return cls.from_samples(np.linspace(0, 1, SAMPLES) ** (1 / exponent))
 
-    def forward(self, irradiance: ArrayLike) -> Float64Array:
-        """Return brightness f(E) in [0, 1], of the shape of `irradiance`; E is clipped to [0, 1]."""
-        return np.interp(np.asarray(irradiance, dtype=np.float64), self._irradiance, self.brightness)
+    @cached_property
+    def irradiance(self) -> Float64Array:
+        """The irradiances of the samples, uniform from 0 to 1: float64, shape (1024,), read-only."""
+        uniform = np.linspace(0, 1, SAMPLES)
+        uniform.flags.writeable = False
+        return uniform
 
-    def inverse(self, brightness: ArrayLike) -> Float64Array:
-        """Return irradiance g(B) in [0, 1], of the shape of `brightness`; B is clipped to [0, 1]."""
-        return np.interp(np.asarray(brightness, dtype=np.float64), self.brightness, self._irradiance)
+    @overload
+    def forward(self, irradiance: float) -> float: ...
+    @overload
+    def forward(self, irradiance: NDArray[np.float32] | NDArray[np.float16]) -> Float32Array: ...
+    @overload
+    def forward(self, irradiance: NDArray[Any] | Sequence[Any]) -> Float64Array: ...
+    def forward(self, irradiance: ArrayLike) -> Any:
+        """Return brightness f(E) in [0, 1]; E is clipped to [0, 1], and NaN stays NaN.
+
+        Parameters
+        ----------
+        irradiance : float or array_like, any shape
+            Relative irradiance E, linear; not changed.
+
+        Returns
+        -------
+        float or ndarray, of the shape of `irradiance`
+            float32 of single and half precision, else float64; computed in double precision.
+
+        Raises
+        ------
+        CurveError
+            If integers above 1 are given: code values, which have to be divided by the largest code.
+        """
+        return self._forward(irradiance)
+
+    @overload
+    def inverse(self, brightness: float) -> float: ...
+    @overload
+    def inverse(self, brightness: NDArray[np.float32] | NDArray[np.float16]) -> Float32Array: ...
+    @overload
+    def inverse(self, brightness: NDArray[Any] | Sequence[Any]) -> Float64Array: ...
+    def inverse(self, brightness: ArrayLike) -> Any:
+        """Return irradiance g(B) in [0, 1]; B is clipped to [0, 1], and NaN stays NaN.
+
+        This is the exact inverse of `forward`. Our LUTs of it have the same values at the codes that they are exact on:
+        see `ocio.luts.lut1d.inverse_response_lut`.
+
+        Parameters
+        ----------
+        brightness : float or array_like, any shape
+            Encoded brightness B, such as `Photo.pixels`; not changed.
+
+        Returns
+        -------
+        float or ndarray, of the shape of `brightness`
+            float32 of single and half precision, else float64; computed in double precision.
+
+        Raises
+        ------
+        CurveError
+            If integers above 1 are given: code values, which have to be divided by the largest code.
+        """
+        return self._inverse(brightness)
+
+    @cached_property
+    def _forward(self) -> _PiecewiseLinear:
+        """The response as a function of arrays."""
+        return _PiecewiseLinear(self.irradiance, self.brightness)
+
+    @cached_property
+    def _inverse(self) -> _PiecewiseLinear:
+        """The inverse response as a function of arrays."""
+        return _PiecewiseLinear(self.brightness, self.irradiance)
+
+
+class _PiecewiseLinear:
+    """A function that is linear between knots from 0 to 1, and evaluated fast on large arrays.
+
+    It has the values of `numpy.interp`, which searches the segment of each value by bisection. Here a table of cells
+    tells it, or the one before it. Where knots lie closer than cells, `numpy.interp` is asked.
+    """
+
+    def __init__(self, knots: Float64Array, values: Float64Array) -> None:
+        self._knots, self._values = knots, values
+
+    def __call__(self, arguments: ArrayLike) -> Any:
+        """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
+        given = np.asarray(arguments)
+        if given.dtype.kind in "iu" and given.size and given.max() > 1:
+            raise CurveError(
+                f"found integers up to {given.max()}, but brightness and irradiance lie in [0, 1]: divide code values"
+                " by the largest code, such as 255"
+            )
+        kind = np.float32 if given.dtype.kind == "f" and given.dtype.itemsize <= 4 else np.float64
+        if given.size <= BLOCK:
+            return kind(np.interp(given.astype(np.float64), self._knots, self._values))
+        found = np.empty(given.shape, kind)
+        source, target = given.reshape(-1), found.reshape(-1)
+        for start in range(0, given.size, BLOCK):
+            block = np.s_[start : start + BLOCK]
+            target[block] = self._evaluated(source[block].astype(np.float64))
+        return found
+
+    @cached_property
+    def _table(self) -> tuple[IndexArray, Float64Array, Float64Array, Float64Array, Float64Array]:
+        """Of each cell its first knot; of each knot the next one, itself, the slope behind it, and the value.
+
+        A cell with several knots inside has the number of one more knot in place of its first: its value is NaN.
+        """
+        edges = np.arange(CELLS + 1) / CELLS  # the last cell is 1 alone
+        first = np.searchsorted(self._knots, edges, side="right") - 1
+        first[np.diff(first, append=first[-1]) > 1] = self._knots.size
+        slopes = np.diff(self._values) / np.diff(self._knots)
+        rows = (self._knots[1:], [np.inf] * 2), (self._knots, [0]), (slopes, [0, 0]), (self._values, [np.nan])
+        following, knots, slopes, values = (np.append(row, more) for row, more in rows)
+        return first, following, knots, slopes, values
+
+    def _evaluated(self, arguments: Float64Array) -> Float64Array:
+        """Return the function at a row of arguments, which is overwritten."""
+        first, following, knots, slopes, values = self._table
+        np.clip(arguments, 0, 1, out=arguments)
+        with np.errstate(invalid="ignore"):  # NaN is a number below all cells, and mode="clip" makes 0 of it
+            cells = (arguments * CELLS).astype(np.intp)
+        index = first.take(cells, mode="clip")
+        index += arguments >= following.take(index, mode="clip")
+        found = arguments - knots.take(index, mode="clip")
+        found *= slopes.take(index, mode="clip")
+        found += values.take(index, mode="clip")
+        if np.isnan(found.max()):
+            unknown = np.isnan(found)
+            found[unknown] = np.interp(arguments[unknown], self._knots, self._values)
+        return found
 
 
 def nearest_increasing(samples: ArrayLike) -> Float64Array:

@@ -1,11 +1,16 @@
-"""Names for the arrays that pass between modules, and for the callback that reports progress."""
+"""Names for the arrays that pass between modules and for callbacks, and when two dataclasses of arrays are equal."""
 
 from __future__ import annotations
 
+import dataclasses
 from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
+
+if TYPE_CHECKING:
+    from _typeshed import DataclassInstance
 
 #: Pixels, statistics, and what the network computes with.
 Float32Array = NDArray[np.float32]
@@ -26,3 +31,16 @@ IndexArray = NDArray[np.intp]
 
 #: Called with (done, total) after every step. If it raises, the work stops.
 Progress = Callable[[int, int], None]
+
+
+def same_fields(one: DataclassInstance, other: DataclassInstance) -> bool:
+    """Return whether two instances of one dataclass are equal: arrays by their elements, and NaN equal to NaN."""
+    names = [each.name for each in dataclasses.fields(one) if each.compare]
+    return all(_same(getattr(one, name), getattr(other, name)) for name in names)
+
+
+def _same(one: Any, other: Any) -> bool:
+    """Return whether two values of a field are equal."""
+    if isinstance(one, np.ndarray | float):
+        return np.array_equal(one, other, equal_nan=True)
+    return bool(one == other)

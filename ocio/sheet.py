@@ -25,7 +25,7 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import Window
-from ocio.report import LikelyKind, agreeing, basis, curve_error, shape_error
+from ocio.report import agreeing, basis, curve_error, shape_error
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -100,7 +100,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
     color = VERDICT_INK[estimate.verdict]
     verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
-    shape, kind = shape_error(estimate), LikelyKind.of(estimate)
+    shape, kind = shape_error(estimate), estimate.likely_kind
     figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error(estimate)}"]
     found = DOT.join(map(str, filter(None, [*figures, kind])))
     beside = Annotation(

@@ -4,15 +4,16 @@ from __future__ import annotations
 
 import hashlib
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import ModelError, one_line
-from crfnet_core.network.model import ModelConfig, model_folder, read_model_file
+from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_model_file
 from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
@@ -47,12 +48,31 @@ class Predictions:
 
 
 class ResponseNetwork:
-    """An onnxruntime session, made once, and the configuration beside it."""
+    """An onnxruntime session, made once, and the configuration beside it.
 
-    def __init__(self, config: ModelConfig, session: onnxruntime.InferenceSession, threads: int) -> None:
+    Threads may share one. Copies are the network itself, since it never changes. In another process, as of
+    `multiprocessing` or joblib, it is loaded from its folder again, which must still hold the same model.
+    """
+
+    def __init__(
+        self, config: ModelConfig, session: onnxruntime.InferenceSession, *, folder: Path, threads: int
+    ) -> None:
         self.config = config
         self._session = session
+        self._folder = folder
         self._threads = threads
+
+    def __reduce__(self) -> tuple[Callable[[str, str, int], ResponseNetwork], tuple[str, str, int]]:
+        """Return how another process loads the same network: by its name if it is packaged, else by its folder."""
+        folder = self._folder.resolve()
+        place = folder.name if folder.parent == MODELS.resolve() else str(folder)
+        return _load_same, (place, self.config.sha256, self._threads)
+
+    def __copy__(self) -> ResponseNetwork:
+        return self
+
+    def __deepcopy__(self, _: dict[int, Any]) -> ResponseNetwork:
+        return self
 
     @classmethod
     def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
@@ -77,7 +97,7 @@ class ResponseNetwork:
         graph = read_model_file(folder / "model.onnx")
         if hashlib.sha256(graph).hexdigest() != config.sha256:
             raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
-        return cls(config, _session(folder, graph, config), threads or os.cpu_count() or 1)
+        return cls(config, _session(folder, graph, config), folder=folder, threads=threads)
 
     def inputs(self, windows: Float32Array, *, progress: Progress | None = None) -> Float32Array:
         """Return what the network reads of `windows`: their statistics, or the windows themselves.
@@ -130,7 +150,7 @@ class ResponseNetwork:
     def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
         """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
         rows = []
-        pool = ThreadPoolExecutor(self._threads)
+        pool = ThreadPoolExecutor(self._threads or os.cpu_count() or 1)
         try:
             for number, row in enumerate(pool.map(self._run, windows[:, None]), start=1):
                 rows.append(row)
@@ -146,6 +166,14 @@ class ResponseNetwork:
             list(self.config.output_names), {self.config.input_name: inputs}
         )
         return outputs
+
+
+def _load_same(place: str, sha256: str, threads: int) -> ResponseNetwork:
+    """Return the network that another process had, from the same folder or from this process's packaged models."""
+    network = ResponseNetwork.load(MODELS / place, threads=threads)  # an absolute path stays as it is
+    if network.config.sha256 != sha256:
+        raise ModelError(f"{MODELS / place}: holds another model than where it was sent from; install the same crfnet")
+    return network
 
 
 def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:

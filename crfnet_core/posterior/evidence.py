@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.posterior.families import STATED_ODDS
 from crfnet_core.posterior.responses import ResponseBank
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, same_fields
 
 #: EMoR weights that evidence is about: the others hardly change a photograph.
 EVIDENCE_WEIGHTS = 5
@@ -38,6 +38,10 @@ class Evidence:
     location: Float64Array
     factor: Float64Array
     log_odds: Float64Array
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
+        return same_fields(self, other) if isinstance(other, Evidence) else NotImplemented
 
     def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
         """Return the log likelihood of every response of a bank, shape (N,): Eq. 18 of docs/METHOD.md."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from enum import StrEnum
 
 
@@ -41,3 +42,37 @@ FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
     (Family.LOG,): "log-like: do not trust",
     (Family.UNEXPLAINED,): "no photograph that a response explains: do not trust",
 }
+
+
+@dataclass(frozen=True)
+class LikelyKind:
+    """The most probable kind of response.
+
+    Parameters
+    ----------
+    families : tuple of Family
+        The families that make up the kind.
+    words : str
+        The kind in words.
+    probability : float
+        That the response is of this kind.
+    """
+
+    families: tuple[Family, ...]
+    words: str
+    probability: float
+
+    @classmethod
+    def of(cls, families: Mapping[Family, float]) -> LikelyKind | None:
+        """Return the most probable kind by the probabilities of families, the first of equals; None without any."""
+        if not families:
+            return None
+        kinds = [
+            cls(members, words, sum(families[family] for family in members)) for members, words in FAMILY_WORDS.items()
+        ]
+        return max(kinds, key=lambda kind: kind.probability)
+
+    def __str__(self) -> str:
+        """Return the words with the probability in percent; never 100, because nothing is as certain."""
+        percent = "over 99" if self.probability > 0.99 else f"{100 * self.probability:.0f}"
+        return f"{self.words}, {percent} %"

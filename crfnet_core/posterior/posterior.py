@@ -13,7 +13,7 @@ from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, same_fields
 
 #: The fraction of the posterior that the band holds at every irradiance, and the irradiances at which it is computed.
 BAND, BAND_KNOTS = 0.9, 65
@@ -36,6 +36,10 @@ class Posterior:
     bank: ResponseBank
     weights: Float64Array
     unexplained: float
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
+        return same_fields(self, other) if isinstance(other, Posterior) else NotImplemented
 
     @classmethod
     def of(

@@ -12,7 +12,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.response import SAMPLES
-from crfnet_core.types import BoolArray, Float32Array, Float64Array
+from crfnet_core.types import BoolArray, Float32Array, Float64Array, same_fields
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
 BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
@@ -38,6 +38,10 @@ class ResponseBank:
 
     brightness: Float32Array
     families: tuple[Family, ...]
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
+        return same_fields(self, other) if isinstance(other, ResponseBank) else NotImplemented
 
     @classmethod
     @cache

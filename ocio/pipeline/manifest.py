@@ -8,16 +8,13 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
 from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text
 from crfnet_core.metadata.color_tags import Primaries
 from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
-from ocio.report import LikelyKind, result_line
-from ocio.report.documents import DECIMALS
+from ocio.report import result_line
 
 #: File name of the manifest in the output folder.
 MANIFEST = "estimates.jsonl"
@@ -69,15 +66,15 @@ class PhotographRecord:
     @classmethod
     def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate, light: PlateLight) -> PhotographRecord:
         """Return the record of an estimate."""
-        kind = LikelyKind.of(estimate)
+        kind = estimate.likely_kind
         return cls(
             photograph=str(photograph),
             folder=folder.as_posix(),
-            weights=tuple(np.round(estimate.weights, DECIMALS).tolist()),
+            weights=tuple(estimate.weights.tolist()),
             family=kind.words if kind else "",
             verdict=estimate.verdict,
-            uncertainty=round(estimate.uncertainty, DECIMALS),
-            shape_uncertainty_stops=round(estimate.shape_uncertainty, DECIMALS),
+            uncertainty=estimate.uncertainty,
+            shape_uncertainty_stops=estimate.shape_uncertainty,
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,

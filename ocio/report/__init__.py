@@ -6,16 +6,7 @@ documents  the same for machines, ready for JSON
 """
 
 from ocio.report.documents import estimate_document, json_text, lut_document, model_document, plate_document
-from ocio.report.facts import (
-    LikelyKind,
-    PhotoFacts,
-    agreeing,
-    basis,
-    brightness_percent,
-    curve_error,
-    provenance,
-    shape_error,
-)
+from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error, provenance, shape_error
 from ocio.report.words import (
     REMEDIES,
     VERDICTS,
@@ -33,11 +24,9 @@ from ocio.report.words import (
 __all__ = [
     "REMEDIES",
     "VERDICTS",
-    "LikelyKind",
     "PhotoFacts",
     "agreeing",
     "basis",
-    "brightness_percent",
     "curve_error",
     "estimate_document",
     "file_lines",

@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.estimate import ResponseEstimate, WindowEstimate
+from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.network import ModelConfig
 from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from ocio.luts.exposure import linear_gray
@@ -20,9 +20,9 @@ from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles
 from ocio.plates.light import PlateLight
 from ocio.plates.linear import PlateReport
-from ocio.report.facts import LikelyKind, PhotoFacts, brightness_percent
+from ocio.report.facts import PhotoFacts
 
-#: Decimals kept in documents.
+#: Decimals kept in the documents of LUTs.
 DECIMALS = 6
 
 #: Brightnesses whose irradiance is shown of a LUT.
@@ -38,17 +38,13 @@ def json_text(document: Mapping[str, Any]) -> str:
 def estimate_document(
     estimate: ResponseEstimate, photos: Sequence[PhotoFacts], files: OutputFiles, light: PlateLight
 ) -> dict[str, Any]:
-    """Return everything known about an estimate, ready for JSON; file names are relative to the folder."""
+    """Return the document of an estimate with its photographs and files, ready for JSON; see `to_dict`.
+
+    File names are relative to the folder.
+    """
     return {
+        **estimate.to_dict(),
         "photographs": [vars(photo) for photo in photos],
-        **_trust(estimate),
-        "weights": _rounded(estimate.weights),
-        "windows": [_window_document(window) for window in estimate.windows],
-        "response": {
-            "brightness": _rounded(estimate.curve.brightness),
-            "lower": _rounded(estimate.band[0]),
-            "upper": _rounded(estimate.band[1]),
-        },
         **_light_document(light),
         "color_space": files.color_space,
         "files": _file_names(files),
@@ -62,7 +58,7 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
         "skipped": [str(path) for path in report.skipped],
         "missing": list(report.missing),
         **(_light_document(report.light) if report.light else {}),
-        "estimate": {"photographs": list(estimate.photos), **_trust(estimate)} if estimate else None,
+        "estimate": estimate.to_dict() if estimate else None,
     }
 
 
@@ -103,30 +99,6 @@ def _light_document(light: PlateLight) -> dict[str, Any]:
         },
         "output_space": {"name": str(light.space), "interop_id": light.space.interop_id},
     }
-
-
-def _trust(estimate: ResponseEstimate) -> dict[str, Any]:
-    """Return the verdict, the uncertainty and their reasons, ready for JSON."""
-    kind = LikelyKind.of(estimate)
-    return {
-        "verdict": estimate.verdict,
-        "uncertainty": _rounded(estimate.uncertainty),
-        "uncertainty_percent": _rounded(brightness_percent(estimate.uncertainty)),
-        "shape_uncertainty_stops": _rounded(estimate.shape_uncertainty),
-        "family": {"words": kind.words, "probability": _rounded(kind.probability)} if kind else None,
-        "families": {family: _rounded(probability) for family, probability in estimate.families.items()},
-        "prior": estimate.prior,
-        "metadata": [dataclasses.asdict(origin) for origin in estimate.origins],
-        "warnings": list(estimate.warnings),
-        "model": estimate.model,
-    }
-
-
-def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
-    """Return where a window lies and what the network said of it."""
-    window = estimate.window
-    position = {"photo": estimate.photo, "x": window.x, "y": window.y, "extent": window.extent, "filled": window.filled}
-    return {**position, "expected_error": _rounded(estimate.expected_error), "kept": estimate.kept}
 
 
 def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:

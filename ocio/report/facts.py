@@ -7,9 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.metrics import brightness_percent
 from crfnet_core.photo import Photo
-from crfnet_core.posterior import FAMILY_WORDS, Family
-from crfnet_core.response import SAMPLES
 
 
 @dataclass(frozen=True)
@@ -30,50 +29,6 @@ class PhotoFacts:
     def __str__(self) -> str:
         """Return one line for people."""
         return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits"
-
-
-@dataclass(frozen=True)
-class LikelyKind:
-    """The most probable kind of response.
-
-    Parameters
-    ----------
-    families : tuple of Family
-        The families that make up the kind.
-    words : str
-        The kind in words.
-    probability : float
-        That the response is of this kind.
-    """
-
-    families: tuple[Family, ...]
-    words: str
-    probability: float
-
-    @classmethod
-    def of(cls, estimate: ResponseEstimate) -> LikelyKind | None:
-        """Return the most probable kind, the first of equals; None if the estimate knows no families."""
-        if not estimate.families:
-            return None
-        kinds = [
-            cls(families, words, sum(estimate.families[family] for family in families))
-            for families, words in FAMILY_WORDS.items()
-        ]
-        return max(kinds, key=lambda kind: kind.probability)
-
-    def __str__(self) -> str:
-        """Return the words with the probability in percent; never 100, because nothing is as certain."""
-        percent = "over 99" if self.probability > 0.99 else f"{100 * self.probability:.0f}"
-        return f"{self.words}, {percent} %"
-
-
-def brightness_percent(error: float) -> float:
-    """Return an estimation error as a root mean square in percent of the brightness range.
-
-    E_est is the Euclidean distance between two responses of `SAMPLES` samples, so the root mean square is
-    E_est / sqrt(SAMPLES).
-    """
-    return float(100 * error / np.sqrt(SAMPLES))
 
 
 def curve_error(estimate: ResponseEstimate) -> str:
@@ -109,7 +64,7 @@ def agreeing(estimate: ResponseEstimate) -> str:
 
 def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     """Return the comment lines of LUT files: what the LUT is, its photographs, its model, and how far to trust it."""
-    kind = LikelyKind.of(estimate)
+    kind = estimate.likely_kind
     lines = (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
         f"Photographs: {', '.join(estimate.photos)}",

@@ -8,22 +8,14 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
-from crfnet_core.posterior import Family, Verdict
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
+from crfnet_core.posterior import Family, LikelyKind, Verdict
 from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
 from ocio.output_files import OutputFiles
 from ocio.plates.frames import format_frames
 from ocio.plates.linear import PlateReport
 from ocio.report.documents import QUARTERS
-from ocio.report.facts import (
-    LikelyKind,
-    agreeing,
-    basis,
-    brightness_percent,
-    curve_error,
-    expected_errors,
-    shape_error,
-)
+from ocio.report.facts import agreeing, basis, curve_error, expected_errors, shape_error
 
 #: The verdicts in words for people.
 VERDICTS = {
@@ -51,7 +43,7 @@ def source_line(estimate: ResponseEstimate) -> str:
 
 def verdict_lines(estimate: ResponseEstimate) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
-    kind, rests_on = LikelyKind.of(estimate), basis(estimate)
+    kind, rests_on = estimate.likely_kind, basis(estimate)
     return [
         f"The estimate is {_verdict_words(estimate.verdict, kind)}.",
         _expectation(estimate),
@@ -64,7 +56,7 @@ def verdict_lines(estimate: ResponseEstimate) -> list[str]:
 
 def result_line(estimate: ResponseEstimate) -> str:
     """Return the photograph, the verdict, the uncertainty and the kind on one line, for lists of estimates."""
-    notes = [*filter(None, [LikelyKind.of(estimate)]), *estimate.warnings]
+    notes = [*filter(None, [estimate.likely_kind]), *estimate.warnings]
     more = "".join(f"; {note}" for note in notes)
     return f"{estimate.photos[0]}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
 

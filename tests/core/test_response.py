@@ -6,7 +6,7 @@ from hypothesis.extra.numpy import arrays
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import CurveError
-from crfnet_core.response import LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
+from crfnet_core.response import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
 
 UNIFORM = np.linspace(0, 1, SAMPLES)
 
@@ -119,3 +119,67 @@ def test_a_gamma_is_positive():
 def test_the_samples_cannot_be_changed():
     with pytest.raises(ValueError, match="read-only"):
         ResponseCurve.gamma().brightness[3] = 0.5
+
+
+def steep():
+    """A response that clips: its last samples lie closer together than the cells of the table."""
+    return ResponseCurve.from_samples(np.minimum(UNIFORM * 1.5, 1) ** 0.4)
+
+
+@pytest.mark.parametrize("function", ["forward", "inverse"])
+@pytest.mark.parametrize("curve", [ResponseCurve.gamma(), steep()], ids=["gamma", "steep"])
+def test_large_arrays_have_the_values_of_small_ones(curve, function):
+    """To the last bit: at the samples, between them, at the ends, beyond them, and NaN."""
+    values = np.random.default_rng(0).uniform(-0.1, 1.1, BLOCK + 5000)
+    values[:2048] = np.concatenate([curve.brightness, curve.irradiance])
+    values[2048:2054] = [0, 1, np.nan, -np.inf, np.inf, np.nextafter(1, 0)]
+    values[3000:4000] = np.linspace(0.99999, 1, 1000)
+    before = values.copy()
+    call = getattr(curve, function)
+    found = call(values)
+    np.testing.assert_array_equal(found, np.concatenate([call(part) for part in np.split(values, [BLOCK - 7])]))
+    assert np.flatnonzero(np.isnan(found)).tolist() == [2050]
+    assert found[[2048, 2049, 2051, 2052]].tolist() == [0, 1, 0, 1]
+    np.testing.assert_array_equal(values, before)
+
+
+@pytest.mark.parametrize("size", [7, BLOCK + 7])
+@pytest.mark.parametrize(
+    ("given", "kind"),
+    [("float16", "float32"), ("float32", "float32"), ("float64", "float64"), (">f4", "float32"), ("int64", "float64")],
+)
+def test_single_precision_stays_single_precision(given, kind, size):
+    curve = ResponseCurve.gamma()
+    values = (np.arange(2 * size) % 2).astype(given).reshape(2, size)
+    for call in (curve.forward, curve.inverse):
+        found = call(values.T)
+        assert (found.dtype, found.shape) == (np.dtype(kind), (size, 2))
+        np.testing.assert_array_equal(found, values.T)
+
+
+def test_float32_is_float64_rounded():
+    values = np.random.default_rng(0).random((200, 400), dtype=np.float32)
+    for call in (steep().forward, steep().inverse):
+        np.testing.assert_array_equal(call(values), call(values.astype(np.float64)).astype(np.float32))
+
+
+def test_a_number_gives_a_number():
+    curve = ResponseCurve.gamma()
+    assert isinstance(curve.inverse(0.5), float)
+    assert isinstance(curve.forward(1), float)
+    assert curve.forward(curve.inverse(0.5)) == pytest.approx(0.5, abs=1e-12)
+    assert curve.inverse(np.float32(0.5)).dtype == np.float32
+
+
+@pytest.mark.parametrize("codes", [np.full((2, 2, 3), 200, np.uint8), np.array([1023], np.uint16), [0, 128, 255], 255])
+def test_code_values_are_refused(codes):
+    with pytest.raises(CurveError, match="divide code values by the largest code"):
+        ResponseCurve.gamma().inverse(codes)
+
+
+def test_the_irradiances_are_uniform_and_cannot_be_changed():
+    curve = ResponseCurve.gamma()
+    np.testing.assert_array_equal(curve.irradiance, UNIFORM)
+    np.testing.assert_array_equal(curve.forward(curve.irradiance), curve.brightness)
+    with pytest.raises(ValueError, match="read-only"):
+        curve.irradiance[3] = 0.5

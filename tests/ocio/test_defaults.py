@@ -5,6 +5,7 @@ import inspect
 import numpy as np
 
 from crfnet_core import estimate_response
+from crfnet_core.metrics import brightness_percent
 from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Verdict, packaged_priors, verdict
 from ocio import defaults, report
 from ocio.plates.exr import SAMPLE_TYPES
@@ -38,6 +39,6 @@ def test_the_priors_are_the_packaged_ones():
 
 def test_the_usage_states_the_limits_of_the_verdicts(root):
     usage = (root / "docs" / "USAGE.md").read_text(encoding="utf-8")
-    percent = report.brightness_percent(verdict.GOOD_ERROR)
+    percent = brightness_percent(verdict.GOOD_ERROR)
     assert f"| good | {verdict.GOOD_STOPS:.2f} stop | {verdict.GOOD_ERROR:g} ({percent:.1f} %" in usage
     assert f"| usable | {verdict.USABLE_STOPS:.2f} stop |" in usage

@@ -94,7 +94,7 @@ def test_luts_say_how_far_to_trust_them(estimate):
     ],
 )
 def test_the_likely_kind(estimate, families, words):
-    assert str(report.LikelyKind.of(estimate(families=families))) == words
+    assert str(estimate(families=families).likely_kind) == words
 
 
 @pytest.mark.parametrize("family", report.REMEDIES)

@@ -9,6 +9,7 @@ from hypothesis.extra.numpy import arrays
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
+from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
 
 EXTENDED = (-0.125, 1.125)
@@ -214,3 +215,21 @@ def test_any_response_gives_back_all_10_bit_codes(curve):
     lut = inverse_response_lut(curve, length=4093)
     back = ocio_applied(lut, ocio_applied(lut, codes(10)), OCIO.TRANSFORM_DIR_INVERSE)
     assert np.rint(back * 1023).tolist() == list(range(1024))
+
+
+@pytest.mark.parametrize(("bits", "length"), [(8, LUT_LENGTH), (10, 1024), (12, 4096), (16, 65536)])
+def test_curve_and_lut_agree_on_single_precision(true_response, tolerance, bits, length):
+    """On the codes that the LUT is exact on, in the arrays that pipelines hold; both keep single precision."""
+    pixels = np.tile((np.arange(2**bits) / (2**bits - 1)).astype(np.float32), (3, 40, 1))
+    lut = inverse_response_lut(true_response, length=length)
+    linear = true_response.inverse(pixels)
+    assert linear.dtype == lut.apply(pixels).dtype == np.float32
+    np.testing.assert_allclose(lut.apply(pixels), linear, rtol=0, atol=tolerance.lut)
+
+
+def test_curve_and_longest_lut_agree_on_every_number(true_response, tolerance):
+    pixels = np.random.default_rng(0).random((300, 300, 3), dtype=np.float32)
+    found = inverse_response_lut(true_response, length=65536).apply(pixels)
+    np.testing.assert_allclose(found, true_response.inverse(pixels), rtol=0, atol=tolerance.lut)
+    usual = inverse_response_lut(true_response).apply(pixels)
+    np.testing.assert_allclose(usual, true_response.inverse(pixels), rtol=0, atol=5e-5)

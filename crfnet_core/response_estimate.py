@@ -1,0 +1,233 @@
+"""What an estimate says: a response, its evidence and how far to trust it; and the same as a document.
+
+docs/estimate.schema.json describes the document. `crfnet estimate` writes it too, with the names of its files.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import math
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from enum import Enum
+from typing import Any
+
+import numpy as np
+
+from crfnet_core.errors import EstimateError, one_line
+from crfnet_core.metadata import FileOrigin
+from crfnet_core.metadata.devices import Device
+from crfnet_core.metadata.origin import Encoding
+from crfnet_core.metrics import brightness_percent
+from crfnet_core.posterior import Family, LikelyKind, Verdict
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.windows import Window
+
+#: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
+SCHEMA_VERSION = 1
+
+
+@dataclass(frozen=True, eq=False)
+class WindowEstimate:
+    """One window's part in an estimate.
+
+    Parameters
+    ----------
+    photo : int
+        Which of the photographs the window was cut from.
+    window : Window
+        Where it lies and how much of the range it covers.
+    weights : ndarray, float64, shape (11,)
+        The EMoR weights that follow from this window alone.
+    expected_error : float
+        The E_est that is expected of them.
+    kept : bool
+        Whether the window agrees with the others (`pooling.inliers`). Without learned pooling, only such windows count.
+    """
+
+    photo: int
+    window: Window
+    weights: Float64Array
+    expected_error: float
+    kept: bool
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
+        return same_fields(self, other) if isinstance(other, WindowEstimate) else NotImplemented
+
+
+@dataclass(frozen=True, eq=False)
+class ResponseEstimate:
+    """A response, its evidence, and how far to trust it.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The estimated response.
+    weights : ndarray, float64, shape (11,)
+        Its EMoR weights.
+    windows : tuple of WindowEstimate
+        What each window says by itself.
+    uncertainty : float
+        The expected E_est of this estimate.
+    shape_uncertainty : float
+        Its expected shape error, in stops: see `crfnet_core.metrics.shape_error`.
+    band : ndarray, float64, shape (2, 1024)
+        Lower and upper end of the 90 % credible band around the response.
+    families : dict
+        Family -> the probability that the response is of this family; their sum is 1.
+    verdict : Verdict
+        All this in one word.
+    prior : str
+        Name of the prior.
+    origins : tuple of FileOrigin
+        What the metadata of each photograph says of how it was made; empty if metadata is ignored.
+    warnings : tuple of str
+        What makes a poor estimate likely, in words.
+    model : str
+        Name and hash of the network.
+    photos : tuple of str
+        File names of the photographs.
+    """
+
+    curve: ResponseCurve
+    weights: Float64Array
+    windows: tuple[WindowEstimate, ...]
+    uncertainty: float
+    shape_uncertainty: float
+    band: Float64Array
+    families: Mapping[Family, float]
+    verdict: Verdict
+    prior: str
+    origins: tuple[FileOrigin, ...]
+    warnings: tuple[str, ...]
+    model: str
+    photos: tuple[str, ...]
+
+    def __eq__(self, other: object) -> bool:
+        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
+        return same_fields(self, other) if isinstance(other, ResponseEstimate) else NotImplemented
+
+    @property
+    def likely_kind(self) -> LikelyKind | None:
+        """The most probable kind of response; None if no families are known."""
+        return LikelyKind.of(self.families)
+
+    def to_dict(self) -> dict[str, Any]:
+        """Return the estimate as a document of plain lists, texts and numbers, ready for `json.dumps`.
+
+        Numbers are in full precision, so that `from_dict` makes an equal estimate of it.
+        """
+        kind = self.likely_kind
+        document = {
+            "schema_version": SCHEMA_VERSION,
+            "photographs": [{"name": name} for name in self.photos],
+            "verdict": self.verdict,
+            "uncertainty": self.uncertainty,
+            "uncertainty_percent": brightness_percent(self.uncertainty),
+            "shape_uncertainty_stops": self.shape_uncertainty,
+            "family": {"words": kind.words, "probability": kind.probability} if kind else None,
+            "families": self.families,
+            "prior": self.prior,
+            "metadata": [dataclasses.asdict(origin) for origin in self.origins],
+            "warnings": self.warnings,
+            "model": self.model,
+            "weights": self.weights,
+            "windows": [_window_document(window) for window in self.windows],
+            "response": {"brightness": self.curve.brightness, "lower": self.band[0], "upper": self.band[1]},
+        }
+        return {name: _plain(entry) for name, entry in document.items()}
+
+    @classmethod
+    def from_dict(cls, document: Mapping[str, Any]) -> ResponseEstimate:
+        """Return the estimate in a document that `to_dict` made, or that `crfnet estimate` wrote.
+
+        Entries that this version does not know are left out.
+
+        Raises
+        ------
+        EstimateError
+            If it is no such document, or one of a later version.
+        CurveError
+            If its response does not increase strictly from 0 to 1.
+        """
+        _check_version(document)
+        try:
+            return cls(
+                curve=ResponseCurve(np.array(document["response"]["brightness"], np.float64)),
+                weights=np.array(document["weights"], np.float64),
+                windows=tuple(_windows(document["windows"])),
+                uncertainty=_number(document["uncertainty"]),
+                shape_uncertainty=_number(document["shape_uncertainty_stops"]),
+                band=np.array([document["response"][end] for end in ("lower", "upper")], np.float64),
+                families={Family(name): _number(share) for name, share in document["families"].items()},
+                verdict=Verdict(document["verdict"]),
+                prior=document["prior"],
+                origins=tuple(_origins(document["metadata"])),
+                warnings=tuple(document["warnings"]),
+                model=document["model"],
+                photos=tuple(photo["name"] for photo in document["photographs"]),
+            )
+        except KeyError as problem:
+            raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
+        except (AttributeError, TypeError, ValueError) as problem:
+            raise EstimateError(f"the document of an estimate is damaged ({one_line(problem)})") from None
+
+
+def _check_version(document: Mapping[str, Any]) -> None:
+    """Refuse what is no document of an estimate, or one of another version."""
+    if isinstance(document, Mapping) and "estimates" in document:
+        raise EstimateError("this document holds a list of estimates; give document['estimates'][0]")
+    version = document.get("schema_version") if isinstance(document, Mapping) else None
+    if version is None:
+        raise EstimateError("this is no document of an estimate: it lacks 'schema_version'")
+    if version != SCHEMA_VERSION:
+        raise EstimateError(f"the estimate has schema_version {version}, this crfnet reads {SCHEMA_VERSION}: update it")
+
+
+def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
+    """Return where a window lies and what it says."""
+    window = estimate.window
+    return {
+        "photo": estimate.photo,
+        **dataclasses.asdict(window),
+        "extent": window.extent,
+        "weights": estimate.weights,
+        "expected_error": estimate.expected_error,
+        "kept": estimate.kept,
+    }
+
+
+def _windows(documents: list[dict[str, Any]]) -> Iterator[WindowEstimate]:
+    """Yield what the windows of a document say."""
+    for entry in documents:
+        window = Window(*(entry[field.name] for field in dataclasses.fields(Window)))
+        weights = np.array(entry["weights"], np.float64)
+        yield WindowEstimate(entry["photo"], window, weights, _number(entry["expected_error"]), entry["kept"])
+
+
+def _origins(documents: list[dict[str, Any]]) -> Iterator[FileOrigin]:
+    """Yield what the metadata of the photographs of a document says."""
+    for entry in documents:
+        entries = {field.name: entry[field.name] for field in dataclasses.fields(FileOrigin)}
+        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
+        yield FileOrigin(**entries | kinds | {"words": tuple(entry["words"])})
+
+
+def _number(entry: float | None) -> float:
+    """Return a number of a document; NaN for null."""
+    return math.nan if entry is None else float(entry)
+
+
+def _plain(value: Any) -> Any:
+    """Return a value as plain dicts, lists, texts and numbers; NaN, which JSON does not have, as None."""
+    if isinstance(value, Mapping):
+        return {_plain(name): _plain(entry) for name, entry in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return _plain(value.tolist())
+    if isinstance(value, list | tuple):
+        return [_plain(entry) for entry in value]
+    if isinstance(value, Enum):
+        return value.value
+    return None if isinstance(value, float) and math.isnan(value) else value

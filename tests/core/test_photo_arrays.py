@@ -1,0 +1,227 @@
+"""Photo and Photo.from_array: pixels of arrays, of Pillow's and OpenCV's images, and what is refused."""
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.photo import Photo
+from tests.helpers.images import write_image
+
+CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
+ALPHA = np.array([[[255], [255]], [[0], [128]]], np.uint8)
+EXACT = (CODES / 255).astype(np.float32)
+
+
+def with_alpha(codes):
+    return np.concatenate([codes, ALPHA], axis=2)
+
+
+@pytest.mark.parametrize(
+    ("array", "order"),
+    [
+        (CODES, "RGB"),
+        (CODES[..., ::-1], "BGR"),
+        (with_alpha(CODES), "RGBA"),
+        (with_alpha(CODES[..., ::-1]), "BGRA"),
+        (EXACT, "RGB"),
+        (EXACT.astype(np.float64)[..., ::-1], "BGR"),
+        (EXACT.tolist(), "RGB"),
+    ],
+)
+def test_the_order_of_the_channels_is_as_stated(array, order):
+    photo = Photo.from_array(array, color_order=order)
+    assert photo.pixels.dtype == np.float32
+    assert photo.pixels.flags.c_contiguous
+    np.testing.assert_array_equal(photo.pixels, EXACT)
+    assert not photo.is_gray
+
+
+@pytest.mark.parametrize("bits", [10, 12, 16])
+def test_uint16_is_divided_by_the_largest_code_of_its_bit_depth(bits):
+    codes = np.array([[[0, 1, 2**bits - 1]]], np.uint16)
+    photo = Photo.from_array(codes, color_order="RGB", bit_depth=bits)
+    np.testing.assert_array_equal(photo.pixels, (codes / (2**bits - 1)).astype(np.float32))
+    assert photo.bit_depth == bits
+
+
+@pytest.mark.parametrize("array", [CODES[..., 0], CODES[..., :1], CODES[..., 0].astype(np.float32) / np.float32(255)])
+def test_one_channel_is_replicated(array):
+    photo = Photo.from_array(array)
+    np.testing.assert_array_equal(photo.pixels, np.repeat(EXACT[..., :1], 3, axis=2))
+    assert photo.is_gray
+
+
+def test_gray_with_alpha():
+    array = np.concatenate([CODES[..., :1], ALPHA], axis=2)
+    np.testing.assert_array_equal(Photo.from_array(array, color_order="LA").pixels[..., 1], EXACT[..., 0])
+
+
+def test_equal_channels_are_gray():
+    assert Photo.from_array(np.repeat(CODES[..., :1], 3, axis=2), color_order="BGR").is_gray
+
+
+def test_associated_alpha_is_divided_out():
+    stored = np.array([[[0, 0, 0, 0], [50, 100, 25, 100], [10, 20, 30, 255], [90, 0, 0, 80]]], np.uint8)
+    expected = [[[0, 0, 0], [0.5, 1, 0.25], [10 / 255, 20 / 255, 30 / 255], [1, 0, 0]]]
+    for array in (stored, stored / 255):
+        photo = Photo.from_array(array, color_order="RGBA", is_associated=True)
+        np.testing.assert_allclose(photo.pixels, expected, rtol=1e-6)
+
+
+@pytest.mark.parametrize(("kind", "bits"), [(np.uint8, 8), (np.float16, 16), (np.float32, 32), (np.float64, 64)])
+def test_the_bit_depth_is_that_of_the_type(kind, bits):
+    photo = Photo.from_array(np.zeros((2, 2), kind))
+    assert photo.bit_depth == bits
+    assert Photo.from_array(np.zeros((2, 2), np.float32), bit_depth=10).bit_depth == 10
+
+
+def test_the_array_is_copied():
+    array = EXACT.copy()
+    photo = Photo.from_array(array, color_order="RGB")
+    array[:] = 0
+    np.testing.assert_array_equal(photo.pixels, EXACT)
+
+
+def test_it_has_a_name_and_what_is_known_of_the_file():
+    known = FileMetadata(make="Canon", model="Canon EOS 20D")
+    photo = Photo.from_array(CODES, color_order="RGB", name="shot 7", metadata=known)
+    assert (photo.path, photo.metadata) == (Path("shot 7"), known)
+    assert Photo.from_array(CODES, color_order="RGB").metadata is None
+
+
+@pytest.mark.parametrize(
+    ("mode", "array"),
+    [
+        ("RGB", CODES),
+        ("RGBA", with_alpha(CODES)),
+        ("L", CODES[..., 0]),
+        ("LA", np.concatenate([CODES[..., :1], ALPHA], 2)),
+    ],
+)
+def test_an_image_of_pillow_knows_its_order(mode, array):
+    image = pytest.importorskip("PIL.Image").fromarray(array, mode)
+    gray = mode.startswith("L")
+    np.testing.assert_array_equal(Photo.from_array(image).pixels, EXACT[..., [0, 0, 0] if gray else [0, 1, 2]])
+
+
+@pytest.mark.parametrize("byte_order", ["<", ">"])
+def test_an_image_of_pillow_with_16_bits(byte_order):
+    codes = np.array([[0, 1, 300], [40000, 65534, 65535]], f"{byte_order}u2")
+    image = pytest.importorskip("PIL.Image").frombytes(
+        f"I;16{'B' if byte_order == '>' else ''}", (3, 2), codes.tobytes()
+    )
+    photo = Photo.from_array(image, bit_depth=16)
+    np.testing.assert_array_equal(photo.pixels[..., 1], (codes / 65535).astype(np.float32))
+    with pytest.raises(PhotoError, match="give bit_depth=16"):
+        Photo.from_array(image)
+
+
+@pytest.mark.parametrize(
+    ("mode", "said"),
+    [
+        ("P", r"palette; give image\.convert\('RGB'\)"),
+        ("1", r"mode '1', which is not taken; give image\.convert\('RGB'\)"),
+        ("CMYK", "hides the camera's response"),
+        ("I", "astype"),
+        ("F", "scaled"),
+        ("RGBa", r"convert\('RGBA'\)"),
+    ],
+)
+def test_another_mode_of_pillow_is_refused(mode, said):
+    image = pytest.importorskip("PIL.Image").new(mode, (4, 4))
+    with pytest.raises(PhotoError, match=said):
+        Photo.from_array(image)
+
+
+def test_an_order_that_contradicts_pillow_is_refused():
+    image = pytest.importorskip("PIL.Image").fromarray(CODES)
+    with pytest.raises(PhotoError, match="leave color_order='BGR' out"):
+        Photo.from_array(image, color_order="BGR")
+
+
+def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
+    path = write_image(tmp_path / "a.png", codes)
+    expected = read_photo(path).pixels
+    image = pytest.importorskip("PIL.Image").open(path)
+    np.testing.assert_array_equal(Photo.from_array(image).pixels, expected)
+    cv2 = pytest.importorskip("cv2")
+    np.testing.assert_array_equal(Photo.from_array(cv2.imread(str(path)), color_order="BGR").pixels, expected)
+
+
+@pytest.mark.parametrize(
+    ("array", "options", "said"),
+    [
+        (None, {}, "imread returns"),
+        ("plate.jpg", {}, "read_photo reads files"),
+        (Path("plate.jpg"), {}, "read_photo reads files"),
+        (object(), {}, "holds object"),
+        ([[1, 2], [3]], {}, "makes no array of this list"),
+        (CODES.astype(np.int64), {"color_order": "RGB"}, "holds int64; give uint8"),
+        (CODES > 3, {"color_order": "RGB"}, "holds bool"),
+        (CODES, {}, "3 channels and no color_order; give color_order='RGB', 'BGR'"),
+        (CODES, {"color_order": "GBR"}, "give one of L, LA, RGB, RGBA, BGR, BGRA"),
+        (CODES, {"color_order": "RGBA"}, "3 channels, but color_order='RGBA'"),
+        (with_alpha(CODES), {"color_order": "BGR"}, "4 channels, but color_order='BGR'"),
+        (CODES[..., 0], {"color_order": "RGB"}, "1 channels, but"),
+        (np.zeros((3, 20, 30), np.uint8), {"color_order": "RGB"}, r"shape \(3, 20, 30\).*transpose\(1, 2, 0\)"),
+        (np.zeros((2, 20, 30, 3), np.uint8), {"color_order": "RGB"}, r"needs \(H, W\)"),
+        (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, r"shape \(0, 0, 3\)"),
+        (np.zeros(5, np.uint8), {}, r"shape \(5,\)"),
+        (CODES.astype(np.uint16), {"color_order": "RGB"}, "give bit_depth=16 if white is 65535"),
+        (
+            CODES.astype(np.uint16) * 5,
+            {"color_order": "RGB", "bit_depth": 10},
+            "code 1275, but bit_depth=10 ends at 1023",
+        ),
+        (CODES, {"color_order": "RGB", "bit_depth": 10}, "uint8 cannot hold a photograph of bit_depth=10"),
+        (CODES, {"color_order": "RGB", "bit_depth": 4}, "give 8 to 8"),
+        (CODES.astype(np.float32), {"color_order": "RGB"}, "from 0 to 255; .*divide code values by the largest"),
+        (EXACT - np.float32(0.1), {"color_order": "RGB"}, "from -0.1 to 0.9.*clip overshoot"),
+        (np.full((2, 2), np.nan), {}, "holds NaN"),
+        (np.full((2, 2), np.inf), {}, "to inf"),
+    ],
+)
+def test_what_is_no_photograph_is_refused_in_one_line(array, options, said):
+    with pytest.raises(PhotoError, match=said) as caught:
+        Photo.from_array(array, name="shot 7", **options)
+    assert str(caught.value).startswith("shot 7: ")
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize(
+    ("pixels", "said"),
+    [
+        (CODES, "ndarray, uint8, shape .*from_array"),
+        (EXACT.astype(np.float64), "float64"),
+        (EXACT[..., 0], r"shape \(2, 2\)"),
+        (EXACT[:0], r"shape \(0, 2, 3\)"),
+        (EXACT.tolist(), "list"),
+        (255 * EXACT, "from 0 to 255"),
+        (EXACT - 1, "from -1 to 0"),
+        (np.where(EXACT == 1, np.nan, EXACT).astype(np.float32), "NaN"),
+    ],
+)
+def test_the_constructor_checks_its_pixels(pixels, said):
+    with pytest.raises(PhotoError, match=said):
+        Photo(pixels, 8, False, Path("a.png"))
+
+
+def test_the_constructor_takes_a_name_for_a_path():
+    assert Photo(EXACT, 8, False, "shots/a.png").path == Path("shots", "a.png")
+
+
+def test_an_array_gives_the_estimate_of_its_file(plate, fixed_model):
+    """Of the same pixels; an array has no metadata."""
+    network = ResponseNetwork.load(fixed_model)
+    photo = read_photo(plate)
+    array = Photo.from_array(np.rint(photo.pixels * 255).astype(np.uint8), color_order="RGB", name=plate.name)
+    assert estimate_response(array, network=network) == estimate_response(
+        dataclasses.replace(photo, metadata=None), network=network
+    )

@@ -1,0 +1,177 @@
+"""Estimates, curves and posteriors compare, and estimates become documents and come back."""
+
+import copy
+import dataclasses
+import json
+import math
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import CRFNetError, CurveError, EstimateError, PhotoError
+from crfnet_core.estimate import estimate_response
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata.devices import Device
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Posterior, ResponseBank, Verdict
+from crfnet_core.response import ResponseCurve
+from crfnet_core.response_estimate import SCHEMA_VERSION, ResponseEstimate
+from tests.helpers.posteriors import even_prior, evidence_for, small_bank
+
+
+@pytest.fixture(scope="module")
+def estimate(plate, fixed_model):
+    found = estimate_response([read_photo(plate)] * 2, network=ResponseNetwork.load(fixed_model), windows=2)
+    origin = file_origin(FileMetadata(make="Canon", model="Canon EOS 20D", software='a "写真" editor'))
+    return dataclasses.replace(found, warnings=("one thing", "another"), origins=(*found.origins, origin))
+
+
+def twin(found):
+    """An equal estimate that shares no array."""
+    return copy.deepcopy(found)
+
+
+#: For each field another value.
+CHANGES = {
+    "curve": ResponseCurve.gamma(2.0),
+    "weights": np.zeros(11),
+    "windows": (),
+    "uncertainty": 9.0,
+    "shape_uncertainty": math.nan,
+    "band": np.zeros((2, 1024)),
+    "families": {Family.FILM: 1.0},
+    "verdict": Verdict.DO_NOT_TRUST,
+    "prior": "any",
+    "origins": (),
+    "warnings": (),
+    "model": "other",
+    "photos": ("a.jpg",),
+}
+
+
+def test_equal_estimates_are_equal(estimate):
+    assert estimate == twin(estimate)
+    assert estimate.windows[0] == twin(estimate).windows[0]
+    assert estimate != "estimate"
+
+
+@pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(ResponseEstimate)])
+def test_estimates_differ_in_any_field(estimate, field):
+    assert estimate != dataclasses.replace(twin(estimate), **{field: CHANGES[field]})
+
+
+def test_windows_differ_in_any_field(estimate):
+    window = estimate.windows[0]
+    for changed in ({"weights": window.weights + 1e-12}, {"kept": not window.kept}, {"photo": 7}):
+        assert window != dataclasses.replace(window, **changed)
+
+
+def test_what_is_not_known_is_equal(estimate):
+    """NaN: as of a response that was loaded from a LUT."""
+    unknown = dataclasses.replace(estimate, shape_uncertainty=math.nan, families={})
+    assert unknown == twin(unknown)
+    assert unknown.likely_kind is None
+
+
+def test_estimates_cannot_be_hashed_and_curves_can(estimate):
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(estimate)
+    curves = {estimate.curve: 1, ResponseCurve.gamma(2.2): 2}
+    assert curves[twin(estimate).curve] == 1
+    assert curves[ResponseCurve.gamma(2.2)] == 2
+    assert ResponseCurve.gamma(2.2) != ResponseCurve.gamma(2.21)
+    assert ResponseCurve.gamma() != "curve"
+
+
+def test_posteriors_compare():
+    bank, weights = small_bank(), np.zeros(5)
+    one, same, other = (Posterior.of(bank, even_prior(), [evidence_for(weights + d)]) for d in (0, 0, 0.1))
+    assert one == same != other
+    assert evidence_for(weights) == evidence_for(weights) != evidence_for(weights + 0.1)
+    assert bank == small_bank() != ResponseBank(bank.brightness, bank.families[::-1])
+    assert len({id(one.curve), id(same.curve)}) == 2
+    assert one == copy.deepcopy(one)
+
+
+def test_the_likely_kind(estimate):
+    assert estimate.likely_kind.words == FAMILY_WORDS[IN_CAMERA]
+
+
+def test_an_estimate_comes_back_from_json(estimate):
+    document = json.loads(json.dumps(estimate.to_dict(), allow_nan=False))
+    assert document == estimate.to_dict()
+    again = ResponseEstimate.from_dict(document)
+    assert again == estimate
+    assert isinstance(again.origins[-1].device, Device)
+    assert {type(family) for family in again.families} == {Family}
+    assert again.verdict is estimate.verdict
+
+
+def test_its_document_holds_plain_values(estimate):
+    """Exactly: neither our enumerations nor NumPy's numbers."""
+
+    def kinds(value):
+        if isinstance(value, dict):
+            return {dict}.union(*map(kinds, value), *map(kinds, value.values()))
+        return {list}.union(*map(kinds, value)) if isinstance(value, list) else {type(value)}
+
+    assert kinds(estimate.to_dict()) == {dict, list, str, int, float, bool, type(None)}
+
+
+def test_what_is_not_known_is_null(estimate):
+    unknown = dataclasses.replace(estimate, uncertainty=math.nan, shape_uncertainty=math.nan, families={}, origins=())
+    document = json.loads(json.dumps(unknown.to_dict(), allow_nan=False))
+    assert (document["uncertainty"], document["uncertainty_percent"], document["family"]) == (None, None, None)
+    assert ResponseEstimate.from_dict(document) == unknown
+
+
+def test_what_a_later_version_adds_is_left_out(estimate):
+    document = estimate.to_dict()
+    document["new"] = document["windows"][0]["new"] = document["metadata"][0]["new"] = 1
+    assert ResponseEstimate.from_dict(document) == estimate
+
+
+@pytest.mark.parametrize("name", ["response", "weights", "windows", "verdict", "photographs", "metadata", "families"])
+def test_an_absent_entry_is_named(estimate, name):
+    document = estimate.to_dict()
+    del document[name]
+    with pytest.raises(EstimateError, match=f"lacks '{name}'"):
+        ResponseEstimate.from_dict(document)
+
+
+@pytest.mark.parametrize(
+    ("change", "said"),
+    [
+        ({"schema_version": SCHEMA_VERSION + 1}, f"schema_version {SCHEMA_VERSION + 1}, .*update"),
+        ({"verdict": "splendid"}, "damaged.*splendid"),
+        ({"families": {"daguerreotype": 1}}, "damaged.*daguerreotype"),
+        ({"weights": "many"}, "damaged"),
+        ({"windows": 3}, "damaged"),
+        ({"families": []}, "damaged"),
+        ({"estimates": []}, "give document\\['estimates'\\]\\[0\\]"),
+    ],
+)
+def test_a_damaged_document_is_refused_in_one_line(estimate, change, said):
+    with pytest.raises(EstimateError, match=said) as caught:
+        ResponseEstimate.from_dict(estimate.to_dict() | change)
+    assert "\n" not in str(caught.value)
+
+
+@pytest.mark.parametrize("document", [{}, [], "text", None])
+def test_what_is_no_document_is_refused(document):
+    with pytest.raises(CRFNetError, match="no document of an estimate"):
+        ResponseEstimate.from_dict(document)
+
+
+def test_a_curve_that_does_not_increase_is_refused(estimate):
+    document = estimate.to_dict()
+    document["response"]["brightness"][5] = 0.9
+    with pytest.raises(CurveError, match="increase strictly"):
+        ResponseEstimate.from_dict(document)
+
+
+@pytest.mark.parametrize("given", ["plate.jpg", np.zeros((300, 300, 3), np.float32), ["plate.jpg"], 3])
+def test_what_is_no_photograph_is_refused_with_what_to_do(given, fixed_model):
+    with pytest.raises(PhotoError, match=r"is no Photo; read_photo .* Photo\.from_array"):
+        estimate_response(given, network=ResponseNetwork.load(fixed_model))

@@ -1,0 +1,42 @@
+"""The example notebook runs, from its first cell to its last, and holds no outputs."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from ocio.luts.files import read_lut
+
+
+@pytest.fixture(scope="module")
+def notebook(root):
+    return json.loads((root / "docs" / "examples" / "pipeline.ipynb").read_text(encoding="utf-8"))
+
+
+def code_cells(notebook):
+    return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
+
+
+def test_it_holds_no_outputs(notebook):
+    assert notebook["nbformat"] == 4
+    assert all(not cell["outputs"] and cell["execution_count"] is None for cell in code_cells(notebook))
+    assert len({cell["id"] for cell in notebook["cells"]}) == len(notebook["cells"])
+
+
+def test_it_runs_where_it_lies(notebook, plate, tmp_path, monkeypatch, capsys, tolerance):
+    """In a copy of its folder, so that its files stay there."""
+    (tmp_path / "docs" / "examples").mkdir(parents=True)
+    (tmp_path / "tests" / "data").mkdir(parents=True)
+    shutil.copy(plate, tmp_path / "tests" / "data")
+    monkeypatch.chdir(tmp_path / "docs" / "examples")
+    names: dict[str, object] = {}
+    for cell in code_cells(notebook):
+        exec(compile("".join(cell["source"]), cell["id"], "exec"), names)
+    assert names["linear"].shape == (378, 672, 3)
+    assert names["linear"].dtype == np.float32
+    assert names["lut_difference"] < tolerance.lut
+    assert names["ocio_difference"] < tolerance.lut
+    assert names["again"] == names["estimate"]
+    assert read_lut(tmp_path / "docs" / "examples" / "look" / "plate.spi1d") == names["lut"]
+    assert capsys.readouterr().out.splitlines()[0] == "(378, 672, 3) uint8 float32"
