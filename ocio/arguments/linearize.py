@@ -21,7 +21,9 @@ def add(commands: Commands) -> None:
     """Add `crfnet linearize`."""
     parser = add_command(commands, "linearize", "write a plate or a frame sequence as linear EXR", EXAMPLES)
     plates = parser.add_argument(
-        "plates", metavar="PLATES", help="a file, or a sequence: shot.%%04d.png, shot.####.png"
+        "plates",
+        metavar="PLATES",
+        help="a file, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png, shot.1001-1100#.png",
     )
     plates.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")

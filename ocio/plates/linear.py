@@ -286,4 +286,7 @@ def _failure(failures: Mapping[Path, CRFNetError], jobs: Mapping[Path, Path], se
     if not sequence.numbers:
         return str(first)
     numbers = format_frames([n for n, target in zip(sequence.numbers, jobs, strict=True) if target in failures])
-    return f"{len(failed)} of {len(jobs)} frames failed ({numbers}) and the others are written; the first: {first}"
+    gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
+    return (
+        f"{len(failed)} of {len(jobs)} frames failed ({numbers}) and the others are written{gaps}; the first: {first}"
+    )
