@@ -8,10 +8,11 @@ calls does without it, so the add-on need not bring it. Fileseq's own reader of 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from operator import index
 from pathlib import Path
+from typing import Any
 
 from crfnet_core.errors import PlateError
 from ocio.defaults import FRAMES_ANALYZED
@@ -177,13 +178,16 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
-    import fileseq  # only here: see the module
+    from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
+    from fileseq.frameset import FrameSet
 
+    found: Collection[Any] = ()
     try:
-        found = fileseq.FrameSet(frames) if frames.isascii() and all(frames.split(",")) else ()
-    except fileseq.MaxSizeException:
+        if frames.isascii() and all(frames.split(",")):
+            found = FrameSet(frames)
+    except MaxSizeException:
         found = range(MAX_FRAMES + 1)
-    except fileseq.ParseException:
+    except ParseException:
         found = ()
     if len(found) > MAX_FRAMES:
         raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
@@ -215,10 +219,10 @@ def _width(mark: str, frames: str) -> int:
 
 def _only_sequence(folder: Path) -> FramePattern:
     """Return the pattern of the one sequence in a folder: two files or more that differ in their number alone."""
-    import fileseq  # only here: see the module
+    from fileseq.filesequence import FileSequence  # only here: see the module
 
     names = [path.name for path in _listed(folder) if not path.name.startswith(".") and path.is_file()]
-    sequences = [found for found in fileseq.FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
+    sequences = [found for found in FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
     patterns = [
         _pattern(folder, found.basename(), found.zfill(), found.extension(), found.start()) for found in sequences
     ]
@@ -231,7 +235,7 @@ def _only_sequence(folder: Path) -> FramePattern:
     raise PlateError(f"{folder}: holds {len(patterns)} sequences: {', '.join(named)}{more}; give one of them")
 
 
-def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: int) -> FramePattern:
+def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> FramePattern:
     """Return the pattern of a sequence that Fileseq found, which reads the dash of shot-0001.png as a minus."""
     if first < 0 and prefix[-1:].isalnum():
         prefix, width = prefix + "-", width - 1
