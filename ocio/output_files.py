@@ -15,6 +15,7 @@ from crfnet_core.errors import PlateError
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.files import WRITERS
+from ocio.options import OutputOptions
 
 
 @dataclass(frozen=True)
@@ -72,6 +73,12 @@ class OutputFiles:
             color_space=f"CRF {stem}",
             forward=tuple(folder / f"{stem}_forward{suffix}" for suffix in WRITERS) if has_forward else (),
         )
+
+    @classmethod
+    def planned(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions) -> OutputFiles:
+        """Return the files for `photos` that the options ask for."""
+        has_sheet, has_linear, has_forward = outputs.has_sheet, outputs.has_linear, outputs.has_forward
+        return cls.named(folder, photos, has_sheet=has_sheet, has_linear=has_linear, has_forward=has_forward)
 
     @property
     def luts(self) -> tuple[Path, ...]:

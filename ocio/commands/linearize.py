@@ -12,6 +12,7 @@ from ocio.commands.printing import print_json, print_lines, progress_bar
 from ocio.interchange.files import read_response
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.files import READERS
+from ocio.luts.rgb_lut import AnyLut
 from ocio.output_files import check_folder, output_folder
 from ocio.plates.frames import FrameSequence, find_frames
 from ocio.plates.linear import linear_targets, linearize_plates
@@ -24,6 +25,7 @@ def run(arguments: argparse.Namespace) -> None:
     folder = Path(arguments.out).parent
     check_folder(folder)
     estimate = None if arguments.lut else _estimate_frames(sequence, arguments)
+    lut: AnyLut
     if estimate:
         lut, lines = pipeline.response_lut(estimate), [report.source_line(estimate), *report.verdict_lines(estimate)]
     else:

@@ -67,7 +67,7 @@ def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
         np.abs(back.apply(there.apply(codes)) - codes).max()
         for there, back in zip(lut.channels, forward.channels, strict=True)
     ]
-    return max(map(float, errors)) * largest
+    return float(np.max(errors) * largest)
 
 
 def is_forward(lut: AnyLut) -> bool:

@@ -112,11 +112,10 @@ def plan_each(
     PlateError
         If two photographs would write the same file, one of them would be replaced, or the folder cannot be used.
     """
-    kinds = {key: getattr(outputs, key) for key in ("has_sheet", "has_linear", "has_forward")}
     tasks = tuple(
         Task(
             photo=photo,
-            files=OutputFiles.named(out / folder, (photo,), **kinds),
+            files=OutputFiles.planned(out / folder, (photo,), outputs),
             folder=folder,
             options=options,
             plates=plates,

@@ -69,8 +69,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     ConfigError
         If the colour space cannot be in a config.
     """
-    kinds = {key: getattr(outputs, key) for key in ("has_sheet", "has_linear", "has_forward")}
-    files = OutputFiles.named(folder, photos, **kinds)
+    files = OutputFiles.planned(folder, photos, outputs)
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
@@ -100,7 +99,7 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
     with output_folder(folder), staged_files(folder) as staged:
         files = plan.files.in_folder(staged)
         document = write_estimate(files, estimated, light, plan.plates)
-        write_config(files.config, config, check={files.color_space: light.lut})
+        write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
     return document
 
 
