@@ -77,8 +77,11 @@ class OutputOptions:
         Whether the sheet is drawn, which needs matplotlib.
     has_linear : bool
         Whether the photographs are written as linear EXR.
+    has_forward : bool
+        Whether the response itself is written, too, from light to code values.
     """
 
     lut_length: int = LUT_LENGTH
     has_sheet: bool = True
     has_linear: bool = True
+    has_forward: bool = False

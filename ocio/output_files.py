@@ -14,6 +14,8 @@ from pathlib import Path
 from crfnet_core.errors import PlateError
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
+from ocio.luts.files import WRITERS
+from ocio.options import OutputOptions
 
 
 @dataclass(frozen=True)
@@ -34,6 +36,8 @@ class OutputFiles:
         The JSON document.
     color_space : str
         The name of the photograph's colour space in the config.
+    forward : tuple of Path
+        The response itself in three formats; empty if it is not written.
     """
 
     spi1d: Path
@@ -44,10 +48,17 @@ class OutputFiles:
     sheet: Path | None
     report: Path
     color_space: str
+    forward: tuple[Path, ...] = ()
 
     @classmethod
     def named(
-        cls, folder: Path, photos: Sequence[Path], *, has_sheet: bool = True, has_linear: bool = True
+        cls,
+        folder: Path,
+        photos: Sequence[Path],
+        *,
+        has_sheet: bool = True,
+        has_linear: bool = True,
+        has_forward: bool = False,
     ) -> OutputFiles:
         """Return the files for `photos`, which have one response in common."""
         stem = plain_stem(photos[0])
@@ -60,7 +71,14 @@ class OutputFiles:
             sheet=folder / f"{stem}_sheet.png" if has_sheet else None,
             report=folder / f"{stem}.json",
             color_space=f"CRF {stem}",
+            forward=tuple(folder / f"{stem}_forward{suffix}" for suffix in WRITERS) if has_forward else (),
         )
+
+    @classmethod
+    def planned(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions) -> OutputFiles:
+        """Return the files for `photos` that the options ask for."""
+        has_sheet, has_linear, has_forward = outputs.has_sheet, outputs.has_linear, outputs.has_forward
+        return cls.named(folder, photos, has_sheet=has_sheet, has_linear=has_linear, has_forward=has_forward)
 
     @property
     def luts(self) -> tuple[Path, ...]:
@@ -71,7 +89,7 @@ class OutputFiles:
     def own(self) -> tuple[Path, ...]:
         """Every file except the config, which other estimates may share."""
         sheet = () if self.sheet is None else (self.sheet,)
-        return (*self.luts, *self.linear, *sheet, self.report)
+        return (*self.luts, *self.forward, *self.linear, *sheet, self.report)
 
     def in_folder(self, folder: Path) -> OutputFiles:
         """Return the same files in another folder."""
@@ -84,6 +102,7 @@ class OutputFiles:
             linear=tuple(folder / path.name for path in self.linear),
             sheet=self.sheet and folder / self.sheet.name,
             report=folder / self.report.name,
+            forward=tuple(folder / path.name for path in self.forward),
         )
 
     def plate_color_space(

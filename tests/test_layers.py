@@ -43,7 +43,7 @@ def test_the_command_starts_light(root):
 
 def test_the_pipeline_loads_what_the_add_on_has(root):
     """Blender's package holds neither the command's libraries nor matplotlib."""
-    assert not loaded_by(PIPELINE, root) & {"bpy", "torch", "matplotlib", "tqdm", "shtab"}
+    assert not loaded_by(PIPELINE, root) & {"bpy", "torch", "matplotlib", "tqdm", "shtab", "fileseq"}
 
 
 def test_only_image_io_reads_images(root):

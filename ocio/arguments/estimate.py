@@ -43,6 +43,7 @@ def add(commands: Commands) -> None:
     parser.add_argument(
         "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
     )
+    parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values, too")
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     parser.add_argument("--no-linear", action="store_true", help="do not write the photographs as linear EXR")
     add_network(parser)

@@ -17,7 +17,7 @@ def add(commands: Commands) -> None:
     """Add `crfnet info`."""
     parser = add_command(commands, "info", "say what a LUT file or a model folder holds", EXAMPLES)
     subject = parser.add_argument(
-        "subject", type=Path, metavar="FILE|MODEL", help=".spi1d, .cube, .clf, or a model folder"
+        "subject", type=Path, metavar="FILE|MODEL", help="a LUT or whatever crfnet convert reads, or a model folder"
     )
     subject.complete = shtab.FILE  # type: ignore[attr-defined]
     add_json(parser)

@@ -21,12 +21,19 @@ def add(commands: Commands) -> None:
     """Add `crfnet linearize`."""
     parser = add_command(commands, "linearize", "write a plate or a frame sequence as linear EXR", EXAMPLES)
     plates = parser.add_argument(
-        "plates", metavar="PLATES", help="a file, or a sequence: shot.%%04d.png, shot.####.png"
+        "plates",
+        metavar="PLATES",
+        help="a file, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png, shot.1001-1100#.png",
     )
     plates.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")
     out.complete = shtab.FILE  # type: ignore[attr-defined]
-    lut = parser.add_argument("--lut", type=Path, metavar="FILE", help="the inverse response: .spi1d, .cube or .clf")
+    lut = parser.add_argument(
+        "--lut",
+        type=Path,
+        metavar="FILE",
+        help="the response: a LUT (.spi1d, .cube, .clf, .csp, .3dl), or as crfnet convert reads it",
+    )
     lut.complete = shtab.FILE  # type: ignore[attr-defined]
     parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
     add_network(parser)

@@ -28,6 +28,7 @@ def run(arguments: argparse.Namespace) -> None:
         lut_length=arguments.length,
         has_sheet=not arguments.no_sheet and _has_matplotlib(),
         has_linear=not arguments.no_linear,
+        has_forward=arguments.forward,
     )
     if arguments.each:
         _run_each(arguments, options, outputs)

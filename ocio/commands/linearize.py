@@ -9,7 +9,10 @@ from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
-from ocio.luts.files import read_lut
+from ocio.interchange.files import read_response
+from ocio.interchange.response_file import ResponseFile
+from ocio.luts.files import READERS
+from ocio.luts.rgb_lut import AnyLut
 from ocio.output_files import check_folder, output_folder
 from ocio.plates.frames import FrameSequence, find_frames
 from ocio.plates.linear import linear_targets, linearize_plates
@@ -22,15 +25,26 @@ def run(arguments: argparse.Namespace) -> None:
     folder = Path(arguments.out).parent
     check_folder(folder)
     estimate = None if arguments.lut else _estimate_frames(sequence, arguments)
-    lut = pipeline.response_lut(estimate) if estimate else read_lut(arguments.lut)
+    lut: AnyLut
+    if estimate:
+        lut, lines = pipeline.response_lut(estimate), [report.source_line(estimate), *report.verdict_lines(estimate)]
+    else:
+        found = read_response(arguments.lut)
+        lut, lines = found.lut, _lut_lines(arguments.lut, found)
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
     document = report.plate_document(done, estimate)
     if arguments.json:
         print_json(document)
     else:
-        lines = [report.source_line(estimate), *report.verdict_lines(estimate)] if estimate else []
         print_lines([*lines, *report.light_lines(document), *report.plate_lines(done)])
+
+
+def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
+    """Return which response is used and what was mended; nothing for an inverse response as a LUT, which is usual."""
+    inverted = "; its inverse is used" if found.was_forward else ""
+    lines = [f"{path.name}: {found.words}{inverted}.", *(f"{note}." for note in found.notes)]
+    return lines if inverted or path.suffix.lower() not in READERS else []
 
 
 def _estimate_frames(sequence: FrameSequence, arguments: argparse.Namespace) -> ResponseEstimate:

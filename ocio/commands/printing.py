@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
@@ -11,6 +12,9 @@ from tqdm import tqdm
 
 from crfnet_core.types import Progress
 from ocio import report
+
+#: Seconds between two lines of progress where there is no terminal.
+LINE_SECONDS = 60
 
 
 def print_json(document: Mapping[str, Any]) -> None:
@@ -24,10 +28,10 @@ def print_lines(lines: Iterable[str]) -> None:
 
 
 @contextmanager
-def progress_bar(unit: str) -> Iterator[Progress | None]:
-    """Yield a callback that moves a bar on stderr, or None where stderr is no terminal."""
+def progress_bar(unit: str) -> Iterator[Progress]:
+    """Yield a callback that moves a bar on stderr; where stderr is no terminal, it prints one line a minute."""
     if not sys.stderr.isatty():
-        yield None
+        yield _minute_lines(unit)
         return
     with tqdm(unit=f" {unit}", leave=False, file=sys.stderr) as bar:
 
@@ -36,3 +40,16 @@ def progress_bar(unit: str) -> Iterator[Progress | None]:
             bar.update(done - bar.n)
 
         yield show
+
+
+def _minute_lines(unit: str) -> Progress:
+    """Return a callback that prints how far a run is, for the log of a render farm; a short run prints nothing."""
+    due = time.monotonic() + LINE_SECONDS
+
+    def show(done: int, total: int) -> None:
+        nonlocal due
+        if (now := time.monotonic()) >= due:
+            print(f"crfnet: {done} of {total} {unit}", file=sys.stderr, flush=True)  # noqa: T201
+            due = now + LINE_SECONDS
+
+    return show

@@ -1,6 +1,8 @@
 """Lookup tables: the table itself, and one module per file format.
 
 lut1d     the table, its interpolation in both directions, and the inverse response as a table
+rgb_lut   a table for each channel
+forward   the response itself as a table, from light to codes
 text      the text of a LUT file: numbers and tables, with errors that name the line
 spi1d     Sony's .spi1d
 cube      the .cube format of Adobe and Resolve

@@ -14,16 +14,18 @@ from pathlib import Path
 from xml.etree import ElementTree
 from xml.sax.saxutils import escape
 
+import numpy as np
+
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.text import LutText
+from ocio.luts.rgb_lut import AnyLut, lut_of_columns
+from ocio.luts.text import LutText, table_rows
 
 #: The factor of the values in a file, by the bit depth that the file declares.
 DEPTH_SCALES = {"8i": 255, "10i": 1023, "12i": 4095, "16i": 65535, "16f": 1, "32f": 1}
 
 
-def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
+def write_clf(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
     """Write a LUT as CLF 3.0, with its comments as Description elements; the same LUT gives the same bytes.
 
     The id is a hash of the table and its domain, so equal LUTs have equal ids.
@@ -32,7 +34,7 @@ def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     ----------
     path : str or Path
         The file to be written.
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The table; nine digits keep its float32 values bit for bit.
     overwrite : bool
         Whether an existing file may be replaced.
@@ -49,24 +51,27 @@ def write_clf(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
     if lut.domain != (0.0, 1.0):
         ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)
         lines += [f"    <Range {depth}>", *(f"        <{key}>{end:.9g}</{key}>" for key, end in ends), "    </Range>"]
-    lines += [f'    <LUT1D {depth} interpolation="linear">', f'        <Array dim="{lut.values.size} 1">']
-    lines += [f"{value:.9g}" for value in lut.values.tolist()]
+    lines += [
+        f'    <LUT1D {depth} interpolation="linear">',
+        f'        <Array dim="{len(lut.values)} {len(lut.channels)}">',
+    ]
+    lines += table_rows(lut)
     lines += ["        </Array>", "    </LUT1D>", "</ProcessList>", ""]
     atomic_write_text(path, "\n".join(lines), overwrite=overwrite, error=LutError)
 
 
-def read_clf(path: str | Path) -> Lut1D:
+def read_clf(path: str | Path) -> AnyLut:
     """Return the LUT in a CLF file, with its Description elements as comments.
 
     Parameters
     ----------
     path : str or Path
-        A ProcessList of one LUT1D with one column or three equal ones; a Range before it may give the domain.
+        A ProcessList of one LUT1D with one column or three; a Range before it may give the domain.
 
     Raises
     ------
     LutError
-        If the file is absent, incomplete or of another format, differs between channels or does not increase strictly.
+        If the file is absent, incomplete or of another format, or does not increase strictly.
     """
     source = LutText.read(path)
     steps, comments = _steps(source)
@@ -78,7 +83,10 @@ def read_clf(path: str | Path) -> Lut1D:
     rows = _rows(source, _array(source, table), one_column=channels == 1)
     lut = source.lut(rows, length=length, channels=channels, domain=domain, comments=comments)
     scale = _scale(source, table, "outBitDepth", "LUT1D")
-    return lut if scale == 1 else Lut1D(lut.values / scale, lut.domain, lut.comments)
+    if scale == 1:
+        return lut
+    columns = np.stack([channel.values for channel in lut.channels], axis=1)
+    return lut_of_columns(columns / scale, domain=lut.domain, comments=lut.comments)
 
 
 def _steps(source: LutText) -> tuple[list[ElementTree.Element], list[str]]:

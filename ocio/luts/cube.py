@@ -9,12 +9,12 @@ from pathlib import Path
 
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.text import LutText
+from ocio.luts.rgb_lut import AnyLut
+from ocio.luts.text import LutText, table_rows
 
 
-def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
-    """Write a LUT as a 1D .cube of three equal columns, with its comments as `#` lines at the top.
+def write_cube(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
+    """Write a LUT as a 1D .cube of three columns, with its comments as `#` lines at the top.
 
     A domain other than [0, 1] is written as DOMAIN_MIN and DOMAIN_MAX. The same LUT gives the same bytes.
 
@@ -22,7 +22,7 @@ def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None
     ----------
     path : str or Path
         The file to be written.
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The table; nine digits keep its float32 values bit for bit.
     overwrite : bool
         Whether an existing file may be replaced.
@@ -33,14 +33,14 @@ def write_cube(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None
         If the file exists and may not be replaced, or cannot be written.
     """
     low, high = lut.domain
-    lines = [f"# {comment}" for comment in lut.comments] + [f"LUT_1D_SIZE {lut.values.size}"]
+    lines = [f"# {comment}" for comment in lut.comments] + [f"LUT_1D_SIZE {len(lut.values)}"]
     if lut.domain != (0.0, 1.0):
         lines += [f"DOMAIN_MIN {low:.9g} {low:.9g} {low:.9g}", f"DOMAIN_MAX {high:.9g} {high:.9g} {high:.9g}"]
-    lines += [f"{value:.9g} {value:.9g} {value:.9g}" for value in lut.values.tolist()]
+    lines += table_rows(lut, columns=3)
     atomic_write_text(path, "\n".join([*lines, ""]), overwrite=overwrite, error=LutError)
 
 
-def read_cube(path: str | Path) -> Lut1D:
+def read_cube(path: str | Path) -> AnyLut:
     """Return the LUT in a 1D .cube file; its TITLE, if any, and its `#` lines become the comments.
 
     Parameters
@@ -51,8 +51,8 @@ def read_cube(path: str | Path) -> Lut1D:
     Raises
     ------
     LutError
-        If the file is absent, incomplete, a 3D LUT or of another format, differs between channels or does not increase
-        strictly.
+        If the file is absent, incomplete, a 3D LUT or of another format, has another domain for each channel, or does
+        not increase strictly.
     """
     source = LutText.read(path)
     comments: list[str] = []
@@ -101,5 +101,5 @@ def _equal_channels(source: LutText, line: int, text: str) -> float:
     """Return the number that a line holds three times."""
     numbers = source.numbers(text, line, count=3)
     if len(set(numbers)) > 1:
-        raise source.error("R, G and B differ; give a LUT that treats the channels alike", line=line)
+        raise source.error("the domains of R, G and B differ; give a LUT with one domain", line=line)
     return numbers[0]

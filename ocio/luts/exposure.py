@@ -7,18 +7,18 @@ import numpy as np
 from crfnet_core.errors import CRFNetError
 from crfnet_core.response import ResponseCurve
 from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut
 
 
-def anchored_exposure(response: ResponseCurve | Lut1D, *, gray: float | None = None, stops: float = 0.0) -> float:
+def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
     """Return the stops to add after the inverse response (Eq. 31 of docs/METHOD.md).
 
     A response alone leaves the exposure open.
 
     Parameters
     ----------
-    response : ResponseCurve or Lut1D
-        The response, or its inverse as a LUT.
+    response : ResponseCurve, Lut1D or RgbLut1D
+        The response, or its inverse as a LUT; of a LUT for each channel, green counts.
     gray : float or None
         The encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18.
         By default white is the anchor: brightness 1 becomes a linear 1.
@@ -38,6 +38,8 @@ def anchored_exposure(response: ResponseCurve | Lut1D, *, gray: float | None = N
     return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
 
 
-def linear_gray(response: ResponseCurve | Lut1D, gray: float = GRAY_BRIGHTNESS) -> float:
+def linear_gray(response: ResponseCurve | AnyLut, gray: float = GRAY_BRIGHTNESS) -> float:
     """Return the linear value of an encoded brightness, by default that at which cameras place 18 % gray."""
-    return float(response.inverse(gray) if isinstance(response, ResponseCurve) else response.apply(gray))
+    if isinstance(response, ResponseCurve):
+        return float(response.inverse(gray))
+    return float(response.channels[len(response.channels) // 2].apply(gray))

@@ -8,17 +8,17 @@ from pathlib import Path
 from crfnet_core.errors import LutError
 from ocio.luts.clf import read_clf, write_clf
 from ocio.luts.cube import read_cube, write_cube
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.spi1d import read_spi1d, write_spi1d
 
 #: The reader of each format, by suffix.
-READERS: dict[str, Callable[[str | Path], Lut1D]] = {".spi1d": read_spi1d, ".cube": read_cube, ".clf": read_clf}
+READERS: dict[str, Callable[[str | Path], AnyLut]] = {".spi1d": read_spi1d, ".cube": read_cube, ".clf": read_clf}
 
 #: The writer of each format, by suffix.
 WRITERS: dict[str, Callable[..., None]] = {".spi1d": write_spi1d, ".cube": write_cube, ".clf": write_clf}
 
 
-def read_lut(path: str | Path) -> Lut1D:
+def read_lut(path: str | Path) -> AnyLut:
     """Return the LUT in a .spi1d, .cube or .clf file.
 
     Parameters
@@ -34,14 +34,14 @@ def read_lut(path: str | Path) -> Lut1D:
     return READERS[_known_suffix(path)](path)
 
 
-def write_lut(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
+def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
     """Write a LUT as .spi1d, .cube or .clf.
 
     Parameters
     ----------
     path : str or Path
         The file to be written; its suffix, in lower or upper case, names the format.
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The table.
     overwrite : bool
         Whether an existing file may be replaced.

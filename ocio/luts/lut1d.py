@@ -78,8 +78,12 @@ class Lut1D:
     @property
     def identity(self) -> str:
         """A name that depends on nothing but the table and its domain: a part of their SHA-256."""
-        content = np.array([*self.domain, *self.values], dtype="<f4").tobytes()
-        return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
+        return table_identity(self.domain, self.values)
+
+    @property
+    def channels(self) -> tuple[Lut1D, ...]:
+        """The LUT alone; a LUT with a table for each channel has three."""
+        return (self,)
 
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output for every pixel, by linear interpolation.
@@ -207,6 +211,12 @@ def strictly_increasing(values: ArrayLike) -> Float64Array:
     raised = np.minimum(raised, rank[-1] - steps[::-1])  # and never above the last entry, which stays
     pattern = np.where(raised == 0, 0, np.abs(raised) + BELOW_NORMAL).astype(np.int32)
     return np.asarray(np.copysign(pattern.view(np.float32), raised), dtype=np.float64)
+
+
+def table_identity(domain: tuple[float, float], values: Float64Array) -> str:
+    """Return a name that depends on nothing but a table and its domain: a part of their SHA-256."""
+    content = np.array([*domain, *values.ravel()], dtype="<f4").tobytes()
+    return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
 def first_fault(values: Float64Array) -> int | None:

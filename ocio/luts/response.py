@@ -6,7 +6,7 @@ import numpy as np
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import SAMPLES, ResponseCurve
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut, RgbLut1D
 
 #: Largest irradiance of brightness 0, as a part of that of brightness 1.
 MOST_BLACK = 0.01
@@ -15,7 +15,7 @@ MOST_BLACK = 0.01
 MOST_MEAN = 0.55
 
 
-def response_of_lut(lut: Lut1D) -> ResponseCurve:
+def response_of_lut(lut: AnyLut) -> ResponseCurve:
     """Return the response of which a LUT is the inverse, scaled so that brightness 1 is irradiance 1.
 
     Between its samples the response is linear, so its inverse is not quite the LUT: for the LUT of a response with the
@@ -23,16 +23,19 @@ def response_of_lut(lut: Lut1D) -> ResponseCurve:
 
     Parameters
     ----------
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         From encoded brightness to linear light; the domain holds [0, 1].
 
     Raises
     ------
     LutError
-        If the domain does not hold [0, 1], black is no 0, or the LUT brightens: it then leads from light to codes.
+        If the LUT treats the channels apart, the domain does not hold [0, 1], black is no 0, or the LUT brightens: it
+        then leads from light to codes.
     CurveError
         If the response does not increase strictly.
     """
+    if isinstance(lut, RgbLut1D):
+        raise LutError("the LUT treats R, G and B apart; give one that treats the channels alike")
     low, high = lut.domain
     if low > 0 or high < 1:
         raise LutError(f"the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1")

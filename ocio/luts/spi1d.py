@@ -9,18 +9,18 @@ from pathlib import Path
 
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.text import LutText
+from ocio.luts.rgb_lut import AnyLut
+from ocio.luts.text import LutText, table_rows
 
 
-def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> None:
+def write_spi1d(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
     """Write a LUT as .spi1d, with its comments as `#` lines at the top; the same LUT gives the same bytes.
 
     Parameters
     ----------
     path : str or Path
         The file to be written.
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The table; nine digits keep its float32 values bit for bit.
     overwrite : bool
         Whether an existing file may be replaced.
@@ -32,23 +32,29 @@ def write_spi1d(path: str | Path, lut: Lut1D, *, overwrite: bool = False) -> Non
     """
     low, high = lut.domain
     head = [f"# {comment}" for comment in lut.comments]
-    head += ["Version 1", f"From {low:.9g} {high:.9g}", f"Length {lut.values.size}", "Components 1", "{"]
-    lines = [*head, *(f"  {value:.9g}" for value in lut.values.tolist()), "}", ""]
+    head += [
+        "Version 1",
+        f"From {low:.9g} {high:.9g}",
+        f"Length {len(lut.values)}",
+        f"Components {len(lut.channels)}",
+        "{",
+    ]
+    lines = [*head, *(f"  {row}" for row in table_rows(lut)), "}", ""]
     atomic_write_text(path, "\n".join(lines), overwrite=overwrite, error=LutError)
 
 
-def read_spi1d(path: str | Path) -> Lut1D:
+def read_spi1d(path: str | Path) -> AnyLut:
     """Return the LUT in a .spi1d file, with its `#` lines as comments.
 
     Parameters
     ----------
     path : str or Path
-        A file with one component, or with three equal ones.
+        A file with one component, or with three.
 
     Raises
     ------
     LutError
-        If the file is absent, incomplete or of another format, differs between channels or does not increase strictly.
+        If the file is absent, incomplete or of another format, or does not increase strictly.
     """
     source = LutText.read(path)
     comments: list[str] = []

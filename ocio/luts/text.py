@@ -9,7 +9,8 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.errors import LutError
-from ocio.luts.lut1d import Lut1D, first_fault, single_precision
+from ocio.luts.lut1d import first_fault, single_precision
+from ocio.luts.rgb_lut import AnyLut, lut_of_columns
 
 #: Size in bytes of the largest LUT file that is read.
 MAX_FILE_SIZE = 64 * 1024 * 1024
@@ -68,13 +69,13 @@ class LutText:
         channels: float,
         domain: tuple[float, float],
         comments: Sequence[str],
-    ) -> Lut1D:
-        """Return the LUT of a table.
+    ) -> AnyLut:
+        """Return the LUT of a table, for each channel if its columns differ.
 
         Parameters
         ----------
         rows : iterable of (int, str)
-            Line number and text of each entry: one value, or three equal ones.
+            Line number and text of each entry: one value, or three.
         length, channels : float
             The number of entries, and of values per entry, that the file announces.
         domain : tuple of float
@@ -85,25 +86,40 @@ class LutText:
         Raises
         ------
         LutError
-            If the table is incomplete, differs between channels, or does not increase strictly.
+            If the table is incomplete or does not increase strictly.
         """
         if channels not in (1, 3):
-            raise self.error(f"has {channels:g} channels; a LUT of a camera's response has 1, or 3 equal ones")
+            raise self.error(f"has {channels:g} channels; a LUT of a camera's response has 1 or 3")
         lines: list[int] = []
-        values: list[float] = []
+        entries: list[list[float]] = []
         for line, text in rows:
-            entry = self.numbers(text, line, count=int(channels))
-            if len(set(entry)) > 1:
-                raise self.error("R, G and B differ; give a LUT that treats the channels alike", line=line)
+            entries.append(self.numbers(text, line, count=int(channels)))
             lines.append(line)
-            values.append(entry[0])
-        if len(values) != length:
-            raise self.error(f"holds {len(values)} entries and announces {length:g}; the file is cut or altered")
-        fault = first_fault(single_precision(values))
-        if fault is not None:
-            message = f"{values[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
-            raise self.error(message, line=lines[fault])
+        if len(entries) != length:
+            raise self.error(f"holds {len(entries)} entries and announces {length:g}; the file is cut or altered")
+        table = np.reshape(entries, (-1, int(channels)))
+        for column in table.T:
+            fault = first_fault(single_precision(column))
+            if fault is not None:
+                message = f"{column[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
+                raise self.error(message, line=lines[fault])
         try:
-            return Lut1D(np.array(values), domain, tuple(comments))
+            return lut_of_columns(table, domain=domain, comments=comments)
         except LutError as problem:
             raise self.error(str(problem)) from problem
+
+
+def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:
+    """Return the rows of a table with nine digits, which keep float32 values bit for bit.
+
+    Parameters
+    ----------
+    lut : Lut1D or RgbLut1D
+        The LUT.
+    columns : int
+        Values in each row; by default as many as the LUT has channels. A single one is repeated.
+    """
+    table = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
+    if columns > 1:
+        table = np.broadcast_to(table, (len(table), columns))
+    return [" ".join(f"{value:.9g}" for value in row) for row in table.tolist()]

@@ -112,11 +112,10 @@ def plan_each(
     PlateError
         If two photographs would write the same file, one of them would be replaced, or the folder cannot be used.
     """
-    has_sheet, has_linear = outputs.has_sheet, outputs.has_linear
     tasks = tuple(
         Task(
             photo=photo,
-            files=OutputFiles.named(out / folder, (photo,), has_sheet=has_sheet, has_linear=has_linear),
+            files=OutputFiles.planned(out / folder, (photo,), outputs),
             folder=folder,
             options=options,
             plates=plates,
@@ -253,7 +252,7 @@ def _write_configs(out: Path, manifest: Manifest) -> None:
             with_light(own.plate_color_space(photo), record.exposure, record.plate)
             for own, photo, record in zip(files, photos, records, strict=True)
         ]
-        check = {files[0].color_space: read_lut(files[0].spi1d)}  # they all are made alike
+        check = {files[0].color_space: read_lut(files[0].spi1d).channels[0]}  # they all are made alike
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
 
 

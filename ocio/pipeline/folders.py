@@ -14,6 +14,7 @@ from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
+from ocio.luts.forward import forward_lut
 from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
@@ -68,7 +69,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     ConfigError
         If the colour space cannot be in a config.
     """
-    files = OutputFiles.named(folder, photos, has_sheet=outputs.has_sheet, has_linear=outputs.has_linear)
+    files = OutputFiles.planned(folder, photos, outputs)
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
@@ -98,7 +99,7 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
     with output_folder(folder), staged_files(folder) as staged:
         files = plan.files.in_folder(staged)
         document = write_estimate(files, estimated, light, plan.plates)
-        write_config(files.config, config, check={files.color_space: light.lut})
+        write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
     return document
 
 
@@ -150,6 +151,10 @@ def write_estimate(
     """
     for path in files.luts:
         write_lut(path, light.lut)
+    if files.forward:
+        forward = forward_lut(light.lut)
+        for path in files.forward:
+            write_lut(path, forward)
     if files.linear:
         # Each photograph is read again: see `estimate_photographs`.
         for photo, linear in zip(estimated.paths, files.linear, strict=True):

@@ -1,12 +1,18 @@
-"""The frames of a sequence such as `plate.%04d.png` or `plate.####.png`: find their files, choose some of them."""
+"""The frames of a sequence such as `plate.%04d.png` or `plate.####.png`: find their files, choose some of them.
+
+Fileseq reads ranges of frames and finds the sequences of a folder. It is imported only there: what the Blender add-on
+calls does without it, so the add-on need not bring it. Fileseq's own reader of file names is not used: it refuses
+`a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in `v1####.png` for a frame.
+"""
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Sequence
+from collections.abc import Collection, Iterable, Sequence
 from dataclasses import dataclass
 from operator import index
 from pathlib import Path
+from typing import Any
 
 from crfnet_core.errors import PlateError
 from ocio.defaults import FRAMES_ANALYZED
@@ -14,10 +20,20 @@ from ocio.defaults import FRAMES_ANALYZED
 #: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
 MAX_FRAMES = 1_000_000
 
-#: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
-_PLACEHOLDERS = (re.compile(r"%(?:0([0-9]{1,2}))?d"), re.compile("#+"), re.compile("@+"))
+_END = r"--?[0-9]{1,9}(?:x[0-9]{1,9})?"
 
-_RANGE = re.compile(r"(-?\d{1,9})(?:-(-?\d{1,9})(?:x(\d{1,9}))?)?", re.ASCII)
+#: Frames in a name: ranges with a step or without, separated by commas; the first of them is no single frame.
+_RANGES = rf"-?[0-9]{{1,9}}{_END}(?:,-?[0-9]{{1,9}}(?:{_END})?)*"
+
+#: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
+#: Before the placeholder may be the frames, as in shot.1001-1100#.png; shot.[1001-1100].png is the frames alone.
+_PLACEHOLDERS = (
+    *(
+        re.compile(rf"(?:(?<![^._ ])(?P<frames>{_RANGES}))?(?P<mark>{mark})")
+        for mark in ("%(?:0[0-9]{1,2})?d", r"\$F[0-9]{0,2}(?![A-Z])", "#+", "@+")
+    ),
+    re.compile(rf"\[(?P<frames>{_RANGES})\](?P<mark>)"),
+)
 
 
 @dataclass(frozen=True)
@@ -51,19 +67,24 @@ class FramePattern:
         The parts of the name before and after the frame number.
     width : int
         Digits to which the number is padded with zeros.
+    frames : str
+        The frames that the name itself asks for, such as "1001-1100"; empty for all.
     """
 
     folder: Path
     prefix: str
     width: int
     suffix: str
+    frames: str = ""
 
     @classmethod
     def parse(cls, pattern: str | Path) -> FramePattern | None:
         """Return the pattern, or None for a name without a placeholder.
 
-        `%04d` and `####` pad to four digits, `@@@` to three; `%d` does not pad. A single `#` means four digits, as in
-        oiiotool and RV; several mean as many digits, as in Nuke. Placeholders in the name of the folder do not count.
+        `%04d`, `$F4` and `####` pad to four digits, `@@@` to three; `%d` and `$F` do not pad. A single `#` means four
+        digits, as in oiiotool and RV; several mean as many digits, as in Nuke. `shot.1001-1100#.png` and
+        `shot.[1001-1100].png` ask for some of the frames; the second pads as its first number does. Placeholders in
+        the name of the folder do not count.
 
         Raises
         ------
@@ -77,7 +98,8 @@ class FramePattern:
                 raise PlateError(f"{path}: holds {len(matches)} frame placeholders; leave one of them")
             if matches:
                 start, end = matches[0].span()
-                return cls(path.parent, path.name[:start], _width(matches[0]), path.name[end:])
+                frames = matches[0]["frames"] or ""
+                return cls(path.parent, path.name[:start], _width(matches[0]["mark"], frames), path.name[end:], frames)
         return None
 
     def path(self, number: int) -> Path:
@@ -87,15 +109,11 @@ class FramePattern:
     def files(self) -> dict[int, Path]:
         """Return the existing files by frame number; raise a PlateError if the folder cannot be listed."""
         named = re.compile(f"{re.escape(self.prefix)}(-?[0-9]{{1,18}}){re.escape(self.suffix)}")
-        files = {}
-        try:
-            for path in self.folder.iterdir():
-                match = named.fullmatch(path.name)
-                if match and self.path(int(match[1])).name == path.name and path.is_file():
-                    files[int(match[1])] = path
-        except OSError as problem:
-            raise PlateError(f"{self.folder}: cannot be listed ({problem.strerror}); check the folder") from problem
-        return files
+        matches = ((path, named.fullmatch(path.name)) for path in _listed(self.folder))
+        numbered = {
+            int(match[1]): path for path, match in matches if match and self.path(int(match[1])).name == path.name
+        }
+        return {number: path for number, path in numbered.items() if path.is_file()}
 
 
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
@@ -104,24 +122,30 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     Parameters
     ----------
     pattern : str or Path
-        The name of one file, or of a sequence with a placeholder for the frame number (see `FramePattern.parse`).
-        An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`.
+        The name of one file, of a sequence with a placeholder for the frame number (see `FramePattern.parse`), or of a
+        folder that holds one sequence. An existing file of exactly this name is taken first, so the name of a single
+        file may hold `#` or `@`.
     frames : str, iterable of int, or None
-        The frames to use, as in `parse_frames`; all existing ones by default.
+        The frames to use, as in `parse_frames`; by default those that the pattern names, or all existing ones.
 
     Raises
     ------
     PlateError
-        If nothing is found, or `frames` is given for a single file or is malformed.
+        If nothing is found, `frames` is given for a single file or beside frames in the pattern or is malformed, or a
+        folder holds several sequences or none.
     """
     path = Path(pattern)
-    if frames is None and _kind(path) == "file":
+    kind = _kind(path)
+    if frames is None and kind == "file":
         return FrameSequence((path,))
-    parsed = FramePattern.parse(path)
+    parsed = _only_sequence(path) if kind == "folder" else FramePattern.parse(path)
     if parsed is None:
         raise PlateError(f"{path}: {_no_sequence(path)}")
+    if parsed.frames and frames is not None:
+        raise PlateError(f"{path}: names the frames {parsed.frames} itself; give them once")
     files = parsed.files()
-    wanted = _span(files, path) if frames is None else parse_frames(frames)
+    chosen = frames if frames is not None else parsed.frames or None
+    wanted = _span(files, path) if chosen is None else parse_frames(chosen)
     numbers = tuple(number for number in wanted if number in files)
     if not numbers:
         there = f"there are {format_frames(sorted(files))}" if files else "there is no frame of this name"
@@ -144,27 +168,32 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     Parameters
     ----------
     frames : str or iterable of int
-        Numbers and ranges, separated by commas: "1001-1100", "1-10x2" (every second), "1,5,9", "-3--1".
+        Numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2" (every second), "1,5,9",
+        "-3--1". A range may run backwards; the frames come in ascending order all the same.
 
     Raises
     ------
     PlateError
-        If it is malformed, a range runs backwards, a step is 0, or there are more than `MAX_FRAMES` frames.
+        If it is malformed, holds parts of frames, or there are more than `MAX_FRAMES` frames.
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
-    numbers: set[int] = set()
-    for part in frames.replace(" ", "").split(","):
-        match = _RANGE.fullmatch(part)
-        if match is None:
-            raise PlateError(f"frames {frames!r}: {part!r} is no frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9")
-        first, last, step = int(match[1]), int(match[2] or match[1]), int(match[3] or 1)
-        if last < first or step == 0:
-            raise PlateError(f"frames {frames!r}: {part!r} runs backwards or stands still; give first-last or xSTEP")
-        numbers.update(range(first, last + 1, step)[: MAX_FRAMES + 1])
-        if len(numbers) > MAX_FRAMES:
-            raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
-    return tuple(sorted(numbers))
+    from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
+    from fileseq.frameset import FrameSet
+
+    found: Collection[Any] = ()
+    try:
+        if frames.isascii() and all(frames.split(",")):
+            found = FrameSet(frames)
+    except MaxSizeException:
+        found = range(MAX_FRAMES + 1)
+    except ParseException:
+        found = ()
+    if len(found) > MAX_FRAMES:
+        raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
+    if not found or any(number != int(number) for number in found):
+        raise PlateError(f"frames {frames!r}: is no frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9")
+    return tuple(sorted(map(int, found)))
 
 
 def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
@@ -179,12 +208,46 @@ def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
     return ", ".join(texts[:limit]) + (", …" if len(texts) > limit else "")
 
 
-def _width(match: re.Match[str]) -> int:
-    """Return the number of digits to which a placeholder pads."""
-    text = match[0]
-    if text.startswith("%"):
-        return int(match[1] or 1)
-    return 4 if text == "#" else len(text)
+def _width(mark: str, frames: str) -> int:
+    """Return the number of digits to which a placeholder pads; without one, to those of the first frame."""
+    if not mark:
+        return len(re.split(r"(?<=[0-9])\D", frames)[0])
+    if mark[0] in "%$":
+        return int(mark.strip("%d$F") or 1)
+    return 4 if mark == "#" else len(mark)
+
+
+def _only_sequence(folder: Path) -> FramePattern:
+    """Return the pattern of the one sequence in a folder: two files or more that differ in their number alone."""
+    from fileseq.filesequence import FileSequence  # only here: see the module
+
+    names = [path.name for path in _listed(folder) if not path.name.startswith(".") and path.is_file()]
+    sequences = [found for found in FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
+    patterns = [
+        _pattern(folder, found.basename(), found.zfill(), found.extension(), found.start()) for found in sequences
+    ]
+    if len(patterns) == 1:
+        return patterns[0]
+    if not patterns:
+        raise PlateError(f"{folder}: {_no_sequence(folder)}")
+    named = [f"{each.prefix}%0{each.width}d{each.suffix}" for each in patterns[:5]]
+    more = ", …" if patterns[5:] else ""
+    raise PlateError(f"{folder}: holds {len(patterns)} sequences: {', '.join(named)}{more}; give one of them")
+
+
+def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> FramePattern:
+    """Return the pattern of a sequence that Fileseq found, which reads the dash of shot-0001.png as a minus."""
+    if first < 0 and prefix[-1:].isalnum():
+        prefix, width = prefix + "-", width - 1
+    return FramePattern(folder, prefix, width, suffix)
+
+
+def _listed(folder: Path) -> list[Path]:
+    """Return what a folder holds; raise a PlateError if it cannot be listed."""
+    try:
+        return list(folder.iterdir())
+    except OSError as problem:
+        raise PlateError(f"{folder}: cannot be listed ({problem.strerror}); check the folder") from problem
 
 
 def _kind(path: Path) -> str:
@@ -196,13 +259,13 @@ def _kind(path: Path) -> str:
 
 
 def _no_sequence(path: Path) -> str:
-    """Return why a name that is neither a pattern nor a file to be used as a whole stands for no frames."""
+    """Return why a name that is no pattern, and that is not taken as a single file, stands for no frames."""
     sequence = "a sequence such as plate.%04d.png or plate.####.png"
-    if _kind(path) == "folder":
-        return f"is a folder; give a file in it, or {sequence}"
-    if _kind(path) == "file":
-        return "is a single file, which has no frames to choose from; leave the frames away or give a pattern"
-    return f"there is no such file; check the name, or give {sequence}"
+    return {
+        "folder": f"is a folder without a sequence; give a file in it, or {sequence}",
+        "file": "is a single file, which has no frames to choose from; leave the frames away or give a pattern",
+        "": f"there is no such file; check the name, or give {sequence}",
+    }[_kind(path)]
 
 
 def _span(files: Iterable[int], path: Path) -> Sequence[int]:

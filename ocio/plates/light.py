@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from crfnet_core.errors import PlateError
 from crfnet_core.metadata.color_tags import ColorTags
 from ocio.luts.exposure import anchored_exposure
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.linear_space import LinearSpace, linear_space
 from ocio.plates.primaries import PlatePrimaries, plate_primaries
@@ -31,7 +31,7 @@ class PlateLight:
 
     Parameters
     ----------
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The inverse response.
     stops : float
         The exposure: stops added after it.
@@ -41,13 +41,13 @@ class PlateLight:
         The space of the linear values.
     """
 
-    lut: Lut1D
+    lut: AnyLut
     stops: float
     plate: PlatePrimaries
     space: LinearSpace
 
     @classmethod
-    def of(cls, tags: ColorTags, lut: Lut1D, options: PlateOptions) -> PlateLight:
+    def of(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
         """Return what the options make of a plate with these tags.
 
         Raises

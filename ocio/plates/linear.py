@@ -19,7 +19,7 @@ from crfnet_core.errors import CRFNetError, PlateError
 from crfnet_core.files import atomic_write, check_target
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
 from ocio.plates.frame_files import EncodedFrame, read_frame
@@ -96,7 +96,7 @@ def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]
 def linearize_plates(
     sequence: FrameSequence,
     targets: Sequence[Path],
-    lut: Lut1D,
+    lut: AnyLut,
     options: PlateOptions,
     *,
     workers: int | None = None,
@@ -121,7 +121,7 @@ def linearize_plates(
         The plates, as `find_frames` returns them.
     targets : sequence of Path
         The files to be written, one per frame, as `linear_targets` returns them; their folder must exist.
-    lut : Lut1D
+    lut : Lut1D or RgbLut1D
         The inverse response: encoded brightness to linear irradiance.
     options : PlateOptions
         Sample type, exposure, primaries, space, and whether finished frames are written again.
@@ -212,11 +212,12 @@ class _Conversion:
         codes = np.arange(frame.largest + 1) / frame.largest
         lut, matrix = self.light.lut, self.light.space.matrix
         is_final = frame.alpha is None and matrix is None
-        table = (lut.apply(codes) * self.scale).astype(linear.dtype if is_final else np.float32)
+        table = np.stack([channel.apply(codes) for channel in lut.channels], axis=1)  # (codes, 1 or 3)
+        table = (table * self.scale).astype(linear.dtype if is_final else np.float32)
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
             block = frame.samples[rows]  # (_ROWS, W, 3)
-            values = np.take(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
+            values = _taken(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
             if matrix is not None:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
@@ -225,6 +226,13 @@ class _Conversion:
                 linear[rows, :, 3:] = alpha
             linear[rows, :, :3] = values
         return linear
+
+
+def _taken(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
+    """Return the entries of codes, shape (..., 3), from a table with one column, or with one for each channel."""
+    if table.shape[1] == 1:
+        return np.take(table[:, 0], codes)
+    return np.stack([np.take(column, codes[..., channel]) for channel, column in enumerate(table.T)], axis=-1)
 
 
 def _scale(light: PlateLight, options: PlateOptions) -> float:
@@ -286,4 +294,7 @@ def _failure(failures: Mapping[Path, CRFNetError], jobs: Mapping[Path, Path], se
     if not sequence.numbers:
         return str(first)
     numbers = format_frames([n for n, target in zip(sequence.numbers, jobs, strict=True) if target in failures])
-    return f"{len(failed)} of {len(jobs)} frames failed ({numbers}) and the others are written; the first: {first}"
+    gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
+    return (
+        f"{len(failed)} of {len(jobs)} frames failed ({numbers}) and the others are written{gaps}; the first: {first}"
+    )

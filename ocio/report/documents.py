@@ -15,8 +15,9 @@ from numpy.typing import ArrayLike
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.network import ModelConfig
 from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ocio.interchange.response_file import ResponseFile
 from ocio.luts.exposure import linear_gray
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import AnyLut
 from ocio.output_files import OutputFiles
 from ocio.plates.light import PlateLight
 from ocio.plates.linear import PlateReport
@@ -62,16 +63,22 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
     }
 
 
-def lut_document(path: Path, lut: Lut1D) -> dict[str, Any]:
-    """Return what a LUT file holds, ready for JSON."""
+def lut_document(path: Path, lut: AnyLut, found: ResponseFile) -> dict[str, Any]:
+    """Return what a LUT file holds, or the inverse response of another file, ready for JSON."""
     first, last = lut.domain
+    quarters = [channel.apply(np.array(QUARTERS)) for channel in lut.channels]
+    is_inverse = lut is found.lut or not found.was_forward
     return {
         "kind": "lut",
         "file": path.name,
+        "response": found.words,
+        "direction": "forward" if found.was_forward else "inverse",
+        "channels": len(lut.channels),
+        "converts": ["brightness", "irradiance"] if is_inverse else ["irradiance", "brightness"],
         "length": len(lut.values),
         "domain": [_rounded(first), _rounded(last)],
-        "range": [_rounded(lut.values[0]), _rounded(lut.values[-1])],
-        "at_quarters": _rounded(lut.apply(np.array(QUARTERS))),
+        "range": [_rounded(lut.values[0].min()), _rounded(lut.values[-1].max())],
+        "at_quarters": _rounded(quarters[0] if len(quarters) == 1 else quarters),
         "provenance": list(lut.comments),
     }
 
@@ -107,6 +114,7 @@ def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
         "spi1d": files.spi1d.name,
         "cube": files.cube.name,
         "clf": files.clf.name,
+        "forward": [path.name for path in files.forward],
         "config": files.config.name,
         "linear": [path.name for path in files.linear],
         "sheet": files.sheet.name if files.sheet else None,

@@ -65,6 +65,7 @@ def file_lines(files: OutputFiles) -> list[str]:
     """Return what was written, one line for each kind of file; names are relative to the folder."""
     rows = [
         (files.luts, "inverse response as a LUT"),
+        (files.forward, "response as a LUT: light in, code values out"),
         ((files.config,), f'OpenColorIO config with "{files.color_space}"'),
         (files.linear, "linear plate"),
         ((files.sheet,), "the curve, its uncertainty and the windows"),
@@ -113,13 +114,19 @@ def plate_lines(report: PlateReport) -> list[str]:
 
 def lut_lines(document: Mapping[str, Any]) -> list[str]:
     """Return what a LUT file holds, from its `lut_document`."""
-    quarters = ", ".join(f"{b} -> {e:.4f}" for b, e in zip(QUARTERS, document["at_quarters"], strict=True))
+    rows = document["at_quarters"] if document["channels"] == 3 else [document["at_quarters"]]
+    quarters = ", ".join(
+        f"{given} -> {' '.join(f'{value:.4f}' for value in found)}"
+        for given, found in zip(QUARTERS, zip(*rows, strict=True), strict=True)
+    )
     low, high = document["domain"]
     bottom, top = document["range"]
+    first, second = document["converts"]
     return [
         f"{document['file']}: 1D LUT of {document['length']} entries, strictly increasing",
-        f"  brightness {low:g} to {high:g} becomes irradiance {bottom:g} to {top:g}; {quarters}",
-        *(f"  {line}" for line in document["provenance"]),
+        f"  {first} {low:g} to {high:g} becomes {second} {bottom:g} to {top:g}; {quarters}",
+        f"  {document['response']}",
+        *(f"  {line}" for line in document["provenance"] if not line.startswith("Read from ")),
     ]
 
 

@@ -77,8 +77,11 @@ class TestProgressBar:
             progress(10, 10)
         assert "windows" in sys.stderr.getvalue()
 
-    def test_is_absent_elsewhere(self, monkeypatch):
+    def test_is_a_line_a_minute_elsewhere(self, monkeypatch):
+        seconds = iter([0, 59, 60, 61, 119, 130])
+        monkeypatch.setattr(printing.time, "monotonic", lambda: next(seconds))
         monkeypatch.setattr(sys, "stderr", io.StringIO())
-        with printing.progress_bar("windows") as progress:
-            assert progress is None
-        assert sys.stderr.getvalue() == ""
+        with printing.progress_bar("frames") as progress:
+            for done in range(1, 6):
+                progress(done, 2997)
+        assert sys.stderr.getvalue() == "crfnet: 2 of 2997 frames\ncrfnet: 5 of 2997 frames\n"

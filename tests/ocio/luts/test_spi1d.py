@@ -70,7 +70,10 @@ def test_comments_in_older_encodings_do_no_harm(tmp_path):
         (HEAD.replace("From 0 1", "From 0") + "{\n0\n0.5\n1\n}\n", r"line 2: found 1 number\(s\), needed 2"),
         (HEAD.replace("From 0 1", "From 1 0") + "{\n0\n0.5\n1\n}\n", "finite domain from low to high, found 1 to 0"),
         (HEAD.replace("Components 1", "Components 2") + "{\n0 0\n0.5 0.5\n1 1\n}\n", "has 2 channels"),
-        (HEAD.replace("Components 1", "Components 3") + "{\n0 0 0\n0 1 0\n1 1 1\n}\n", "line 7: R, G and B differ"),
+        (
+            HEAD.replace("Components 1", "Components 3") + "{\n0 0 0\n0 1 0\n1 1 1\n}\n",
+            "line 7: 0 is not above the value before it",
+        ),
     ],
 )
 def test_what_is_no_lut_gets_one_line_that_names_it(tmp_path, text, message):

@@ -107,6 +107,15 @@ def test_bad_frames_are_named_and_the_others_written(tmp_path, out):
     assert len(linearize(pattern, out / "a.%d.exr", LUT).written) == 2
 
 
+def test_gaps_are_named_although_a_frame_failed(tmp_path, out):
+    pattern = write_sequence(tmp_path, (1, 2, 4, 9))
+    (tmp_path / "plate.0002.png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    with pytest.raises(
+        PlateError, match=r"1 of 4 frames failed \(2\) and the others are written; missing are 3, 5-8; "
+    ):
+        linearize(pattern, out / "a.%d.exr", LUT)
+
+
 def test_old_leftovers_of_these_frames_are_removed(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2))
     old = time.time() - STALE_SECONDS - 60

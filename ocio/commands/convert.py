@@ -1,0 +1,35 @@
+"""`crfnet convert`: a response from one file format to another."""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from crfnet_core.errors import LutError
+from ocio.commands.printing import print_json, print_lines
+from ocio.interchange.files import read_response, write_response
+from ocio.luts.files import WRITERS, write_lut
+from ocio.luts.forward import forward_lut
+from ocio.luts.rgb_lut import AnyLut
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Read a response, write it in another format, and say what was read and how exact the file is."""
+    found = read_response(arguments.source, curve=arguments.curve)
+    notes = [f"{arguments.source.name}: {found.words}", *found.notes]
+    notes += _write(arguments.out, found.lut, is_forward=arguments.forward, overwrite=arguments.overwrite)
+    if arguments.json:
+        print_json({"source": str(arguments.source), "written": str(arguments.out), "notes": notes})
+    else:
+        print_lines([*(f"{note}." for note in notes), f"Written: {arguments.out}."])
+
+
+def _write(out: Path, lut: AnyLut, *, is_forward: bool, overwrite: bool) -> list[str]:
+    """Write the file and return what is to be said of it."""
+    if out.suffix.lower() not in WRITERS:
+        if is_forward:
+            raise LutError(f"{out}: --forward is for LUTs; give a name that ends in {', '.join(WRITERS)}")
+        return list(filter(None, [write_response(out, lut, overwrite=overwrite)]))
+    table = forward_lut(lut) if is_forward else lut
+    write_lut(out, table, overwrite=overwrite)
+    return list(table.comments[:2]) if is_forward else []

@@ -1,0 +1,71 @@
+"""LUT formats that OpenColorIO reads and that are not written here: .csp, .3dl and .lut.
+
+The three formats that are written (.spi1d, .cube, .clf) keep readers of their own: theirs name the faulty line, keep
+the comments and the domain, and refuse tables that cannot be inverted, which OpenColorIO takes.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import PyOpenColorIO as OCIO
+
+from crfnet_core.errors import LutError, one_line
+from crfnet_core.types import Float64Array
+from ocio.interchange.response_file import ResponseFile, described, from_lut
+from ocio.luts.lut1d import MAX_LENGTH, strictly_increasing
+from ocio.luts.rgb_lut import lut_of_columns
+from ocio.luts.text import LutText
+
+#: What OpenColorIO calls the steps of a file that keep the channels apart.
+_PER_CHANNEL = (OCIO.Lut1DTransform, OCIO.RangeTransform)
+
+
+def read_other_lut(path: Path) -> ResponseFile:
+    """Return the response in a LUT file, whichever direction it has.
+
+    A file of a single table keeps its entries; one with a shaper before the table is sampled at 65536 uniform inputs
+    from 0 to 1. The white of a .3dl file, whose integers have no stated scale, becomes 1.
+
+    Raises
+    ------
+    LutError
+        If OpenColorIO refuses the file, it holds a 3D LUT or a matrix, or it falls somewhere.
+    """
+    LutText.read(path)  # for its own errors: absent, too large, no text
+    steps = _steps(path)
+    mixing = next((type(step).__name__ for step in steps if not isinstance(step, _PER_CHANNEL)), None)
+    if mixing or not steps:
+        what = {"Lut3DTransform": "a 3D LUT, which mixes the channels"}.get(mixing or "", mixing or "no table")
+        raise LutError(f"{path}: holds {what}; give a 1D LUT of the camera's response")
+    table = _table(steps)
+    if not np.isfinite(table).all() or (np.diff(table, axis=0) < 0).any() or (table[-1] <= table[0]).any():
+        raise LutError(f"{path}: does not increase; a LUT that can be inverted does")
+    if path.suffix.lower() == ".3dl":
+        table = table / table[-1].max()
+    flat = int((np.diff(table, axis=0) == 0).any(axis=1).sum())
+    notes = [f"{flat} steps are level in the file, and rise by the least that float32 can hold"] if flat else []
+    lut = lut_of_columns(np.stack([strictly_increasing(column) for column in table.T], axis=1))
+    return described(path, from_lut(lut, f"LUT of the format {path.suffix.lower()}"), notes)
+
+
+def _steps(path: Path) -> list[OCIO.Transform]:
+    """Return the steps of a file as OpenColorIO reads it."""
+    OCIO.ClearAllCaches()
+    transform = OCIO.FileTransform(src=str(path.absolute()), interpolation=OCIO.INTERP_LINEAR)
+    try:
+        return list(OCIO.Config.CreateRaw().getProcessor(transform).createGroupTransform())
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
+        said = one_line(problem).partition(" All formats")[0].replace(str(path.absolute()), path.name)
+        raise LutError(f"{path}: OpenColorIO reads no LUT from it ({said}); write the LUT again") from None
+
+
+def _table(steps: list[OCIO.Transform]) -> Float64Array:
+    """Return the outputs, shape (N, 3), at uniform inputs from 0 to 1."""
+    if len(steps) == 1 and not steps[0].getInputHalfDomain():
+        return np.asarray(steps[0].getData(), dtype=np.float64).reshape(-1, 3)
+    ramp = np.repeat(np.linspace(0, 1, MAX_LENGTH, dtype=np.float32), 3)
+    processor = OCIO.Config.CreateRaw().getProcessor(OCIO.GroupTransform(steps))
+    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(ramp)
+    return ramp.astype(np.float64).reshape(-1, 3)

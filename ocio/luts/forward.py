@@ -1,0 +1,94 @@
+"""The response itself as a LUT, from linear light to code values: the inverse of an inverse response."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ocio.luts.lut1d import Lut1D, strictly_increasing
+from ocio.luts.response import MOST_MEAN
+from ocio.luts.rgb_lut import AnyLut, RgbLut1D
+
+#: How the comment begins that says that a LUT is an inverse response.
+INVERSE_COMMENT = "Inverse camera response"
+
+#: Lengths of a response as a LUT: the 1023 pieces of an estimated response, as they are or each divided evenly.
+LENGTHS = (1024, 4093, 16369, 65473)
+
+#: Largest error of a response as a LUT, in codes of 10 bits; the shortest length that keeps it is taken.
+MOST_ERROR = 0.1
+
+
+def forward_lut(lut: AnyLut) -> AnyLut:
+    """Return the response, from light to code values, of a LUT of its inverse.
+
+    The inputs are uniform from the light of code 0 to that of the largest code; light beyond is clipped to these codes.
+    An estimated response is linear between 1024 samples, so 1024 entries hold it. A response that is steeper in the
+    blacks, as a power function is, needs more: the length is the first of `LENGTHS` whose `round_trip_error` at 10 bits
+    is at most `MOST_ERROR`, or the last.
+
+    Parameters
+    ----------
+    lut : Lut1D or RgbLut1D
+        The inverse response; its domain holds [0, 1].
+
+    Returns
+    -------
+    Lut1D or RgbLut1D
+        The response, with two comments of its own before those of `lut`: the direction, and the error.
+    """
+    for length in LENGTHS:
+        forward = _sampled(lut, length)
+        if round_trip_error(lut, forward, bits=10) <= MOST_ERROR:
+            break
+    errors = " and ".join(f"{round_trip_error(lut, forward, bits=bits):.2g} of {bits} bits" for bits in (8, 10))
+    comments = (
+        "Camera response: relative scene-linear irradiance in, encoded brightness out; light above white is clipped",
+        f"Gives every code back from its linear light within, in codes, {errors}",
+        *(comment for comment in lut.comments if not comment.startswith(INVERSE_COMMENT)),
+    )
+    if isinstance(forward, RgbLut1D):
+        return RgbLut1D(forward.channels, comments)
+    return Lut1D(forward.values, forward.domain, comments)
+
+
+def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
+    """Return the largest error of codes that went through an inverse response and back, in codes.
+
+    Parameters
+    ----------
+    lut, forward : Lut1D or RgbLut1D
+        The inverse response, and the response as a LUT.
+    bits : int
+        Bits of the codes, 8 to 16; the values between are float32, as in LUT hosts.
+    """
+    largest = 2**bits - 1
+    codes = np.arange(largest + 1, dtype=np.float32) / np.float32(largest)
+    errors = [
+        np.abs(back.apply(there.apply(codes)) - codes).max()
+        for there, back in zip(lut.channels, forward.channels, strict=True)
+    ]
+    return float(np.max(errors) * largest)
+
+
+def is_forward(lut: AnyLut) -> bool:
+    """Return whether a LUT brightens on average over its domain: it then leads from light to code values.
+
+    The inverses of camera responses darken: in linear light the mean is 0.5 of the range, in theirs it is less.
+    """
+    ramp = np.linspace(*lut.domain, 1024)
+    means = []
+    for channel in lut.channels:
+        first, last = channel.values[0], channel.values[-1]
+        means.append((channel.apply(ramp).mean() - first) / (last - first))
+    return bool(np.mean(means) > MOST_MEAN)
+
+
+def _sampled(lut: AnyLut, length: int) -> AnyLut:
+    """Return the inverse of a LUT at uniform inputs; the channels get one domain."""
+    ends = np.array([channel.apply(np.array([0.0, 1.0])) for channel in lut.channels])  # (1 or 3, 2)
+    domain = float(ends[:, 0].min()), float(ends[:, 1].max())
+    light = np.linspace(*domain, length)
+    tables = [
+        Lut1D(strictly_increasing(np.clip(channel.apply_inverse(light), 0, 1)), domain) for channel in lut.channels
+    ]
+    return tables[0] if len(tables) == 1 else RgbLut1D(tuple(tables))

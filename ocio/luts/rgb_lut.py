@@ -1,0 +1,100 @@
+"""A 1D LUT for each channel: what calibration from an exposure series gives, where R, G and B are measured apart."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from crfnet_core.errors import LutError
+from crfnet_core.types import Float64Array
+from ocio.luts.lut1d import Lut1D, table_identity
+
+
+@dataclass(frozen=True)
+class RgbLut1D:
+    """Three tables of one length and one domain, for R, G and B.
+
+    Parameters
+    ----------
+    channels : tuple of Lut1D
+        Three, in the order R, G, B; their own comments are dropped.
+    comments : tuple of str
+        Provenance, one line each.
+
+    Raises
+    ------
+    LutError
+        If there are not three, or they differ in length or domain.
+    """
+
+    channels: tuple[Lut1D, ...]
+    comments: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        shapes = {(channel.values.size, channel.domain) for channel in self.channels}
+        if len(self.channels) != 3 or len(shapes) != 1:
+            raise LutError("a LUT of R, G and B needs three tables of one length and one domain")
+        object.__setattr__(self, "comments", replace(self.channels[0], comments=self.comments).comments)
+        object.__setattr__(self, "channels", tuple(replace(channel, comments=()) for channel in self.channels))
+
+    @property
+    def domain(self) -> tuple[float, float]:
+        """The first and the last input."""
+        return self.channels[0].domain
+
+    @property
+    def values(self) -> Float64Array:
+        """The outputs, shape (N, 3)."""
+        return np.stack([channel.values for channel in self.channels], axis=1)
+
+    @property
+    def identity(self) -> str:
+        """A name that depends on nothing but the tables and their domain: see `Lut1D.identity`."""
+        return table_identity(self.domain, self.values)
+
+    def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
+        """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
+        return self._by_channel([channel.apply for channel in self.channels], pixels)
+
+    def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
+        """Return the input of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply_inverse`."""
+        return self._by_channel([channel.apply_inverse for channel in self.channels], pixels)
+
+    @staticmethod
+    def _by_channel(steps: Sequence[Callable[..., NDArray[np.floating]]], pixels: ArrayLike) -> NDArray[np.floating]:
+        """Return pixels, each channel through a step of its own."""
+        given = np.asarray(pixels)
+        return np.stack([step(given[..., channel]) for channel, step in enumerate(steps)], axis=-1)
+
+
+#: A LUT for all channels, or one for each.
+AnyLut: TypeAlias = Lut1D | RgbLut1D
+
+
+def lut_of_columns(
+    columns: ArrayLike, *, domain: tuple[float, float] = (0.0, 1.0), comments: Sequence[str] = ()
+) -> AnyLut:
+    """Return the LUT of a table: one for all channels if its columns are equal, else one for each.
+
+    Parameters
+    ----------
+    columns : array_like, shape (N, 1) or (N, 3)
+        Outputs at N uniform inputs; R, G and B.
+    domain : tuple of float
+        The first and the last input.
+    comments : sequence of str
+        Provenance.
+
+    Raises
+    ------
+    LutError
+        As `Lut1D`.
+    """
+    table = np.asarray(columns, dtype=np.float64)
+    if (table == table[:, :1]).all():
+        return Lut1D(table[:, 0], domain, tuple(comments))
+    return RgbLut1D(tuple(Lut1D(column, domain) for column in table.T), tuple(comments))

@@ -1,0 +1,160 @@
+"""The response as a LUT, and LUTs with a table for each channel; OpenColorIO and ffmpeg judge both."""
+
+import shutil
+import subprocess
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet_core.errors import LutError
+from crfnet_core.posterior.responses import ResponseBank
+from crfnet_core.response import ResponseCurve
+from ocio.luts.files import read_lut, write_lut
+from ocio.luts.forward import LENGTHS, forward_lut, is_forward, round_trip_error
+from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from ocio.luts.response import response_of_lut
+from ocio.luts.rgb_lut import RgbLut1D, lut_of_columns
+
+SUFFIXES = (".spi1d", ".cube", ".clf")
+POWERS = (2.2, 1.8, 2.0)
+
+
+def through_opencolorio(path, pixels, direction=OCIO.TRANSFORM_DIR_FORWARD):
+    OCIO.ClearAllCaches()
+    transform = OCIO.FileTransform(src=str(path), direction=direction)
+    values = np.array(pixels, dtype=np.float32)
+    processor = OCIO.Config.CreateRaw().getProcessor(transform)
+    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB(values)
+    return values
+
+
+@pytest.fixture(scope="module")
+def rgb_lut():
+    return RgbLut1D(tuple(inverse_response_lut(ResponseCurve.gamma(power)) for power in POWERS), ("three",))
+
+
+class TestForward:
+    @pytest.mark.parametrize("suffix", SUFFIXES)
+    @pytest.mark.parametrize("bits", [8, 10])
+    def test_gives_every_code_back_in_opencolorio(self, tmp_path, suffix, bits, true_response):
+        lut = inverse_response_lut(true_response)
+        write_lut(tmp_path / f"a{suffix}", lut)
+        write_lut(tmp_path / f"b{suffix}", forward_lut(lut))
+        codes = np.repeat(np.arange(2**bits)[:, None] / (2**bits - 1), 3, axis=1)
+        back = through_opencolorio(tmp_path / f"b{suffix}", through_opencolorio(tmp_path / f"a{suffix}", codes))
+        error = np.abs(back - codes).max() * (2**bits - 1)
+        assert error < 0.1
+        assert error == pytest.approx(round_trip_error(lut, forward_lut(lut), bits=bits), abs=1e-3)
+
+    def test_1024_entries_hold_nearly_all_responses_of_the_bank(self):
+        lengths = []
+        for brightness in ResponseBank.load().brightness[::38]:
+            lut = inverse_response_lut(ResponseCurve.from_samples(brightness))
+            forward = forward_lut(lut)
+            lengths.append(len(forward.values))
+            assert round_trip_error(lut, forward, bits=8) < 0.05
+            assert round_trip_error(lut, forward, bits=10) <= 0.1
+        assert lengths.count(1024) >= 45  # of 50
+
+    def test_a_power_function_takes_more_and_says_its_error(self):
+        lut = Lut1D(strictly_increasing(np.linspace(0, 1, 4096) ** 2.2))
+        forward = forward_lut(lut)
+        assert len(forward.values) == LENGTHS[-1]
+        errors = [round_trip_error(lut, forward, bits=bits) for bits in (8, 10)]
+        assert errors[0] < 0.5 < errors[1]
+        assert f"in codes, {errors[0]:.2g} of 8 bits and {errors[1]:.2g} of 10 bits" in forward.comments[1]
+
+    def test_light_above_white_is_clipped(self, true_response):
+        forward = forward_lut(inverse_response_lut(true_response))
+        assert forward.apply(np.array([-1.0, 0.0, 1.0, 7.0])).tolist() == [0, 0, 1, 1]
+
+    def test_its_domain_is_the_light_of_the_codes(self, true_response):
+        brighter = Lut1D(inverse_response_lut(true_response).values * 4)
+        forward = forward_lut(brighter)
+        assert forward.domain == (0, 4)
+        assert round_trip_error(brighter, forward, bits=10) < 0.1
+        extended = inverse_response_lut(true_response, length=5101, domain=(-0.125, 1.125))
+        assert forward_lut(extended).domain == (0, 1)
+
+    def test_it_says_its_direction_and_not_the_other(self, true_response):
+        lut = inverse_response_lut(
+            true_response, comments=("Inverse camera response: encoded in", "Photographs: a.jpg")
+        )
+        direction, _, photographs = forward_lut(lut).comments
+        assert direction.startswith("Camera response: relative scene-linear irradiance in")
+        assert photographs == "Photographs: a.jpg"
+
+    def test_directions_are_told_apart(self, true_response, rgb_lut):
+        for lut in (inverse_response_lut(true_response), rgb_lut):
+            assert not is_forward(lut)
+            assert is_forward(forward_lut(lut))
+
+
+class TestRgbLut:
+    @pytest.mark.parametrize("suffix", SUFFIXES)
+    def test_opencolorio_agrees_in_both_directions(self, tmp_path, suffix, rgb_lut, tolerance):
+        write_lut(tmp_path / f"a{suffix}", rgb_lut)
+        assert read_lut(tmp_path / f"a{suffix}") == rgb_lut
+        pixels = np.random.default_rng(2).random((500, 3))
+        assert (
+            np.abs(through_opencolorio(tmp_path / f"a{suffix}", pixels) - rgb_lut.apply(pixels)).max() < tolerance.lut
+        )
+        back = through_opencolorio(tmp_path / f"a{suffix}", pixels, OCIO.TRANSFORM_DIR_INVERSE)
+        assert np.abs(back - rgb_lut.apply_inverse(pixels)).max() < tolerance.lut
+
+    def test_each_channel_has_its_forward_table(self, rgb_lut):
+        forward = forward_lut(rgb_lut)
+        assert [channel.domain for channel in forward.channels] == [(0, 1)] * 3
+        assert round_trip_error(rgb_lut, forward, bits=10) < 0.1
+
+    def test_equal_columns_are_one_table(self):
+        assert lut_of_columns([[0, 0, 0], [1, 1, 1]]) == Lut1D([0, 1])
+
+    def test_tables_that_differ_in_shape_are_refused(self, rgb_lut):
+        for channels in ((Lut1D([0, 1]), Lut1D([0, 1])), (Lut1D([0, 1]), Lut1D([0, 1]), Lut1D([0, 0.5, 1]))):
+            with pytest.raises(LutError, match="three tables of one length and one domain"):
+                RgbLut1D(channels)
+        with pytest.raises(LutError, match="treats R, G and B apart"):
+            response_of_lut(rgb_lut)
+
+
+class TestFfmpeg:
+    """ffmpeg's lut1d reads our .cube: exact in float, cut down to the code below in integers."""
+
+    def through_ffmpeg(self, path, values, pixel_format):
+        if shutil.which("ffmpeg") is None:
+            pytest.skip("needs ffmpeg")
+        raw = ["-f", "rawvideo", "-pix_fmt", pixel_format]
+        command = ["ffmpeg", "-v", "error", *raw, "-s", f"{values.size // 3}x1", "-i", "-"]
+        command += ["-vf", f"lut1d=file={path.name}", *raw, "-"]
+        done = subprocess.run(command, cwd=path.parent, input=values.tobytes(), capture_output=True, check=True)
+        return np.frombuffer(done.stdout, dtype=values.dtype).reshape(values.shape)
+
+    @pytest.mark.parametrize("is_forward_lut", [False, True])
+    def test_in_float(self, tmp_path, true_response, is_forward_lut, tolerance):
+        lut = inverse_response_lut(true_response)
+        lut = forward_lut(lut) if is_forward_lut else lut
+        write_lut(tmp_path / "a.cube", lut)
+        planes = np.tile(np.linspace(0, 1, 4096, dtype="<f4"), (3, 1))  # G, B, R
+        assert (
+            np.abs(self.through_ffmpeg(tmp_path / "a.cube", planes, "gbrpf32le") - lut.apply(planes)).max()
+            < tolerance.lut
+        )
+
+    def test_in_float_for_each_channel(self, tmp_path, rgb_lut, tolerance):
+        write_lut(tmp_path / "a.cube", rgb_lut)
+        pixels = np.random.default_rng(3).random((4096, 3), dtype=np.float32)
+        planes = np.ascontiguousarray(pixels.T[[1, 2, 0]])  # G, B, R
+        found = self.through_ffmpeg(tmp_path / "a.cube", planes, "gbrpf32le")[[2, 0, 1]].T
+        assert np.abs(found - rgb_lut.apply(pixels)).max() < tolerance.lut
+
+    @pytest.mark.parametrize(("bits", "pixel_format", "kind"), [(8, "rgb24", "u1"), (16, "rgb48le", "<u2")])
+    def test_in_integers(self, tmp_path, true_response, bits, pixel_format, kind):
+        lut, most = inverse_response_lut(true_response), 2**bits - 1
+        write_lut(tmp_path / "a.cube", lut)
+        codes = np.repeat(np.linspace(0, most, 4096).astype(kind)[:, None], 3, axis=1)
+        expected = lut.apply(codes / most) * most
+        error = self.through_ffmpeg(tmp_path / "a.cube", codes, pixel_format) - expected
+        assert error.max() < 0.05
+        assert error.min() > -1.01
