@@ -129,7 +129,7 @@ def _encoded(
     grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
     channels = [split.outputs[name] for name in CHANNELS]
     if matrix is not None:
-        channels = multiply_by_matrix(grid, channels, np.linalg.inv(matrix), 2)
+        channels = multiply_by_matrix(grid, channels, np.asarray(np.linalg.inv(matrix), float), 2)
     for row, (channel, light_in_it) in enumerate(zip(CHANNELS, channels, strict=True)):
         clipped = math_node(grid, "ADD", 5, row, light_in_it, 0)
         clipped.node.use_clamp = True
