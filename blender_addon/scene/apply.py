@@ -30,6 +30,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
         node_group.check_config()
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
+    stored_estimate.set_primaries(datablock, completed.primaries)
     if job.estimation.stored is None:
         stored_estimate.set_entry(datablock, stored_estimate.FILE_STATE, job.plate.file_state)
     if job.estimation.origin:

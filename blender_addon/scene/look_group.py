@@ -15,9 +15,12 @@ import numpy as np
 from crfnet_core import ResponseCurve
 from crfnet_core.errors import ConfigError
 from crfnet_core.response import SAMPLES
+from crfnet_core.types import Float64Array
 
+from . import stored_estimate
 from .color_management import color_spaces, data_space
 from .node_building import (
+    CHANNELS,
     GAP,
     WIDTH,
     NodeGrid,
@@ -27,6 +30,7 @@ from .node_building import (
     map_uv,
     math_node,
     multiply_by_alpha,
+    multiply_by_matrix,
 )
 from .node_group import linear_rec709, made_for, new_group, working_space
 from .node_links import compositor_trees, is_group_of
@@ -103,22 +107,31 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     light = grid.node("CompositorNodeExposure", 3)
     grid.link(convert_color_space(grid, working, linear, straight, 2), light.inputs["Image"])
     grid.link(math_node(grid, "MULTIPLY", 2, 1, start.outputs["Exposure"], -1), light.inputs["Exposure"])
-    codes = _encoded(grid, light.outputs[0], _response_image(plate, f".{group.name} Response", curve))
+    response = _response_image(plate, f".{group.name} Response", curve)
+    codes = _encoded(grid, light.outputs[0], stored_estimate.matrix(plate), response)
     grid.link(multiply_by_alpha(grid, codes, 14), end.inputs[CODE_VALUES])
     shown = convert_color_space(grid, srgb, working, codes, 13)
     grid.link(multiply_by_alpha(grid, shown, 14), end.inputs["Image"])
     return group
 
 
-def _encoded(grid: NodeGrid, light: bpy.types.NodeSocket, response: bpy.types.Image) -> bpy.types.NodeSocket:
-    """Return the socket of the code values of light, clipped to [0, 1] as by the camera."""
+def _encoded(
+    grid: NodeGrid, light: bpy.types.NodeSocket, matrix: Float64Array | None, response: bpy.types.Image
+) -> bpy.types.NodeSocket:
+    """Return the socket of the code values of light in linear Rec.709, clipped to [0, 1] as by the camera.
+
+    The matrix leads from the plate's primaries to Rec.709; here, its inverse leads back.
+    """
     table = grid.node("CompositorNodeImage", 8, row=-1)
     table.image = response
     split, join = grid.node("CompositorNodeSeparateColor", 4), grid.node("CompositorNodeCombineColor", 12)
     grid.link(light, split.inputs[0])
     grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
-    for row, channel in enumerate(("Red", "Green", "Blue")):
-        clipped = math_node(grid, "ADD", 5, row, split.outputs[channel], 0)
+    channels = [split.outputs[name] for name in CHANNELS]
+    if matrix is not None:
+        channels = multiply_by_matrix(grid, channels, np.asarray(np.linalg.inv(matrix), float), 2)
+    for row, (channel, light_in_it) in enumerate(zip(CHANNELS, channels, strict=True)):
+        clipped = math_node(grid, "ADD", 5, row, light_in_it, 0)
         clipped.node.use_clamp = True
         position = math_node(grid, "MULTIPLY", 6, row, clipped, SAMPLES - 1)
         sample = math_node(grid, "FLOOR", 7, row, position)

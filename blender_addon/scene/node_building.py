@@ -3,7 +3,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
 import bpy
+
+if TYPE_CHECKING:
+    from crfnet_core.types import Float64Array
 
 #: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
@@ -15,6 +21,9 @@ GAP, WIDTH = 60, 220
 _MATH, _COMBINE = (
     ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
 )
+
+#: The sockets of the nodes that separate and combine colours.
+CHANNELS = ("Red", "Green", "Blue")
 
 #: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
 _COLUMN, _ROW = 190, -230
@@ -47,6 +56,21 @@ def math_node(
     for place, number in enumerate(numbers, 1):
         node.inputs[place].default_value = number
     return node.outputs[0]
+
+
+def multiply_by_matrix(
+    grid: NodeGrid, channels: Sequence[bpy.types.NodeSocket], matrix: Float64Array, column: float
+) -> list[bpy.types.NodeSocket]:
+    """Return the sockets of red, green and blue that are multiplied by a matrix, shape (3, 3)."""
+    products = []
+    for row, factors in enumerate(matrix.tolist()):
+        total = math_node(grid, "MULTIPLY", column, row, channels[0], factors[0])
+        for place in (1, 2):
+            added = math_node(grid, "MULTIPLY_ADD", column + place, row, channels[place], factors[place])
+            grid.link(total, added.node.inputs[2])
+            total = added
+        products.append(total)
+    return products
 
 
 def combine_node(grid: NodeGrid, column: float, row: float) -> bpy.types.Node:

@@ -17,14 +17,17 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core import ResponseCurve
 from crfnet_core.errors import ConfigError
+from crfnet_core.types import Float64Array
 from ocio.configs.files import role_name
 from ocio.configs.plate_color_space import LINEAR_REC709
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.output_files import distinct_names
 
+from . import stored_estimate
 from .color_management import color_spaces, data_space, running_config
 from .node_building import (
+    CHANNELS,
     IS_BLENDER_5,
     NodeGrid,
     combine_node,
@@ -32,14 +35,13 @@ from .node_building import (
     map_uv,
     math_node,
     multiply_by_alpha,
+    multiply_by_matrix,
 )
 from .node_links import PLATE
 from .plates import Datablock
 
 #: Width and height of the LUT image.
 SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
-
-_CHANNELS = ("Red", "Green", "Blue")
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
@@ -68,7 +70,7 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
     group.nodes.clear()
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
-    _add_nodes(group, _lut_image(plate, f".{group.name} LUT", curve), source)
+    _add_nodes(group, _lut_image(plate, f".{group.name} LUT", curve), source, stored_estimate.matrix(plate))
     return group
 
 
@@ -142,8 +144,10 @@ def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.I
     return image
 
 
-def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> None:
+def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str, matrix: Float64Array | None) -> None:
     """Add the nodes: a look-up for each channel, exposure, multiplication by alpha, conversion to the working space.
+
+    A matrix comes behind the look-ups if the plate has other primaries than Rec.709.
 
     The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored.
     """
@@ -153,17 +157,21 @@ def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str) -> 
     table.image = lut
     split = grid.node("CompositorNodeSeparateColor", 1)
     grid.link(start.outputs["Image"], split.inputs[0])
-    join = grid.node("CompositorNodeCombineColor", 6)
+    positions = [_position(grid, split.outputs[channel], row) for row, channel in enumerate(CHANNELS)]
+    light = [_look_up(grid, table.outputs["Image"], position, row) for row, position in enumerate(positions)]
+    after = 5
+    if matrix is not None:
+        light, after = multiply_by_matrix(grid, light, matrix, 6), 8
+    join = grid.node("CompositorNodeCombineColor", after + 1)
     grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
-    for row, channel in enumerate(_CHANNELS):
-        position = _position(grid, split.outputs[channel], row)
-        grid.link(_look_up(grid, table.outputs["Image"], position, row), join.inputs[channel])
-    exposed = grid.node("CompositorNodeExposure", 7)
+    for channel, socket in zip(CHANNELS, light, strict=True):
+        grid.link(socket, join.inputs[channel])
+    exposed = grid.node("CompositorNodeExposure", after + 2)
     grid.link(join.outputs[0], exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
-    premultiplied = multiply_by_alpha(grid, exposed.outputs[0], 8)  # before the conversion, which is a matrix: faster
-    end = grid.node("NodeGroupOutput", 10)
-    grid.link(convert_color_space(grid, source, working_space(), premultiplied, 9), end.inputs["Image"])
+    premultiplied = multiply_by_alpha(grid, exposed.outputs[0], after + 3)  # before the conversion: faster
+    end = grid.node("NodeGroupOutput", after + 5)
+    grid.link(convert_color_space(grid, source, working_space(), premultiplied, after + 4), end.inputs["Image"])
 
 
 def _look_up(

@@ -6,6 +6,8 @@ What the panel draws is read here without importing the estimator.
 
 from __future__ import annotations
 
+import dataclasses
+import json
 import math
 from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
@@ -17,6 +19,7 @@ from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
+    from crfnet_core.metadata.color_tags import Primaries
     from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
     from .plates import Datablock
@@ -37,6 +40,9 @@ ORIGIN = "origin"
 #: The entry with the state of the plate's file that was analysed, see `plates.file_state`; and how far the times of a
 #: file and its copy may differ, in seconds, because archives and some file systems round them.
 FILE_STATE, _SAME_TIME = "file_state", 2
+
+#: The entry with the primaries of the plate, in JSON: the fields of `crfnet_core.metadata.color_tags.Primaries`.
+PRIMARIES = "primaries"
 
 #: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
 #: drawn without the estimator.
@@ -167,6 +173,26 @@ def is_file_changed(datablock: Datablock, state: str) -> bool:
     *file, time = earlier.split("\n")
     *present_file, present_time = state.split("\n")
     return file != present_file or abs(int(time) - int(present_time)) > _SAME_TIME
+
+
+def matrix(datablock: Datablock) -> Float64Array | None:
+    """Return the matrix from a plate's linear RGB to linear Rec.709, shape (3, 3); None if they are the same."""
+    tags, found = lazy_import.load("crfnet_core.metadata.color_tags"), primaries(datablock)
+    return None if found in (None, tags.REC709) else tags.conversion_matrix(found, tags.REC709)
+
+
+def primaries(datablock: Datablock) -> Primaries | None:
+    """Return the primaries of a plate; None if they are not stored, as with estimates of earlier versions."""
+    text = datablock[KEY].get(PRIMARIES) if is_stored(datablock) else None
+    if text is None:
+        return None
+    fields = {name: tuple(value) if isinstance(value, list) else value for name, value in json.loads(text).items()}
+    return lazy_import.load("crfnet_core.metadata.color_tags").Primaries(**fields)
+
+
+def set_primaries(datablock: Datablock, found: Primaries) -> None:
+    """Keep the primaries of a plate with an estimate."""
+    set_entry(datablock, PRIMARIES, json.dumps(dataclasses.asdict(found)))
 
 
 def pending_color_space(datablock: Datablock | None) -> str:

@@ -13,6 +13,7 @@ from ocio.options import EstimateOptions
 
 from ..scene import color_management, node_group, plates
 from ..scene.stored_estimate import origin, restored
+from ..scene.stored_estimate import primaries as stored_primaries
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
 from .plate_settings import CHOICES
@@ -66,6 +67,7 @@ def gather_job(
             is_forced=chosen["force"],
             stored=restored(datablock) if is_estimated else None,
             photographs=() if is_estimated else _photographs(datablock),
+            primaries=stored_primaries(datablock),
             origin=origin(datablock) if is_estimated else "",
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),

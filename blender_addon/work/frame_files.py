@@ -13,8 +13,11 @@ from typing import TypeAlias
 
 import OpenImageIO as oiio
 
+from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
+from ocio.plates.frame_files import read_frame
 from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.primaries import plate_primaries
 
 from .decoding import running_decoder
 from .errors import AddonError
@@ -39,6 +42,24 @@ def frames_of(plate: Plate) -> FrameSequence:
         return find_frames(plate.file)
     numbers = tuple(range(1, count + 1))
     return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
+
+
+def primaries_of(plate: Plate, sequence: FrameSequence) -> Primaries:
+    """Return the primaries that a plate is encoded in, as `bake_plates` takes them.
+
+    They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
+    primaries can express, and for what Blender decodes.
+
+    Raises
+    ------
+    CRFNetError, AddonError
+        If the file cannot be read, or no temporary file can be written.
+    """
+    if plate.decoder is not None:
+        return REC709
+    with frame_reader(plate) as read:
+        (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1]), None).paths
+        return plate_primaries(read_frame(path).color).primaries or REC709
 
 
 def sample(sequence: FrameSequence) -> FrameSequence:

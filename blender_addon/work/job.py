@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
+    from crfnet_core.metadata.color_tags import Primaries
     from crfnet_core.types import Uint8Array
     from ocio.options import EstimateOptions
 
@@ -168,6 +169,8 @@ class Estimation:
         An earlier estimate, which is used instead of a new one.
     photographs : tuple of Plate
         Further photographs of the same camera with the same settings, which share the response.
+    primaries : Primaries or None
+        Those of the plate that are stored with the estimate, for when its files are not found.
     origin : str
         Where `stored` comes from, in words; empty if it was estimated from the plate.
     """
@@ -176,6 +179,7 @@ class Estimation:
     is_forced: bool
     stored: ResponseEstimate | None = None
     photographs: tuple[Plate, ...] = ()
+    primaries: Primaries | None = None
     origin: str = ""
 
 

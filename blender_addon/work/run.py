@@ -9,6 +9,7 @@ from functools import cache, lru_cache, partial
 
 from crfnet_core import ResponseEstimate
 from crfnet_core.errors import CRFNetError
+from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
@@ -26,7 +27,7 @@ from ocio.report import verdict_lines
 from . import writers
 from .encoding_check import check_is_encoded
 from .errors import AddonError, CancelledError
-from .frame_files import frames_of, sampled_files
+from .frame_files import frames_of, primaries_of, sampled_files
 from .job import Anchor, ApplyMode, Job
 from .target_check import check_targets
 from .wording import is_loaded, loaded_line, panel_line
@@ -54,6 +55,8 @@ class CompletedJob:
         The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
     files : Baked, Exported, Installed or None
         What was written; None for nodes, which need no file, and if the response is not applied.
+    primaries : Primaries
+        Those that the plate is encoded in.
     problem : AddonError, CRFNetError or None
         Why the response could be estimated, but not applied.
     """
@@ -63,6 +66,7 @@ class CompletedJob:
     stops: float
     frames: tuple[int, ...]
     files: writers.Written | None
+    primaries: Primaries = REC709
     problem: AddonError | CRFNetError | None = None
 
     @property
@@ -109,30 +113,45 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
+    primaries = _primaries(job, sequence)
     try:
-        return _completed(job, estimate, sequence, progress)
+        return _completed(job, estimate, primaries, sequence, progress)
     except CancelledError:
         raise
     except (AddonError, CRFNetError) as problem:
         if job.estimation.stored is not None:
             raise
-        return CompletedJob(job, estimate, job.exposure.stops, (), None, problem)
+        return CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, problem)
+
+
+def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
+    """Return the primaries of a plate; those that are stored where the files of a stored estimate are not found."""
+    try:
+        return primaries_of(job.plate, sequence())
+    except CRFNetError:
+        if job.estimation.stored is None:
+            raise
+        return job.estimation.primaries or REC709
 
 
 def _completed(
-    job: Job, estimate: ResponseEstimate, sequence: Callable[[], FrameSequence], progress: Progress | None
+    job: Job,
+    estimate: ResponseEstimate,
+    primaries: Primaries,
+    sequence: Callable[[], FrameSequence],
+    progress: Progress | None,
 ) -> CompletedJob:
     """Return the job with its estimate, after writing its files."""
     gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
     stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
-    completed = CompletedJob(job, estimate, stops, (), None)
+    completed = CompletedJob(job, estimate, stops, (), None, primaries)
     if not completed.is_applied:
         return completed
     shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
         lut = _lut(estimate, job.output.lut_length)
-        files = writers.write(job, lut, stops, sequence, progress)
+        files = writers.write(job, lut, stops, sequence, progress, primaries=primaries)
     return replace(completed, frames=sequence().numbers if shows_frames else (), files=files)
 
 

@@ -5,9 +5,10 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
+from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
@@ -59,6 +60,8 @@ def write(
     stops: float,
     sequence: Callable[[], FrameSequence],
     progress: Progress | None = None,
+    *,
+    primaries: Primaries = REC709,
 ) -> Written:
     """Write the files of a job.
 
@@ -74,6 +77,8 @@ def write(
         Returns the frames of the plate; called only if they are written.
     progress : callable or None
         Called with (done, total) after every frame; what it raises ends the job.
+    primaries : Primaries
+        Those that the plate is encoded in, for its colour space; a bake goes by the tags of each frame.
 
     Raises
     ------
@@ -83,7 +88,9 @@ def write(
     """
     if job.output.mode is ApplyMode.BAKE:
         return bake(job, lut, stops, sequence(), progress)
-    return export(job, lut, stops) if job.output.mode is ApplyMode.EXPORT else install_color_space(job, lut, stops)
+    if job.output.mode is ApplyMode.EXPORT:
+        return export(job, lut, stops, primaries)
+    return install_color_space(job, lut, stops, primaries)
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
@@ -117,18 +124,18 @@ def _bake_decoded(
         progress(len(targets), len(targets))
 
 
-def export(job: Job, lut: Lut1D, stops: float) -> Exported:
+def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:
     """Write the LUT in three formats, and a portable config with the plate's colour space."""
     folder = _folder(job)
     files = output_files(job.plate, folder)
-    space = color_space(job.plate, files, stops)
+    space = color_space(job.plate, files, stops, primaries)
     return Exported(folder, export_luts(files, space, lut, overwrite=job.output.overwrite))
 
 
-def install_color_space(job: Job, lut: Lut1D, stops: float) -> Installed:
+def install_color_space(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Installed:
     """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
     folder = _folder(job)
-    space = color_space(job.plate, output_files(job.plate, folder), stops)
+    space = color_space(job.plate, output_files(job.plate, folder), stops, primaries)
     hint = job.plate.folder.name if job.plate.folder else ""
     return install(folder, job.config.path, space, lut, plate=identity(job.plate), hint=hint)
 
@@ -146,9 +153,10 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
     return OutputFiles.named(folder, [_photo(plate)], has_sheet=False)
 
 
-def color_space(plate: Plate, files: OutputFiles, stops: float) -> PlateColorSpace:
+def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:
     """Return the plate's colour space, with a file rule for all its files, which an installed config leaves out."""
-    return files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
+    space = files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
+    return replace(space, primaries=primaries)
 
 
 def baked_name(plate: Plate) -> str:

@@ -12,8 +12,10 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet_core.errors import CRFNetError, ModelError, PlateError, PriorError
+from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Verdict
+from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import write_image
 
 
@@ -94,6 +96,18 @@ def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, m
     assert isinstance(completed.files, writers.Exported)
 
 
+def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, tmp_path, codes, estimate, monkeypatch):
+    monkeypatch.setattr(run_module, "estimate_plate", None)
+    path = write_tagged(tmp_path / "p3.png", codes, matrix_profile(DISPLAY_P3))
+    stored = estimate(path)
+    job = make_job(path, mode=ApplyMode.EXPORT, stored=stored, overwrite=True)
+    assert run(job).primaries == DISPLAY_P3
+    path.unlink()
+    assert run(job).primaries == REC709
+    kept = dataclasses.replace(job, estimation=dataclasses.replace(job.estimation, primaries=DISPLAY_P3))
+    assert run(kept).primaries == DISPLAY_P3
+
+
 def test_the_network_is_loaded_once(make_job, calls):
     loads = calls(ResponseNetwork, "load")
     run_module._load_network.cache_clear()
@@ -145,7 +159,7 @@ def test_a_missing_folder_is_told_before_the_estimate(make_job, calls):
 
 @pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT, ApplyMode.COLORSPACE])
 def test_the_estimate_is_kept_if_its_files_cannot_be_written(make_job, plate_file, estimate, monkeypatch, mode):
-    def refuse(*_arguments):
+    def refuse(*_arguments, **_options):
         raise PlateError("the disk is full")
 
     monkeypatch.setattr(writers, "write", refuse)

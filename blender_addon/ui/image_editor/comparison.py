@@ -20,7 +20,7 @@ from ...work.errors import AddonError
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
-    from crfnet_core.types import Float32Array
+    from crfnet_core.types import Float32Array, Float64Array
 
 #: The name of these images; a leading dot hides them in menus.
 _NAME = ".Camera Response Linear"
@@ -104,7 +104,9 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     return pixels if image.channels >= 3 else pixels[..., :1].repeat(3, axis=2)
 
 
-def linear_pixels(codes: Float32Array, curve: ResponseCurve, stops: float) -> Float32Array:
+def linear_pixels(
+    codes: Float32Array, curve: ResponseCurve, stops: float, matrix: Float64Array | None = None
+) -> Float32Array:
     """Return the linear plate of code values.
 
     Parameters
@@ -115,6 +117,8 @@ def linear_pixels(codes: Float32Array, curve: ResponseCurve, stops: float) -> Fl
         The plate's response.
     stops : float
         Stops added after the inverse response.
+    matrix : ndarray, float64, shape (3, 3), or None
+        From the plate's linear RGB to linear Rec.709; None if they are the same.
 
     Returns
     -------
@@ -127,6 +131,8 @@ def linear_pixels(codes: Float32Array, curve: ResponseCurve, stops: float) -> Fl
         rows = slice(start, start + _ROWS)
         index = (codes[rows] * _LARGEST + 0.5).astype(np.uint16)  # with alpha, too: one run of memory is faster
         linear[rows, :, :3] = np.take(table, index)[..., :3]
+        if matrix is not None:
+            linear[rows, :, :3] = linear[rows, :, :3] @ matrix.T
         linear[rows, :, 3:] = codes[rows, :, 3:] if codes.shape[2] == 4 else 1
         if linear[rows, :, 3].min() < 1:
             linear[rows, :, :3] *= linear[rows, :, 3:]

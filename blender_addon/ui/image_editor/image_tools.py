@@ -164,7 +164,8 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
     gray = settings.gray if settings.anchor == "GRAY" else None
     stops = lazy_import.load("ocio.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
-    return comparison.linear_pixels(comparison.code_values(space.image, space.image_user), curve, stops)
+    codes = comparison.code_values(space.image, space.image_user)
+    return comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

@@ -8,7 +8,7 @@ import bpy
 
 from ... import lazy_import
 from ...scene import plates, stored_estimate
-from ...work.errors import AddonError, expected_errors
+from ...work.errors import expected_errors
 from ...work.wording import LOADED, loaded_line
 from .. import running
 from ..image_editor import comparison
@@ -48,8 +48,8 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         """Store the response on the plate."""
         try:
             plate = self.chosen_plate(context)
-            if problem := plates.obstacle(plate):
-                raise AddonError(problem)
+            files, frame_files = plates.plate_of(plate), lazy_import.load(".work.frame_files")
+            primaries = frame_files.primaries_of(files, frame_files.frames_of(files))
             path = Path(bpy.path.abspath(self.filepath))
             lut = lazy_import.load("ocio.luts.files").read_lut(path)
             curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)
@@ -60,6 +60,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         comparison.end_all()
         stored_estimate.store(plate, loaded, lines=[loaded_line(model)])
         stored_estimate.set_entry(plate, stored_estimate.ORIGIN, f"Loaded from {path.name}")
+        stored_estimate.set_primaries(plate, primaries)
         running.redraw_editors(context.window_manager)
         self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
         return {"FINISHED"}

@@ -52,6 +52,19 @@ def stored(name: str) -> dict[str, Any] | None:
     return None if entries is None else entries.to_dict()
 
 
+def window_sides(name: str) -> list[list[float]]:
+    """Return where the middle of the left side of each analysed window that agrees with the others is on the screen."""
+    image, region = bpy.data.images[name], editors.region("IMAGE_EDITOR", "WINDOW")
+    places, agrees = image[KEY]["window_places"], image[KEY]["window_kept"]
+    found = []
+    for index in (index for index, kept in enumerate(agrees) if kept):
+        x, y, step, _ = places[4 * index : 4 * index + 4]
+        middle = y + (226 * step + 1) / 2
+        view = region.view2d.view_to_region(x / image.size[0], 1 - middle / image.size[1], clip=False)
+        found.append([region.x + view[0], editors.window().height - region.y - view[1]])
+    return found
+
+
 def state() -> dict[str, Any]:
     """Return what a run could change: images with their color spaces and estimates, groups, nodes and links."""
     trees = [*bpy.data.node_groups, *(s.node_tree for s in bpy.data.scenes if getattr(s, "node_tree", None))]
