@@ -228,3 +228,6 @@ class TestConfig:
         assert found["primaries"]["green"] == [0.265, 0.69]
         assert found["output_space"] == {"name": "linear Rec.709", "interop_id": "lin_rec709_scene"}
         assert "primaries Display P3 (ICC profile)" in (look / "config.ocio").read_text(encoding="utf-8")
+        for suffix in ("spi1d", "cube", "clf"):
+            comments = read_lut(look / f"shot.{suffix}").comments
+            assert comments[-1] == "Primaries: Display P3 (ICC profile); the LUT leaves them as they are"
