@@ -36,6 +36,11 @@ class Primaries:
     white: Chromaticity = D65
     interop_id: str = ""
 
+    @property
+    def corners(self) -> Float64Array:
+        """The x and y of red, green, blue and white, shape (4, 2)."""
+        return np.array([self.red, self.green, self.blue, self.white])
+
     def to_xyz(self) -> Float64Array:
         """Return the matrix from linear RGB to CIE XYZ under its own white, shape (3, 3) (Eq. 35 of docs/METHOD.md)."""
         return rgb_to_xyz(self.red, self.green, self.blue, self.white)

@@ -1,4 +1,4 @@
-"""The colour tags in an image file's header: ICC profile, CICP and EXIF, the most telling first."""
+"""The colour tags in an image file's header: ICC profile, CICP, EXIF and OpenEXR's, the most telling first."""
 
 from __future__ import annotations
 
@@ -10,7 +10,10 @@ import numpy as np
 from crfnet_core.colorimetry import Chromaticity
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
+    AP0,
+    AP1,
     DISPLAY_P3,
+    PHOTOGRAPHIC,
     REC709,
     REC2020,
     ColorTags,
@@ -47,6 +50,22 @@ EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 #: InteroperabilityIndex of DCF 2.0: of a basic file, and of an option file, which is in Adobe RGB.
 DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 
+#: The part of a Color Interop Forum name, such as "srgb_p3d65_scene", that stands for the primaries.
+INTEROP_PRIMARIES = {
+    "rec709": REC709,
+    "p3d65": DISPLAY_P3,
+    "adobergb": ADOBE_RGB,
+    "rec2020": REC2020,
+    "ap0": AP0,
+    "ap1": AP1,
+}
+
+#: Largest difference by which chromaticities are still those of named primaries: they are written with four digits.
+SAME_CHROMATICITIES = 2e-4
+
+#: Least area of the triangle of primaries in x and y, doubled; that of Rec.709 has 0.22.
+LEAST_AREA = 0.01
+
 #: What is said of an ICC profile that gives no primaries.
 TABLES = "ICC profile of tables"
 
@@ -54,13 +73,15 @@ TABLES = "ICC profile of tables"
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
     """Return what an open file says of its colours; the first of these that says something is believed.
 
-    The ICC profile comes before CICP, but in PNG after it (PNG Specification, third edition, 4.3); EXIF is last. A
-    profile that works by tables gives no primaries, and then nothing else is asked for them.
+    The ICC profile comes before CICP, but in PNG after it (PNG Specification, third edition, 4.3); then
+    come EXIF, and what OpenEXR files have. A profile that works by tables gives no primaries, and then nothing else is
+    asked for them.
 
     Parameters
     ----------
     header : OpenImageIO.ImageSpec
-        Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes) and "Exif:ColorSpace".
+        Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes), "Exif:ColorSpace",
+        "colorInteropID" and "chromaticities" (x and y of red, green, blue and white).
     file_format : str
         As in `FileMetadata`.
     interop_index : str
@@ -68,6 +89,7 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     """
     tags = [_icc_tags(header), cicp_tags(_sequence(header, "CICP"))]
     ordered = [*(reversed(tags) if file_format == "PNG" else tags), _exif_tags(header, interop_index)]
+    ordered += [_interop_tags(header), _chromaticity_tags(header)]
     found = [each for each in ordered if each.source]
     first = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
     transfer = next((each.transfer for each in found if each.transfer), "")
@@ -102,8 +124,30 @@ def _exif_tags(header: Any, interop_index: str) -> ColorTags:
     return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
 
 
-def _sequence(header: Any, name: str) -> Sequence[int]:
-    """Return an array of whole numbers in the header; empty where it is absent."""
+def _interop_tags(header: Any) -> ColorTags:
+    """Return what the Color Interop Forum's name of the encoding says."""
+    name = _attribute(header, "colorInteropID")
+    parts = name.split("_") if isinstance(name, str) else []
+    primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
+    return ColorTags(primaries, source="colorInteropID") if primaries else ColorTags()
+
+
+def _chromaticity_tags(header: Any) -> ColorTags:
+    """Return what OpenEXR's chromaticities say; nothing if they make no colours of three kinds."""
+    numbers = np.ravel(_sequence(header, "chromaticities"))
+    if numbers.size != 8 or not np.isfinite(numbers).all() or (corners := numbers.reshape(4, 2))[3].min() <= 0:
+        return ColorTags()
+    for named in (*PHOTOGRAPHIC.values(), AP0, AP1):
+        if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
+            return ColorTags(named, source="chromaticities")
+    red, green, blue, white = ((float(x), float(y)) for x, y in corners)
+    own = Primaries("primaries of its own", red, green, blue, white)
+    is_sound = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)]))) > LEAST_AREA
+    return ColorTags(own, source="chromaticities") if is_sound else ColorTags()
+
+
+def _sequence(header: Any, name: str) -> Sequence[Any]:
+    """Return an array of numbers in the header; empty where it is absent."""
     value = _attribute(header, name)
     return () if value is None or isinstance(value, str | int | float) else value
 

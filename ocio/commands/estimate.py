@@ -77,7 +77,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     lines = [*map(str, estimated.facts), *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
     print_lines(["", "The linear plate in oiiotool, with the LUT or the config:"])
-    print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files))
+    print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files, document))
 
 
 def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:

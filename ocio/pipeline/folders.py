@@ -104,7 +104,7 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
 
 
 def estimated_light(estimated: PhotographEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
-    """Return what the linear values of an estimate's photographs mean.
+    """Return what the linear values of an estimate's photographs mean; the LUT's comments say its primaries, too.
 
     Raises
     ------
@@ -113,8 +113,10 @@ def estimated_light(estimated: PhotographEstimate, plates: PlateOptions, *, lut_
         be converted.
     """
     tags = dict(zip(estimated.paths, estimated.tags, strict=True))
-    common_primaries(tags, plates.primaries)
-    return PlateLight.of(estimated.tags[0], response_lut(estimated.estimate, length=lut_length), plates)
+    plate = common_primaries(tags, plates.primaries)
+    lut = response_lut(estimated.estimate, length=lut_length)
+    comment = f"Primaries: {plate}; the LUT leaves them as they are"
+    return PlateLight.of(estimated.tags[0], replace(lut, comments=(*lut.comments, comment)), plates)
 
 
 def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries) -> PlateColorSpace:

@@ -71,7 +71,9 @@ def linear_header(
     header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
     for attribute in source.extra_attribs:
         if attribute.name in KEPT_METADATA:
-            header.attribute(attribute.name, attribute.type, attribute.value)
+            # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
+            kind = "int" if isinstance(attribute.value, int) else attribute.type
+            header.attribute(attribute.name, kind, attribute.value)
     header.attribute("compression", "zips")
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PlateError
 from crfnet_core.image_io import MAX_PIXELS, first_line, read_codes
 from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.types import Float32Array
 
 
@@ -83,11 +84,11 @@ def _read_encoded_exr(path: Path) -> EncodedFrame:
     channels = [header.channelindex(name) for name in "RGB"]  # -1 where a channel is absent
     samples = values[..., [gray if index < 0 else index for index in channels]]  # (H, W, 3)
     if header.alpha_channel < 0:
-        return EncodedFrame(samples, 1, None, header)
+        return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
     alpha = values[..., header.alpha_channel]  # (H, W)
     covered = alpha[..., None] != 0
     samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
-    return EncodedFrame(samples, 1, alpha, header)
+    return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
 
 
 def _check_encoded_exr(path: Path, header: Any) -> None:

@@ -49,7 +49,7 @@ class LinearSpace:
         """OpenEXR's attribute of this name, 8 numbers, where the primaries are known but have no interop name."""
         if self.target is None or self.target.interop_id:
             return ()
-        return (*self.target.red, *self.target.green, *self.target.blue, *self.target.white)
+        return tuple(map(float, self.target.corners.ravel()))
 
     def __str__(self) -> str:
         """Return the space in words."""

@@ -76,13 +76,21 @@ def file_lines(files: OutputFiles) -> list[str]:
     return [f"  {names:<{width}}  {meaning}" for names, meaning in named if names]
 
 
-def oiiotool_lines(photo: Path, files: OutputFiles) -> list[str]:
-    """Return two command lines by which oiiotool makes the linear plate: with the LUT and with the config."""
+def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any]) -> list[str]:
+    """Return two command lines by which oiiotool makes the linear plate: with the LUT and with the config.
+
+    Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither.
+    """
+    primaries, linear = document["primaries"], document["output_space"]
+    target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
+    is_converted = "white" in primaries and linear["name"] != f"linear {primaries['name']}"
+    is_more = is_converted or document["exposure"]["stops"] != 0
     lut, config, plate = (shlex.quote(str(path)) for path in (files.spi1d, files.config, photo))
     space = shlex.quote(files.color_space)
     return [
         f"oiiotool {plate} --ociofiletransform {lut} -d half -o linear.exr",
-        f"oiiotool --colorconfig {config} {plate} --colorconvert {space} scene_linear -d half -o linear.exr",
+        f"oiiotool --colorconfig {config} {plate} --colorconvert {space} {target} -d half -o linear.exr",
+        *([f"(The LUT alone adds no exposure, and does not convert {primaries['name']}.)"] * is_more),
     ]
 
 

@@ -24,7 +24,7 @@ from crfnet_core.metadata.color_tags import (
     conversion_matrix,
 )
 from crfnet_core.metadata.exif import interoperability_index
-from crfnet_core.metadata.header_colors import CICP_PRIMARIES, TABLES, cicp_tags
+from crfnet_core.metadata.header_colors import CICP_PRIMARIES, TABLES, cicp_tags, header_color_tags
 from crfnet_core.metadata.icc import SAME_COLORANTS, read_icc
 from tests.helpers.color_profiles import exif_segment, matrix_profile, numbers, profile, write_tagged
 from tests.helpers.crafted_files import with_jpeg_segment
@@ -50,7 +50,7 @@ GRAY = np.full((16, 16, 3), 128, np.uint8)
 
 
 def corners(primaries):
-    return [*primaries.red, *primaries.green, *primaries.blue, *primaries.white]
+    return primaries.corners.ravel().tolist()
 
 
 class TestMatrices:
@@ -218,6 +218,39 @@ class TestFiles:
     def test_a_profile_may_hold_cicp(self, tmp_path):
         icc = matrix_profile(REC2020, cicp=b"cicp" + bytes(4) + bytes([9, 16, 0, 1]))
         assert self.tags(write_tagged(tmp_path / "a.jpg", GRAY, icc)) == ColorTags(REC2020, "PQ", "ICC profile")
+
+
+class TestOpenExr:
+    """The tags of an OpenEXR file with encoded values."""
+
+    @staticmethod
+    def tags(**attributes):
+        import OpenImageIO as oiio
+
+        header = oiio.ImageSpec(8, 8, 3, "half")
+        for name, value in attributes.items():
+            header.attribute(name, *((oiio.TypeDesc("float[8]"), value) if isinstance(value, list) else (value,)))
+        return header_color_tags(header, "OpenEXR")
+
+    @pytest.mark.parametrize(
+        ("name", "primaries"),
+        [("srgb_p3d65_scene", DISPLAY_P3), ("g22_adobergb_scene", ADOBE_RGB), ("unknown", None), ("data", None)],
+    )
+    def test_interop_names_are_read(self, name, primaries):
+        assert self.tags(colorInteropID=name).primaries == primaries
+
+    @pytest.mark.parametrize("primaries", [*PHOTOGRAPHIC.values(), AP0, AP1])
+    def test_named_chromaticities_are_known(self, primaries):
+        assert self.tags(chromaticities=primaries.corners.ravel().tolist()).primaries is primaries
+
+    def test_others_are_taken_as_they_are(self):
+        found = self.tags(chromaticities=OWN.corners.ravel().tolist())
+        np.testing.assert_allclose(found.primaries.corners, OWN.corners, atol=1e-6)
+        assert found.source == "chromaticities"
+
+    @pytest.mark.parametrize("numbers", [[0.0] * 8, [0.3] * 8, [np.nan] * 8, [0.6, 0.3, 0.6, 0.3, 0.6, 0.3, 0.3, 0.3]])
+    def test_no_triangle_says_nothing(self, numbers):
+        assert self.tags(chromaticities=numbers) == ColorTags()
 
 
 @pytest.mark.parametrize("code", CICP_PRIMARIES)

@@ -1,6 +1,7 @@
 """Primaries, spaces and exposures through the whole command, judged by colour-science and OpenColorIO."""
 
 import json
+import shlex
 
 import numpy as np
 import pytest
@@ -209,6 +210,17 @@ class TestConfig:
             converted(loaded(path), "CRF shot", "scene_linear", [[0.5, 0.5, 0.5]]), 2 * before, rtol=1e-5
         )
 
+    @pytest.mark.parametrize("output", ["scene_linear", "ACEScg", "plate"])
+    def test_the_printed_line_of_oiiotool_makes_the_exr(self, crfnet, plate, fixed_model, tmp_path, oiiotool, output):
+        pixels = (read_photo(plate).pixels * 255).round().astype(np.uint8)
+        photo = write_tagged(tmp_path / "shot.png", pixels, matrix_profile(DISPLAY_P3))
+        arguments = ("--model", fixed_model, "--no-sheet", "--exposure", "gray", "--output-space", output)
+        lines = crfnet("estimate", photo, "--out", tmp_path / "look", *arguments).out.splitlines()
+        assert lines[-1] == "  (The LUT alone adds no exposure, and does not convert Display P3.)"
+        oiiotool(*shlex.split(lines[-2])[1:-1], tmp_path / "linear.exr")
+        expected = read_image(tmp_path / "look" / "shot_linear.exr")
+        np.testing.assert_allclose(read_image(tmp_path / "linear.exr"), expected, atol=1e-3)
+
     def test_everything_names_the_primaries(self, folder, tmp_path):
         look = folder("--json")
         found = json.loads((look / "shot.json").read_text(encoding="utf-8"))
@@ -216,3 +228,6 @@ class TestConfig:
         assert found["primaries"]["green"] == [0.265, 0.69]
         assert found["output_space"] == {"name": "linear Rec.709", "interop_id": "lin_rec709_scene"}
         assert "primaries Display P3 (ICC profile)" in (look / "config.ocio").read_text(encoding="utf-8")
+        for suffix in ("spi1d", "cube", "clf"):
+            comments = read_lut(look / f"shot.{suffix}").comments
+            assert comments[-1] == "Primaries: Display P3 (ICC profile); the LUT leaves them as they are"

@@ -5,6 +5,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PhotoError, PlateError
+from crfnet_core.metadata.color_tags import DISPLAY_P3, ColorTags
 from ocio.plates.frame_files import read_frame
 from tests.helpers.images import write_image
 
@@ -67,3 +68,9 @@ def test_other_files_are_read_as_photographs(tmp_path):
     (tmp_path / "a.png").write_text("no picture")
     with pytest.raises(PhotoError, match="is no JPEG, PNG"):
         read_frame(tmp_path / "a.png")
+
+
+def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):
+    pixels = np.full((4, 4, 3), 0.5, np.float32)
+    path = write_image(tmp_path / "a.exr", pixels, colorInteropID="srgb_p3d65_scene")
+    assert read_frame(path).color == ColorTags(DISPLAY_P3, source="colorInteropID")
