@@ -5,6 +5,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing import Process
 from pathlib import Path
@@ -71,7 +72,11 @@ def print_curve() -> None:
     from ocio.luts.lut1d import inverse_response_lut
 
     curve, pixels = ResponseCurve.gamma(), np.random.default_rng(0).random(ARRAY, dtype=np.float32)
-    calls = {"Lut1D.apply": inverse_response_lut(curve).apply, "inverse": curve.inverse, "forward": curve.forward}
+    calls: dict[str, Callable[..., object]] = {
+        "Lut1D.apply": inverse_response_lut(curve).apply,
+        "inverse": curve.inverse,
+        "forward": curve.forward,
+    }
     seconds = dict.fromkeys(calls, np.inf)
     for name in [*calls] * RUNS:
         start = time.process_time()
