@@ -1,7 +1,8 @@
 """Estimate a camera's response from one photograph, with numpy and onnxruntime.
 
 estimate             the method on one screen: photographs in, response and uncertainty out
-photo, image_io      a photograph's code values, and the one reader of image files
+response_estimate    what comes out, and the same as a document for JSON
+photo, image_io      a photograph's code values, of a file or an array, and the one reader of image files
 metadata             what a file says of how its photograph was made
 windows              the windows of a photograph that are analysed
 statistics           what is counted in a window
@@ -13,7 +14,7 @@ metrics              how far an estimate is from the truth
 files                write a file whole or not at all
 errors, types        the errors that a user can fix; names of array types
 
-The names below are the public interface; docs/METHOD.md explains the steps and their equations.
+The names below are the public interface: see docs/API.md. docs/METHOD.md explains the steps and their equations.
 """
 
 from crfnet_core.emor import EmorBasis

@@ -1,10 +1,11 @@
-"""Time and peak memory of `crfnet estimate` on 24 megapixels beside oiiotool, which only converts: `make bench`."""
+"""What `crfnet estimate` costs beside oiiotool, and a curve beside its LUT, on large pictures: `make bench`."""
 
 import os
 import subprocess
 import sys
 import tempfile
 import time
+from collections.abc import Callable
 from dataclasses import dataclass
 from multiprocessing import Process
 from pathlib import Path
@@ -18,6 +19,9 @@ RUNS = 3
 
 #: The budget: wall time as a multiple of oiiotool's, memory in GB.
 MOST_TIMES, MOST_GB = 2.5, 1.5
+
+#: The same for a curve: processor time as a multiple of its LUT's, on as many pixels of float32.
+MOST_LUT_TIMES, ARRAY = 1.1, (3000, 4000, 3)
 
 
 @dataclass(frozen=True)
@@ -62,8 +66,30 @@ def best(command: list[str]) -> Cost:
     return Cost(min(cost.seconds for cost in costs), max(cost.gigabytes for cost in costs))
 
 
+def print_curve() -> None:
+    """Print the processor time of a response and of its inverse beside that of the LUT; runs take turns."""
+    from crfnet_core.response import ResponseCurve  # not earlier: others import this file for its photograph
+    from ocio.luts.lut1d import inverse_response_lut
+
+    curve, pixels = ResponseCurve.gamma(), np.random.default_rng(0).random(ARRAY, dtype=np.float32)
+    calls: dict[str, Callable[..., object]] = {
+        "Lut1D.apply": inverse_response_lut(curve).apply,
+        "inverse": curve.inverse,
+        "forward": curve.forward,
+    }
+    seconds = dict.fromkeys(calls, np.inf)
+    for name in [*calls] * RUNS:
+        start = time.process_time()
+        calls[name](pixels)
+        seconds[name] = min(seconds[name], time.process_time() - start)
+    print(f"\n{ARRAY[0] * ARRAY[1] / 1e6:.0f} megapixels of float32, best of {RUNS} runs\n")
+    for name, cost in seconds.items():
+        print(f"{name:<28}{cost:>9.2f}{cost / seconds['Lut1D.apply']:>8.2f}")
+    print(f"{'at most':<28}{'':>9}{MOST_LUT_TIMES:>8.2f}")
+
+
 def main() -> None:
-    """Print the table."""
+    """Print the tables."""
     programs = Path(sys.executable).parent
     with tempfile.TemporaryDirectory() as folder:
         photo = Path(folder, "photo.jpg")
@@ -78,6 +104,7 @@ def main() -> None:
     for name, cost in (("oiiotool in.jpg -o out.exr", conversion), ("crfnet estimate in.jpg", estimate)):
         print(f"{name:<28}{cost.seconds:>9.2f}{cost.seconds / conversion.seconds:>8.2f}{cost.gigabytes:>10.2f}")
     print(f"{'at most':<28}{'':>9}{MOST_TIMES:>8.2f}{MOST_GB:>10.2f}")
+    print_curve()
 
 
 if __name__ == "__main__":
