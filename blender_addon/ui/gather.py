@@ -9,11 +9,10 @@ from typing import Any
 
 import bpy
 
+from crfnet_core.metadata.color_tags import Primaries
 from ocio.options import EstimateOptions
 
-from ..scene import color_management, node_group, plates
-from ..scene.stored_estimate import origin, restored
-from ..scene.stored_estimate import primaries as stored_primaries
+from ..scene import color_management, node_group, plates, stored_estimate
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
 from .plate_settings import CHOICES
@@ -65,10 +64,10 @@ def gather_job(
                 use_metadata=not chosen["ignore_metadata"],
             ),
             is_forced=chosen["force"],
-            stored=restored(datablock) if is_estimated else None,
+            stored=stored_estimate.restored(datablock) if is_estimated else None,
             photographs=() if is_estimated else _photographs(datablock),
-            primaries=stored_primaries(datablock),
-            origin=origin(datablock) if is_estimated else "",
+            primaries=_known_primaries(datablock, plate) if is_estimated else None,
+            origin=stored_estimate.origin(datablock) if is_estimated else "",
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),
         output=_output(plate, chosen, despite_verdict=despite_verdict),
@@ -76,6 +75,12 @@ def gather_job(
             path=color_management.running_config(), is_demanded=bool(color_management.environment_config())
         ),
     )
+
+
+def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | None:
+    """Return the stored primaries of a plate whose file is still that of the estimate, so that it need not be read."""
+    is_same = not stored_estimate.is_file_changed(datablock, plate.file_state)
+    return stored_estimate.primaries(datablock) if is_same and not stored_estimate.origin(datablock) else None
 
 
 def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:

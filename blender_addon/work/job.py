@@ -170,7 +170,7 @@ class Estimation:
     photographs : tuple of Plate
         Further photographs of the same camera with the same settings, which share the response.
     primaries : Primaries or None
-        Those of the plate that are stored with the estimate, for when its files are not found.
+        Those of the plate, if they are known from `stored`; otherwise its file is read.
     origin : str
         Where `stored` comes from, in words; empty if it was estimated from the plate.
     """

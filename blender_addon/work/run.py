@@ -125,13 +125,15 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
 
 
 def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
-    """Return the primaries of a plate; those that are stored where the files of a stored estimate are not found."""
+    """Return the primaries of a plate; where the files of a stored estimate are not found, Rec.709."""
+    if job.estimation.primaries is not None:
+        return job.estimation.primaries
     try:
         return primaries_of(job.plate, sequence())
     except CRFNetError:
         if job.estimation.stored is None:
             raise
-        return job.estimation.primaries or REC709
+        return REC709
 
 
 def _completed(

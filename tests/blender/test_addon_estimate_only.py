@@ -83,7 +83,7 @@ def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypat
     from blender_addon.work import writers
     from crfnet_core.errors import PlateError
 
-    def refuse(*_arguments):
+    def refuse(*_arguments, **_options):
         raise PlateError("the disk is full, colour and all")
 
     monkeypatch.setattr(writers, "write", refuse)

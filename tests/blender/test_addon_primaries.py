@@ -101,3 +101,12 @@ def test_plates_without_tags_have_no_matrix(addon, plate_file):
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
     assert "Rec.709" in image["camera_response"]["primaries"]
     assert len([node for node in group_node("Response").node_tree.nodes if node.type == "MATH"]) < 16
+
+
+def test_a_new_file_has_its_own_primaries(image, plate_file):
+    """The file is read again only where it is not that of the estimate."""
+    apply(image, "NODES")
+    assert "Display P3" in image["camera_response"]["primaries"]
+    image.filepath = str(plate_file)
+    apply(image, "NODES")
+    assert "Rec.709" in image["camera_response"]["primaries"]
