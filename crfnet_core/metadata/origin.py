@@ -48,7 +48,7 @@ class Encoding(StrEnum):
     LINEAR = "scene-linear"
     LOG = "log"
     FOOTAGE = "film or video"
-    MOVIE = "a frame of a movie"
+    MOVIE = "movie"
     UNKNOWN = ""
 
 
@@ -221,5 +221,5 @@ def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
 def _encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
     """Return what the file says of its code values, if it says anything."""
     if encoding == Encoding.MOVIE:
-        return [f"{encoding}"]
+        return ["a frame of a movie"]
     return [f"its values are {encoding}: so says its {metadata.profile or metadata.file_format}"] if encoding else []

@@ -226,3 +226,14 @@ def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
         assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
         assert 'give it the color space "Rec.2100-PQ - Display"' in done.err
     assert listed(tmp_path) == ["hdr.mp4"]
+
+
+@needs_av
+def test_the_document_of_a_movie_follows_the_schema(crfnet, fixed_model, movie, root, tmp_path):
+    jsonschema = pytest.importorskip("jsonschema")
+    done = crfnet("estimate", movie, "--out", tmp_path / "a", "--model", fixed_model, "--no-sheet", "--json")
+    schema = json.loads((root / "docs" / "estimate.schema.json").read_text(encoding="utf-8"))
+    document = json.loads(done.out)["estimates"][0]
+    jsonschema.validate(document, schema)
+    assert "movies" in schema["properties"]
+    assert document["metadata"][0]["encoding"] == "movie"
