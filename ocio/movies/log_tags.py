@@ -30,6 +30,9 @@ ARRI_CURVE = PublishedCurve("LogC3", "ARRI", "ARRI LogC3 (EI800)")
 #: Bytes at either end of a file in which texts are looked for where it has no boxes.
 _ENDS = 1 << 20
 
+#: Bytes of a box in which texts are looked for: the index of an hour of frames is smaller.
+_LARGEST = 1 << 25
+
 
 def log_curve(path: Path, metadata: Mapping[str, str]) -> PublishedCurve | None:
     """Return the log curve that a maker names in a movie; None if none does.
@@ -61,5 +64,5 @@ def _beside_pictures(content: mmap.mmap) -> Iterator[slice]:
             size = int.from_bytes(content[start + 8 : start + 16])
         end = start + size if size >= 8 else len(content)
         if content[start + 4 : start + 8] != b"mdat":
-            yield slice(start, min(end, len(content)))
+            yield slice(start, min(end, start + _LARGEST, len(content)))
         start = end

@@ -86,16 +86,16 @@ class MovieStream:
 
     def __str__(self) -> str:
         """Return one line for people: what the movie is, and what it does not say."""
-        coded = f"{self.coding.matrix}, {'full' if self.coding.is_full_range else 'limited'} range"
+        count, rate = len(self.index.times), f" at {float(self.rate):.6g} per second" if self.rate else ""
         parts = [
-            f"{self.codec}, {self.width} x {self.height}, {self.bit_depth} bits, {len(self.index.times)} frames"
-            + (f" at {float(self.rate):.6g} per second" if self.rate else ""),
-            coded,
-            *(f"timecode {self.timecode}" for _ in [0] if self.timecode),
+            f"{self.codec}, {self.width} x {self.height}, {self.bit_depth} bits, {count} frames{rate}",
+            f"{self.coding.matrix}, {'full' if self.coding.is_full_range else 'limited'} range",
+            f"tagged {self.curve.name}" if self.curve else "",
+            f"timecode {self.timecode}" if self.timecode else "",
             *(f"the stream {assumption}" for assumption in self.coding.assumptions),
-            *("interlaced: deinterlace it first, its frames mix two moments" for _ in [0] if self.is_interlaced),
+            "interlaced: deinterlace it first, its frames mix two moments" if self.is_interlaced else "",
         ]
-        return f"{self.path.name}: {'; '.join(parts)}"
+        return f"{self.path.name}: {'; '.join(filter(None, parts))}"
 
 
 def read_stream(path: Path) -> MovieStream:

@@ -49,6 +49,7 @@ def test_untagged_streams_say_nothing_of_colors(movie):
 def test_published_curves_are_named(tmp_path, tag, name):
     found = read_stream(make_movie(tmp_path / "a.mp4", f"{H264} -color_primaries bt2020 -color_trc {tag}"))
     assert (found.curve.name, found.color.transfer) == (name, name)
+    assert f"; tagged {name}" in str(found)
 
 
 def boxed(kind, content):
@@ -184,3 +185,8 @@ def test_sound_alone_is_refused(tmp_path):
     run_ffmpeg("-f", "lavfi", "-i", "sine=duration=0.1", tmp_path / "a.mp4")
     with pytest.raises(PlateError, match="holds no video"):
         read_stream(tmp_path / "a.mp4")
+
+
+def test_interlaced_movies_are_named(tmp_path):
+    options = "-vf interlace -c:v libx264 -preset ultrafast -flags +ildct+ilme -pix_fmt yuv420p"
+    assert "interlaced: deinterlace it first" in str(read_stream(make_movie(tmp_path / "a.mp4", options)))
