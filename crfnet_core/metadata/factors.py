@@ -49,6 +49,8 @@ FACTORS: dict[str, tuple[float, ...]] = {
     Encoding.LOG: (0.02, 0.02, 0.02, 0.1, 0.1, 0.05, 1, 0.3),
     # DPX holds scanned film, log and video frames; no still camera writes it.
     Encoding.FOOTAGE: (0.05, 0.05, 0.1, 0.5, 1, 0.5, 1, 0.5),
+    # Every camera takes movies, and programs make them.
+    Encoding.MOVIE: (1, 1, 1, 1, 1, 1, 1, 1),
 }
 
 
@@ -67,10 +69,11 @@ def family_factors(origin: FileOrigin) -> dict[str, float]:
 
 def findings(origin: FileOrigin) -> list[str]:
     """Return the rows of `FACTORS` that hold of a file."""
+    is_still = origin.encoding != Encoding.MOVIE  # most movies are 16:9, and few name their camera
     rows = {
         origin.device: origin.device != Device.UNKNOWN,
-        "no camera": not origin.camera,
-        origin.picture_shape: origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
+        "no camera": is_still and not origin.camera,
+        origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
         "editor": bool(origin.editor),
         "scaled": origin.is_scaled is True,
         "encoded again": origin.is_resaved is True and not origin.editor and not origin.is_scaled,

@@ -45,7 +45,7 @@ class FileMetadata:
     profile : str
         Description of the ICC profile; of DPX its transfer characteristic.
     file_format : str
-        "JPEG", "PNG", "TIFF", "WebP" or "DPX".
+        "JPEG", "PNG", "TIFF", "WebP" or "DPX"; "movie" for a frame of one.
     color : ColorTags
         What the file says of its primaries and of its encoding.
     """

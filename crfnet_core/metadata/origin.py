@@ -48,8 +48,12 @@ class Encoding(StrEnum):
     LINEAR = "scene-linear"
     LOG = "log"
     FOOTAGE = "film or video"
+    MOVIE = "movie"
     UNKNOWN = ""
 
+
+#: Formats of files that hold no still photographs -> what their values are.
+FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
 
 #: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
 _ENCODINGS = (
@@ -164,7 +168,7 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
         return True if size[1] > exif_size[1] or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
     if exif_size and metadata.has_camera and not is_changed:
         return False
-    if metadata.file_format == "DPX":
+    if metadata.file_format in FOOTAGE:
         return None
     if size[1] < SCALED_BELOW or (size[1] in WEB_SIDES and metadata.file_format == "JPEG" and not metadata.has_camera):
         return True
@@ -181,7 +185,7 @@ def _encoding(metadata: FileMetadata) -> Encoding:
     """Return what the profile, or DPX's transfer characteristic, says of the code values."""
     profile = metadata.profile.casefold()
     found = (encoding for encoding, words in _ENCODINGS if re.search(words, profile))
-    return next(found, Encoding.FOOTAGE if metadata.file_format == "DPX" else Encoding.UNKNOWN)
+    return next(found, FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN))
 
 
 def _taken_words(camera: str, device: Device) -> str:
@@ -216,4 +220,6 @@ def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
 
 def _encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
     """Return what the file says of its code values, if it says anything."""
+    if encoding == Encoding.MOVIE:
+        return ["a frame of a movie"]
     return [f"its values are {encoding}: so says its {metadata.profile or metadata.file_format}"] if encoding else []

@@ -14,6 +14,7 @@ EXAMPLES = """examples:
   crfnet estimate day1/*.jpg --out look            several photographs of one camera, one response
   crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
   crfnet estimate photographs/ --each --no-sheet --no-linear --out responses        a whole folder; can be continued
+  crfnet estimate clip.mp4 --out look               a movie: some of its frames, one response
   crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
 
 For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
@@ -23,7 +24,9 @@ plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01
 def add(commands: Commands) -> None:
     """Add `crfnet estimate`."""
     parser = add_command(commands, "estimate", "estimate the response of the camera that took a photograph", EXAMPLES)
-    photos = parser.add_argument("photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, PNG, TIFF, WebP or DPX")
+    photos = parser.add_argument(
+        "photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, PNG, TIFF, WebP or DPX, or a movie"
+    )
     photos.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]

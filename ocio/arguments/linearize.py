@@ -12,9 +12,10 @@ EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
   crfnet linearize shot.%04d.png --lut look/plate01.spi1d --out linear/shot.%04d.exr
   crfnet linearize 'shot.####.jpg' --frames 1001-1100 --out 'linear/shot.####.exr'
+  crfnet linearize clip.mov --frames 1-100 --lut look/clip.spi1d --out linear/clip.%04d.exr
 
 Without --lut one response is estimated from several of the frames. Frames that are already written are left alone,
-so an interrupted run goes on where it stopped."""
+so an interrupted run goes on where it stopped. The first frame of a movie has number 1."""
 
 
 def add(commands: Commands) -> None:
@@ -23,7 +24,8 @@ def add(commands: Commands) -> None:
     plates = parser.add_argument(
         "plates",
         metavar="PLATES",
-        help="a file, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png, shot.1001-1100#.png",
+        help="a file, a movie, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png,"
+        " shot.1001-1100#.png",
     )
     plates.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")

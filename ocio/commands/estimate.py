@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import shlex
 import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
@@ -14,8 +15,9 @@ from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
+from ocio.movies.frames import MovieFrames
 from ocio.options import EstimateOptions, OutputOptions
-from ocio.output_files import OutputFiles
+from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import PhotographEstimate, PhotographRecord
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
@@ -74,10 +76,22 @@ def _has_matplotlib() -> bool:
 
 def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles) -> None:
     """Print what was read, found and written, and how to use it."""
-    lines = [*map(str, estimated.facts), *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
-    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
-    print_lines(["", "The linear plate in oiiotool, with the LUT or the config:"])
+    read = [*estimated.movies, *map(str, estimated.facts)]
+    lines = [*read, *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
+    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files), ""])
+    plate = estimated.plates[0]
+    if isinstance(plate, MovieFrames):
+        print_lines([f"The linear plate is frame {plate.numbers[0]}; the whole movie, with the LUT:"])
+        print_lines([f"  {_linearize_line(estimated.paths[0], files)}"])
+        return
+    print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
     print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files, document))
+
+
+def _linearize_line(movie: Path, files: OutputFiles) -> str:
+    """Return the command line by which all frames of a movie become linear plates."""
+    frames = Path("linear", f"{plain_stem(movie)}.%04d.exr")
+    return shlex.join(["crfnet", "linearize", str(movie), "--lut", str(files.spi1d), "--out", str(frames)])
 
 
 def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:

@@ -13,14 +13,16 @@ from ocio.interchange.files import read_response
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.files import READERS
 from ocio.luts.rgb_lut import AnyLut
+from ocio.movies.frames import MovieFrames
+from ocio.movies.source import find_source
 from ocio.output_files import check_folder, output_folder
-from ocio.plates.frames import FrameSequence, find_frames
+from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Write plates as linear EXR through a LUT, or through a response estimated from several of the frames."""
-    sequence = find_frames(arguments.plates, arguments.frames)
+    sequence = find_source(arguments.plates, arguments.frames)
     targets = linear_targets(arguments.out, sequence)
     folder = Path(arguments.out).parent
     check_folder(folder)
@@ -34,10 +36,11 @@ def run(arguments: argparse.Namespace) -> None:
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
     document = report.plate_document(done, estimate)
+    movies = [str(sequence.movie)] if isinstance(sequence, MovieFrames) else []
     if arguments.json:
-        print_json(document)
+        print_json(document | ({"movie": movies[0]} if movies else {}))
     else:
-        print_lines([*lines, *report.light_lines(document), *report.plate_lines(done)])
+        print_lines([*movies, *lines, *report.light_lines(document), *report.plate_lines(done)])
 
 
 def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
@@ -47,7 +50,7 @@ def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
     return lines if inverted or path.suffix.lower() not in READERS else []
 
 
-def _estimate_frames(sequence: FrameSequence, arguments: argparse.Namespace) -> ResponseEstimate:
+def _estimate_frames(sequence: FrameSequence | MovieFrames, arguments: argparse.Namespace) -> ResponseEstimate:
     """Return the response of a sequence, with a progress bar."""
     options = estimate_options(arguments)
     prior, network = pipeline.load_prior(options), pipeline.load_network(options)

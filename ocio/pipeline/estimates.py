@@ -15,6 +15,9 @@ from crfnet_core.posterior import Prior
 from crfnet_core.types import Float32Array, Progress
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
+from ocio.movies.frames import MovieFrames
+from ocio.movies.library import is_movie
+from ocio.movies.selection import chosen_photos
 from ocio.options import EstimateOptions
 from ocio.plates.frames import FrameSequence, sample_frames
 from ocio.report import PhotoFacts, provenance
@@ -30,9 +33,9 @@ class PhotographEstimate:
     Parameters
     ----------
     paths : tuple of Path
-        The photographs.
+        The photographs, and movies.
     facts : tuple of PhotoFacts
-        What the report says of each photograph.
+        What the report says of each photograph, and of each frame of a movie that was analysed.
     tags : tuple of ColorTags
         What each file says of its primaries.
     preview : ndarray, float32, shape (h, w, 3)
@@ -41,6 +44,8 @@ class PhotographEstimate:
         Distance between the pixels of `preview` in the photograph.
     estimate : ResponseEstimate
         The response that they have in common.
+    plates : tuple of FrameSequence or MovieFrames
+        For each of `paths`, what becomes its linear plate: the photograph, or the first frame of the movie analysed.
     """
 
     paths: tuple[Path, ...]
@@ -49,6 +54,12 @@ class PhotographEstimate:
     preview: Float32Array
     stride: int
     estimate: ResponseEstimate
+    plates: tuple[FrameSequence | MovieFrames, ...]
+
+    @property
+    def movies(self) -> tuple[str, ...]:
+        """What the report says of each movie, one line each."""
+        return tuple(str(plate.movie) for plate in self.plates if isinstance(plate, MovieFrames))
 
 
 def load_network(options: EstimateOptions) -> ResponseNetwork:
@@ -90,7 +101,8 @@ def estimate_photographs(
     Parameters
     ----------
     paths : sequence of Path
-        Photographs of one camera with the same settings; at least one.
+        Photographs of one camera with the same settings; at least one. Of a movie, some frames are taken: see
+        `ocio.movies.selection.chosen_photos`.
     network : ResponseNetwork
         See `load_network`.
     prior : Prior
@@ -103,42 +115,51 @@ def estimate_photographs(
     Raises
     ------
     PhotoError
-        If a photograph cannot be read or is smaller than a window.
+        If a photograph cannot be read or is smaller than a window, or a movie has a published curve.
+    PlateError
+        If a movie cannot be read.
     """
     facts: list[PhotoFacts] = []
     tags: list[ColorTags] = []
     previews: list[Float32Array] = []
+    plates: list[FrameSequence | MovieFrames] = []
 
     def photos() -> Iterator[Photo]:
         for path in paths:
-            photo = read_photo(path)
-            facts.append(PhotoFacts.of(photo))
-            tags.append(photo.metadata.color if photo.metadata else ColorTags())
-            if not previews:
-                stride = _stride(facts[0])
-                previews.append(photo.pixels[::stride, ::stride].copy())
-            yield photo
+            source = MovieFrames.find(path) if is_movie(path) else FrameSequence((path,))
+            for index, (plate, photo) in enumerate(_photos(source)):
+                facts.append(PhotoFacts.of(photo))
+                if not previews:
+                    stride = _stride(facts[0])
+                    previews.append(photo.pixels[::stride, ::stride].copy())
+                if index == 0:
+                    tags.append(photo.metadata.color if photo.metadata else ColorTags())
+                    plates.append(plate)
+                yield photo
 
     estimate = _estimate(photos(), network, prior, options, progress)
-    return PhotographEstimate(tuple(paths), tuple(facts), tuple(tags), previews[0], _stride(facts[0]), estimate)
+    stride = _stride(facts[0])
+    return PhotographEstimate(
+        tuple(paths), tuple(facts), tuple(tags), previews[0], stride, estimate, plates=tuple(plates)
+    )
 
 
 def estimate_frames(
-    sequence: FrameSequence,
+    sequence: FrameSequence | MovieFrames,
     network: ResponseNetwork,
     prior: Prior,
     options: EstimateOptions,
     *,
     progress: Progress | None = None,
 ) -> ResponseEstimate:
-    """Estimate the one response of a sequence from up to `FRAMES_ANALYZED` of its frames, evenly spread.
+    """Estimate the one response of a sequence or movie from up to `FRAMES_ANALYZED` of its frames, spread over it.
 
     Only one frame is in memory at a time, so these few frames are read again when the sequence is linearised.
 
     Parameters
     ----------
-    sequence : FrameSequence
-        The frames, or a single file, as `find_frames` returns them.
+    sequence : FrameSequence or MovieFrames
+        The frames, or a single file, as `ocio.movies.source.find_source` returns them.
     network : ResponseNetwork
         See `load_network`.
     prior : Prior
@@ -151,9 +172,9 @@ def estimate_frames(
     Raises
     ------
     PhotoError
-        If a frame cannot be read or is smaller than a window.
+        If a frame cannot be read or is smaller than a window, or a movie has a published curve.
     """
-    return _estimate(map(read_photo, sample_frames(sequence)), network, prior, options, progress)
+    return _estimate((photo for _, photo in _photos(sequence)), network, prior, options, progress)
 
 
 def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
@@ -184,6 +205,13 @@ def _estimate(
         seed=options.seed,
         progress=progress,
     )
+
+
+def _photos(source: FrameSequence | MovieFrames) -> Iterator[tuple[FrameSequence | MovieFrames, Photo]]:
+    """Yield the photographs from which the response of a source is estimated, one at a time, each as a source first."""
+    if isinstance(source, MovieFrames):
+        return ((source.only(number), photo) for number, photo in chosen_photos(source))
+    return ((FrameSequence((path,)), read_photo(path)) for path in sample_frames(source))
 
 
 def _stride(facts: PhotoFacts) -> int:

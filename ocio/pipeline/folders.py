@@ -18,7 +18,6 @@ from ocio.luts.forward import forward_lut
 from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
-from ocio.plates.frames import FrameSequence
 from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
 from ocio.plates.primaries import PlatePrimaries, common_primaries
@@ -159,11 +158,12 @@ def write_estimate(
             write_lut(path, forward)
     if files.linear:
         # Each photograph is read again: see `estimate_photographs`.
-        for photo, linear in zip(estimated.paths, files.linear, strict=True):
-            linearize_plates(FrameSequence((photo,)), (linear,), light.lut, plates)
+        for plate, linear in zip(estimated.plates, files.linear, strict=True):
+            linearize_plates(plate, (linear,), light.lut, plates)
     if files.sheet:
         _write_sheet(files.sheet, estimated)
     document = estimate_document(estimated.estimate, estimated.facts, files, light)
+    document |= {"movies": list(estimated.movies)} if estimated.movies else {}
     atomic_write_text(files.report, json_text(document), error=PlateError)
     return document
 

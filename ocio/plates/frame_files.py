@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol, TypeAlias
 
 import numpy as np
 import OpenImageIO as oiio
@@ -40,6 +41,29 @@ class EncodedFrame:
     alpha: Float32Array | None
     header: Any
     color: ColorTags = field(default_factory=ColorTags)
+
+
+#: Returns a frame; raises a `CRFNetError` if it cannot be read.
+FrameLoader: TypeAlias = Callable[[], EncodedFrame]
+
+
+class FrameSource(Protocol):
+    """Frames by number: the files of a sequence, a single file, or a movie."""
+
+    @property
+    def paths(self) -> tuple[Path, ...]:
+        """The file of each frame, or the one file that holds them all."""
+
+    @property
+    def numbers(self) -> tuple[int, ...]:
+        """The number of each frame, ascending; empty for a single file, which has none."""
+
+    @property
+    def missing(self) -> tuple[int, ...]:
+        """Numbers of frames that are asked for and not there."""
+
+    def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
+        """Yield what returns each frame, for ascending positions in `numbers`; a loader may be called in any thread."""
 
 
 def read_frame(path: Path) -> EncodedFrame:

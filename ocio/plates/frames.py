@@ -8,14 +8,16 @@ calls does without it, so the add-on need not bring it. Fileseq's own reader of 
 from __future__ import annotations
 
 import re
-from collections.abc import Collection, Iterable, Sequence
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
+from functools import partial
 from operator import index
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PlateError
 from ocio.defaults import FRAMES_ANALYZED
+from ocio.plates.frame_files import FrameLoader, read_frame
 
 #: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
 MAX_FRAMES = 1_000_000
@@ -53,6 +55,10 @@ class FrameSequence:
     paths: tuple[Path, ...]
     numbers: tuple[int, ...] = ()
     missing: tuple[int, ...] = ()
+
+    def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
+        """Yield what reads each frame, for positions in `paths`: see `FrameSource`."""
+        return (partial(read_frame, self.paths[position]) for position in positions)
 
 
 @dataclass(frozen=True)

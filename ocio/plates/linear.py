@@ -5,10 +5,10 @@ from __future__ import annotations
 import os
 import re
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor, as_completed
-from contextlib import contextmanager, suppress
+from collections.abc import Iterable, Mapping, Sequence
+from contextlib import closing, suppress
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +22,11 @@ from crfnet_core.types import Progress
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
-from ocio.plates.frame_files import EncodedFrame, read_frame
-from ocio.plates.frames import FramePattern, FrameSequence, format_frames
+from ocio.plates.first_frame import FirstFrame, SourceFrame, first_frame
+from ocio.plates.frame_files import EncodedFrame, FrameSource
+from ocio.plates.frames import FramePattern, format_frames
 from ocio.plates.light import PlateLight, check_finished
+from ocio.plates.parallel import finished
 from ocio.plates.primaries import check_same_primaries, plate_primaries
 
 #: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
@@ -61,15 +63,15 @@ class PlateReport:
     light: PlateLight | None = field(default=None, compare=False)
 
 
-def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]:
+def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
     """Return the linear EXR file of every frame, in the order of the frames; looks at no folder.
 
     Parameters
     ----------
     out : str or Path
         The .exr file, or for a sequence its pattern, such as `plate.%04d.exr` or `plate.####.exr`.
-    sequence : FrameSequence
-        The plates, as `find_frames` returns them.
+    sequence : FrameSource
+        The plates, as `find_frames` returns them, or those of a movie.
 
     Raises
     ------
@@ -83,7 +85,7 @@ def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]
     if sequence.numbers:
         pattern = FramePattern.parse(out)
         if pattern is None:
-            count = len(sequence.paths)
+            count = len(sequence.numbers)
             raise PlateError(f"{out}: one name for {count} frames; put their number into it, as in plate.%04d.exr")
         targets = [pattern.path(number) for number in sequence.numbers]
     plates = {os.path.realpath(path) for path in sequence.paths}
@@ -94,7 +96,7 @@ def linear_targets(out: str | Path, sequence: FrameSequence) -> tuple[Path, ...]
 
 
 def linearize_plates(
-    sequence: FrameSequence,
+    sequence: FrameSource,
     targets: Sequence[Path],
     lut: AnyLut,
     options: PlateOptions,
@@ -113,12 +115,13 @@ def linearize_plates(
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
     unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure or space is
     refused then. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
-    Missing frames are only reported, and a frame that fails does not stop the others.
+    Missing frames are only reported, and a frame that fails does not stop the others. Only the frames that are worked
+    on are in memory.
 
     Parameters
     ----------
-    sequence : FrameSequence
-        The plates, as `find_frames` returns them.
+    sequence : FrameSource
+        The plates, as `find_frames` returns them, or those of a movie.
     targets : sequence of Path
         The files to be written, one per frame, as `linear_targets` returns them; their folder must exist.
     lut : Lut1D or RgbLut1D
@@ -139,42 +142,31 @@ def linearize_plates(
         failed: the message names them.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
-    jobs = dict(zip(targets, sequence.paths, strict=True))
-    first = _first_frame(sequence.paths)
+    first = first_frame(sequence)
     light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
-    skipped = tuple(target for target in jobs if not options.overwrite and target.exists())
+    skipped = tuple(target for target in targets if not options.overwrite and target.exists())
     check_finished(skipped, light)
-    pending = {target: path for target, path in jobs.items() if target not in set(skipped)}
+    left_alone = set(skipped)
+    pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
     _remove_leftovers(pending)
     failures: dict[Path, CRFNetError] = {}
-    with _started(pending, _worker_count(workers), conversion) as futures:
-        _report(progress, len(skipped), len(jobs))
-        for done, future in enumerate(as_completed(futures), len(skipped) + 1):
+    loaders = sequence.loaders([*pending.values()])
+    plates = (
+        SourceFrame.of(sequence, position, load) for position, load in zip(pending.values(), loaders, strict=True)
+    )
+    jobs = ((target, partial(conversion.write, plate, target)) for target, plate in zip(pending, plates, strict=True))
+    _report(progress, len(skipped), len(targets))
+    with closing(finished(jobs, _worker_count(workers))) as ended:
+        for done, (target, future) in enumerate(ended, len(skipped) + 1):
             try:
                 future.result()
             except CRFNetError as problem:
-                failures[futures[future]] = problem
-            _report(progress, done, len(jobs))
+                failures[target] = problem
+            _report(progress, done, len(targets))
     if failures:
-        raise PlateError(_failure(failures, jobs, sequence))
+        raise PlateError(_failure(failures, targets, sequence))
     return PlateReport(tuple(pending), skipped, sequence.missing, light)
-
-
-@dataclass(frozen=True, eq=False)
-class _FirstFrame:
-    """The first frame that can be read, whose tags hold for all; it is not read twice."""
-
-    path: Path
-    frame: EncodedFrame
-
-
-def _first_frame(paths: Sequence[Path]) -> _FirstFrame | None:
-    """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
-    for path in paths:
-        with suppress(CRFNetError):
-            return _FirstFrame(path, read_frame(path))
-    return None
 
 
 @dataclass(frozen=True, eq=False)
@@ -184,24 +176,24 @@ class _Conversion:
     light: PlateLight
     scale: float
     options: PlateOptions
-    first: _FirstFrame | None
+    first: FirstFrame | None
 
-    def write(self, path: Path, target: Path) -> None:
+    def write(self, plate: SourceFrame, target: Path) -> None:
         """Read one plate and write its linear EXR."""
-        frame = self._read(path)
+        frame = self._read(plate)
         pixels = self._linear_pixels(frame)
         attributes, depth = self.light.attributes, self.options.depth
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
 
-    def _read(self, path: Path) -> EncodedFrame:
+    def _read(self, plate: SourceFrame) -> EncodedFrame:
         """Return a plate, which must have the primaries of the first."""
-        if self.first is None or path == self.first.path:
-            return self.first.frame if self.first else read_frame(path)
-        frame = read_frame(path)
+        if self.first is None or plate.position == self.first.source.position:
+            return self.first.frame if self.first else plate.load()
+        frame = plate.load()
         found = plate_primaries(frame.color, self.options.primaries)
-        check_same_primaries(path, found, self.first.path, self.light.plate)
+        check_same_primaries(plate.path, found, self.first.source.path, self.light.plate)
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
@@ -271,30 +263,19 @@ def _remove_leftovers(targets: Iterable[Path]) -> None:
                         path.unlink()
 
 
-@contextmanager
-def _started(jobs: Mapping[Path, Path], workers: int, conversion: _Conversion) -> Iterator[dict[Future[None], Path]]:
-    """Yield the futures of the frames by target; at the end drop those not begun and finish those begun."""
-    pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
-    try:
-        yield {pool.submit(conversion.write, path, target): target for target, path in jobs.items()}
-    finally:
-        pool.shutdown(cancel_futures=True)
-
-
 def _report(progress: Progress | None, done: int, total: int) -> None:
     """Call the progress callback, if there is one."""
     if progress is not None:
         progress(done, total)
 
 
-def _failure(failures: Mapping[Path, CRFNetError], jobs: Mapping[Path, Path], sequence: FrameSequence) -> str:
+def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> str:
     """Return the message that names the frames that failed."""
-    failed = [target for target in jobs if target in failures]
+    failed = [target for target in targets if target in failures]
     first = failures[failed[0]]
     if not sequence.numbers:
         return str(first)
-    numbers = format_frames([n for n, target in zip(sequence.numbers, jobs, strict=True) if target in failures])
+    numbers = format_frames([n for n, target in zip(sequence.numbers, targets, strict=True) if target in failures])
     gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
-    return (
-        f"{len(failed)} of {len(jobs)} frames failed ({numbers}) and the others are written{gaps}; the first: {first}"
-    )
+    count = f"{len(failed)} of {len(targets)} frames"
+    return f"{count} failed ({numbers}) and the others are written{gaps}; the first: {first}"

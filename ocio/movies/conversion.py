@@ -1,0 +1,164 @@
+"""YUV to RGB (ITU-T H.273, 8.3): exact to half a code, chroma interpolated linearly at its place.
+
+FFmpeg's own scaler is as exact for 8 bits only: with 10 bits it is up to 3.5 codes off, and it takes chroma of 4:2:2
+to lie between the luma samples, which video's does not.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crfnet_core.photo import CodeArray
+from crfnet_core.types import Float32Array
+from ocio.movies.color import Coding
+
+if TYPE_CHECKING:
+    from av import VideoFrame
+
+#: Rows converted at a time, which keeps the memory for intermediate values small.
+_ROWS = 64
+
+#: Chroma subsampling, horizontal and vertical -> FFmpeg's name.
+_SUBSAMPLING = {(1, 1): "444", (2, 1): "422", (2, 2): "420", (4, 1): "411", (1, 2): "440"}
+
+
+def bit_depth(frame: VideoFrame) -> int:
+    """Return the bits per sample."""
+    return max(component.bits for component in frame.format.components)
+
+
+def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
+    """Return the RGB codes of a frame, as stored: not turned upright.
+
+    Parameters
+    ----------
+    frame : av.VideoFrame
+        As decoded.
+    coding : Coding
+        How it codes RGB.
+    largest : int
+        The code of white: 255 to 65535.
+
+    Returns
+    -------
+    ndarray, uint8 or uint16, shape (H, W, 3)
+        Codes 0 to `largest`, rounded. What limited range holds below black and above white is cut off.
+    """
+    planes = _planes(frame)
+    height, width = planes[0].shape
+    codes = np.empty((height, width, 3), np.uint8 if largest <= 255 else np.uint16)
+    for top in range(0, height, _ROWS):
+        rows = np.arange(top, min(top + _ROWS, height))
+        rgb = _rgb(planes, rows, coding, bit_depth(frame))
+        codes[rows[0] : rows[-1] + 1] = np.clip(np.rint(rgb * np.float32(largest)), 0, largest)
+    return codes
+
+
+def alpha_of(frame: VideoFrame) -> Float32Array | None:
+    """Return the alpha channel in [0, 1], shape (H, W); None if there is none."""
+    planes = _planes(frame)
+    if len(planes) not in (2, 4):
+        return None
+    alpha: Float32Array = np.divide(planes[-1], np.float32(2 ** bit_depth(frame) - 1), dtype=np.float32)
+    return alpha
+
+
+def upright(pixels: NDArray[Any], turn: tuple[int, int, int, int]) -> NDArray[Any]:
+    """Return pixels, shape (H, W, ...), turned and mirrored by quarter turns.
+
+    Parameters
+    ----------
+    pixels : ndarray, shape (H, W, ...)
+        As stored.
+    turn : tuple of int
+        a, b, c, d of the display matrix, each -1, 0 or 1: x' = a x + c y, y' = b x + d y, with y downwards.
+    """
+    a, b, c, d = turn
+    if a == 0:
+        pixels = pixels.swapaxes(0, 1)
+    columns, rows = (c, b) if a == 0 else (a, d)
+    return np.ascontiguousarray(pixels[:: rows or 1, :: columns or 1])
+
+
+def _planes(frame: VideoFrame) -> list[NDArray[Any]]:
+    """Return the samples of each component: Y, Cb, Cr or R, G, B, and alpha, or gray alone; chroma as stored."""
+    components = frame.format.components
+    if len({component.plane for component in components}) < len(components) or frame.format.has_palette:
+        frame = _separated(frame)
+        components = frame.format.components
+    return [_plane(frame, component.plane, component.bits) for component in components]
+
+
+def _plane(frame: VideoFrame, index: int, bits: int) -> NDArray[Any]:
+    """Return a plane without the padding at the end of its lines."""
+    plane: Any = frame.planes[index]
+    sample = np.dtype(np.uint8 if bits == 8 else ">u2" if frame.format.is_big_endian else "<u2")
+    lines: NDArray[Any] = np.frombuffer(plane, sample).reshape(plane.height, plane.line_size // sample.itemsize)
+    return lines[:, : plane.width]
+
+
+def _separated(frame: VideoFrame) -> VideoFrame:
+    """Return a frame with a plane for each component, its codes unchanged."""
+    form, bits = frame.format, bit_depth(frame)
+    has_alpha, suffix = len(form.components) in (2, 4), "" if bits == 8 else f"{bits}le"
+    if form.is_rgb or form.has_palette:
+        name = f"gbr{'a' if has_alpha or form.has_palette else ''}p{suffix}"
+    else:
+        ratios = -(-frame.width // form.chroma_width(frame.width)), -(-frame.height // form.chroma_height(frame.height))
+        name = f"yuv{'a' if has_alpha else ''}{_SUBSAMPLING[ratios]}p{suffix}"
+    return frame.reformat(format=name, src_color_range=1, dst_color_range=1)
+
+
+def _rgb(planes: Sequence[NDArray[Any]], rows: NDArray[np.intp], coding: Coding, bits: int) -> Float32Array:
+    """Return some rows of RGB, white at 1, shape (rows, W, 3)."""
+    white, scale = np.float32(2**bits - 1), np.float32(2 ** (bits - 8))
+    black, luma_range, chroma_range = (
+        (0, white, white) if coding.is_full_range else (16 * scale, 219 * scale, 224 * scale)
+    )
+    shape = planes[0].shape
+    if coding.matrix == "RGB" and len(planes) > 2:
+        stored: Float32Array = np.stack([plane[rows] for plane in planes[:3]], axis=2).astype(np.float32)
+        return stored / white
+    luma = (planes[0][rows].astype(np.float32) - black) / luma_range
+    if len(planes) < 3:
+        return np.repeat(luma[..., None], 3, axis=2)
+    blue, red = (_full_size(plane, rows, shape, coding) for plane in planes[1:3])
+    blue, red = ((chroma - 128 * scale) / chroma_range for chroma in (blue, red))
+    k_red, k_blue = np.float32(coding.red), np.float32(coding.blue)
+    rgb = np.empty((*luma.shape, 3), np.float32)
+    rgb[..., 0] = luma + 2 * (1 - k_red) * red
+    rgb[..., 2] = luma + 2 * (1 - k_blue) * blue
+    rgb[..., 1] = (luma - k_red * rgb[..., 0] - k_blue * rgb[..., 2]) / (1 - k_red - k_blue)
+    return rgb
+
+
+def _full_size(plane: NDArray[Any], rows: NDArray[np.intp], shape: tuple[int, ...], coding: Coding) -> Float32Array:
+    """Return some rows of a chroma plane at the size of luma; between samples it is interpolated linearly.
+
+    Vertically, chroma of 4:2:0 lies between the lines; horizontally on every second sample, or between them.
+    """
+    ratios = [-(-luma // chroma) for luma, chroma in zip(shape, plane.shape, strict=True)]
+    first, second, weight = _neighbors(rows, ratios[0], plane.shape[0], is_centered=True)
+    lines = _blend(plane[first], plane[second], weight[:, None])
+    first, second, weight = _neighbors(np.arange(shape[1]), ratios[1], plane.shape[1], is_centered=coding.is_centered)
+    return _blend(lines[:, first], lines[:, second], weight)
+
+
+def _neighbors(
+    positions: NDArray[np.intp], ratio: int, count: int, *, is_centered: bool
+) -> tuple[NDArray[np.intp], NDArray[np.intp], Float32Array]:
+    """Return, for positions of luma, the two chroma samples beside each, and the weight of the second."""
+    offset = (ratio - 1) / 2 if is_centered else 0.0
+    places = np.clip((positions - offset) / ratio, 0, count - 1)
+    first = places.astype(np.intp)
+    return first, np.minimum(first + 1, count - 1), (places - first).astype(np.float32)
+
+
+def _blend(first: NDArray[Any], second: NDArray[Any], weight: Float32Array) -> Float32Array:
+    """Return first + weight * (second - first) as float32."""
+    start = first.astype(np.float32)
+    return start if not weight.any() else start + weight * (second.astype(np.float32) - start)

@@ -1,0 +1,89 @@
+"""PyAV, an optional dependency: what to do where it is absent or cannot decode; and which files are movies."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from crfnet_core.errors import PlateError
+
+if TYPE_CHECKING:
+    from av.container import InputContainer
+    from av.video.stream import VideoStream
+
+#: Bytes 4 to 8 of QuickTime and MP4 files: the first box.
+QUICKTIME_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot")
+
+#: Brands of files that begin like MP4 and hold still pictures: HEIF, AVIF, Canon's camera raw.
+STILL_BRANDS = (
+    *(b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"mif2", b"msf1", b"miaf"),
+    *(b"avif", b"avis", b"crx "),
+)
+
+#: How other movies begin: Matroska and WebM, MXF, MPEG program and elementary streams, Flash, Windows Media.
+SIGNATURES = (
+    *(b"\x1a\x45\xdf\xa3", b"\x06\x0e\x2b\x34", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3"),
+    *(b"FLV\x01", b"\x30\x26\xb2\x75"),
+)
+
+#: Distances in bytes between the sync bytes of an MPEG transport stream, and where the first one stands.
+_TRANSPORT = ((188, 0), (192, 4))
+
+
+def is_movie(path: Path) -> bool:
+    """Return whether a file is a movie, by how it begins; False for what is no readable file."""
+    try:
+        with path.open("rb") as file:
+            head = file.read(600)
+    except (OSError, ValueError):
+        return False
+    if head[4:8] in QUICKTIME_BOXES:
+        return not (head[4:8] == b"ftyp" and head[8:12] in STILL_BRANDS)
+    if head.startswith(b"RIFF"):
+        return head[8:12] == b"AVI "
+    return head.startswith(SIGNATURES) or any(
+        head[first::step].startswith(b"\x47\x47\x47") for step, first in _TRANSPORT
+    )
+
+
+def ffmpeg_line(path: Path) -> str:
+    """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
+    pattern = path.with_name(path.stem.replace("%", "_") + ".%04d.png")
+    return f"ffmpeg -i {shlex.quote(str(path))} -vsync passthrough -pix_fmt rgb48be {shlex.quote(str(pattern))}"
+
+
+@contextmanager
+def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
+    """Yield a movie, opened, and its first video stream.
+
+    Raises
+    ------
+    PlateError
+        If PyAV is absent, the file is no movie or holds no video, or, in the block, something cannot be decoded.
+    """
+    try:
+        import av
+    except ImportError:
+        raise PlateError(
+            f"{path}: is a movie, which needs PyAV: pip install 'crfnet[video]', or extract its frames:"
+            f" {ffmpeg_line(path)}"
+        ) from None
+    try:
+        with av.open(f"file:{path}") as container:
+            if not container.streams.video:
+                raise PlateError(f"{path}: holds no video; give a movie with a picture")
+            stream = container.streams.video[0]
+            stream.thread_type = "AUTO"
+            yield container, stream
+    except av.FFmpegError as problem:
+        raise undecodable(path, problem.strerror or type(problem).__name__) from problem
+
+
+def undecodable(path: Path, reason: str) -> PlateError:
+    """Return the error of a movie that PyAV cannot decode."""
+    return PlateError(
+        f"{path}: cannot be decoded ({reason}); copy it again, or extract its frames: {ffmpeg_line(path)}"
+    )

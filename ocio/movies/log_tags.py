@@ -1,0 +1,68 @@
+"""What makers write of their log curves into movies, beside what streams can tag.
+
+Apple: the box `logs` of the sample description holds the identifier of Core Video's kCVImageBufferLogTransferFunction.
+Sony: the XML of XAVC and MXF files (non-real-time metadata) has the item CaptureGammaEquation.
+ARRI: QuickTime metadata com.arri.camera.ColorGammaSxS.
+"""
+
+from __future__ import annotations
+
+import mmap
+import re
+from collections.abc import Iterator, Mapping
+from pathlib import Path
+
+from ocio.movies.color import PublishedCurve
+
+#: Texts in the file, outside of its pictures -> the curve.
+TEXTS = {
+    rb"com\.apple\.rec2020\.apple-log": PublishedCurve("Apple Log", "Apple", "Apple Log"),
+    rb"com\.apple\.apple-wide-gamut\.apple-log": PublishedCurve("Apple Log 2", "Apple", "Apple Log 2"),
+    rb'"CaptureGammaEquation"\s+value="s-log3-cine"': PublishedCurve("S-Log3", "Sony", "S-Log3 S-Gamut3.Cine"),
+    rb'"CaptureGammaEquation"\s+value="s-log3"': PublishedCurve("S-Log3", "Sony", "S-Log3 S-Gamut3"),
+    rb'"CaptureGammaEquation"\s+value="s-log2"': PublishedCurve("S-Log2", "Sony"),
+}
+
+#: ARRI's key, in lower case, and how its value begins for LogC3.
+ARRI_KEY, ARRI_LOG = "com.arri.camera.colorgammasxs", "LOG-C"
+ARRI_CURVE = PublishedCurve("LogC3", "ARRI", "ARRI LogC3 (EI800)")
+
+#: Bytes at either end of a file in which texts are looked for where it has no boxes.
+_ENDS = 1 << 20
+
+#: Bytes of a box in which texts are looked for: the index of an hour of frames is smaller.
+_LARGEST = 1 << 25
+
+
+def log_curve(path: Path, metadata: Mapping[str, str]) -> PublishedCurve | None:
+    """Return the log curve that a maker names in a movie; None if none does.
+
+    Parameters
+    ----------
+    path : Path
+        The movie.
+    metadata : mapping of str to str
+        Of the file and of its stream, as FFmpeg reads it.
+    """
+    if any(key.lower() == ARRI_KEY and value.upper().startswith(ARRI_LOG) for key, value in metadata.items()):
+        return ARRI_CURVE
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        parts = list(_beside_pictures(content))
+        found = (curve for text, curve in TEXTS.items() if any(re.search(text, content[part]) for part in parts))
+        return next(found, None)
+
+
+def _beside_pictures(content: mmap.mmap) -> Iterator[slice]:
+    """Yield the parts of a file that hold no pictures: the boxes of QuickTime and MP4, or its two ends."""
+    if content[4:8] not in (b"ftyp", b"moov", b"wide", b"free", b"skip", b"mdat", b"pnot"):
+        yield from (slice(0, _ENDS), slice(max(0, len(content) - _ENDS), len(content)))
+        return
+    start = 0
+    while start + 8 <= len(content):
+        size = int.from_bytes(content[start : start + 4])
+        if size == 1:
+            size = int.from_bytes(content[start + 8 : start + 16])
+        end = start + size if size >= 8 else len(content)
+        if content[start + 4 : start + 8] != b"mdat":
+            yield slice(start, min(end, start + _LARGEST, len(content)))
+        start = end

@@ -1,0 +1,239 @@
+"""`crfnet` on movies: what it writes, says and refuses."""
+
+import json
+import shlex
+import signal
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from crfnet_core.image_io import read_photo
+from ocio.arguments.parts import BAD_INPUT
+from ocio.luts.files import read_lut
+from ocio.movies import decoding
+from tests.helpers.folders import listed, tree
+from tests.helpers.movies import make_movie, run_ffmpeg
+from tests.helpers.plates import read_exr
+from tests.helpers.processes import start_interruptible
+
+needs_av = pytest.mark.usefixtures("av")
+
+ROOT = Path(__file__).parents[3]
+
+
+@pytest.fixture
+def av():
+    """PyAV."""
+    return pytest.importorskip("av", reason="needs PyAV: the extra video")
+
+
+@pytest.fixture(scope="module")
+def movie(tmp_path_factory):
+    """24 frames of 320 x 240, large enough for windows, with a timecode."""
+    path = tmp_path_factory.mktemp("movie") / "clip.mp4"
+    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
+    options = "-c:v libx264 -preset ultrafast -g 6 -pix_fmt yuv420p -timecode 01:00:00:00"
+    return make_movie(path, options, seconds=1, source=source)
+
+
+@pytest.fixture
+def linearize(crfnet, look, movie, tmp_path):
+    """Run `crfnet linearize` on the movie into tmp_path/linear, with the LUT of the bundled photograph."""
+    out = tmp_path / "linear" / "l.%04d.exr"
+    return lambda *more: crfnet("linearize", movie, "--lut", look / "plate.spi1d", "--out", out, *more)
+
+
+@needs_av
+def test_every_frame_becomes_a_linear_plate(linearize, movie, look, tmp_path):
+    done = linearize("--depth", "float")
+    assert done.code == 0
+    assert done.out.startswith("clip.mp4: H.264, 320 x 240, 8 bits, 24 frames at 24 per second; BT.601, limited range")
+    assert listed(tmp_path / "linear") == [f"l.{number:04d}.exr" for number in range(1, 25)]
+    pixels, header = read_exr(tmp_path / "linear" / "l.0013.exr")
+    assert header.get_string_attribute("smpte:TimeCode") == "01:00:00:12"
+    assert header.getattribute("FramesPerSecond") == (24, 1)
+    run_ffmpeg(
+        "-i",
+        movie,
+        "-vf",
+        "zscale=matrixin=170m:rangein=limited:matrix=gbr:range=full:filter=bilinear:dither=none,format=gbrp",
+        tmp_path / "f.%04d.png",
+    )
+    photo = read_photo(tmp_path / "f.0013.png")
+    codes = np.stack(
+        [
+            np.interp(pixels[..., channel], read_lut(look / "plate.spi1d").values, np.linspace(0, 255, 4081))
+            for channel in range(3)
+        ],
+        2,
+    )
+    assert np.abs(codes - photo.pixels * 255).max() <= 1
+
+
+@needs_av
+def test_some_frames_become_linear_plates(linearize, tmp_path):
+    document = json.loads(linearize("--frames", "5-30x5", "--json").out)
+    assert [Path(path).name for path in document["written"]] == [f"l.00{number}.exr" for number in ("05", 10, 15, 20)]
+    assert document["missing"] == [25, 30]
+    assert document["movie"].startswith("clip.mp4: H.264")
+
+
+@needs_av
+def test_a_run_goes_on_without_decoding_everything_again(linearize, tmp_path, monkeypatch):
+    linearize()
+    complete = tree(tmp_path / "linear")
+    for number in (22, 23):
+        (tmp_path / "linear" / f"l.{number:04d}.exr").unlink()
+    seen = []
+
+    def watched(*arguments):
+        for number, frame in actual(*arguments):
+            seen.append(number)
+            yield number, frame
+
+    actual = decoding._decoded_from
+    monkeypatch.setattr(decoding, "_decoded_from", watched)
+    assert len(json.loads(linearize("--json").out)["skipped"]) == 22
+    assert tree(tmp_path / "linear") == complete
+    assert not set(seen) & set(range(2, 19)), "the first frame, for its tags, and the last group of pictures"
+
+
+@needs_av
+def test_finished_frames_are_replaced_when_asked(linearize, tmp_path):
+    linearize("--frames", "1-2")
+    before = tree(tmp_path / "linear")
+    assert len(json.loads(linearize("--frames", "1-2", "--exposure", "1", "--overwrite", "--json").out)["written"]) == 2
+    assert tree(tmp_path / "linear") != before
+
+
+@needs_av
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
+def test_an_interrupted_run_leaves_whole_frames(look, tmp_path):
+    source = "testsrc2=size=640x480:rate=24:duration={seconds}"
+    movie = make_movie(tmp_path / "a.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv420p", seconds=4, source=source)
+    out = tmp_path / "linear"
+    arguments = [
+        sys.executable,
+        "-m",
+        "ocio.cli",
+        "linearize",
+        movie,
+        "--lut",
+        look / "plate.spi1d",
+        "--out",
+        out / "l.%04d.exr",
+    ]
+    process = start_interruptible(arguments, cwd=ROOT, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    while process.poll() is None and not (out.is_dir() and len(list(out.glob("l.*.exr"))) > 2):
+        pass
+    process.send_signal(signal.SIGINT)
+    error = process.communicate(timeout=60)[1]
+    assert process.returncode == 130
+    assert error.decode() == "crfnet: interrupted\n"
+    names = listed(out)
+    assert 2 < len(names) < 96
+    assert all(name.startswith("l.") for name in names), "nothing half-written"
+
+
+@needs_av
+def test_without_a_lut_the_response_is_estimated_from_the_movie(crfnet, fixed_model, movie, tmp_path):
+    arguments = ("linearize", movie, "--out", tmp_path / "l.%04d.exr", "--model", fixed_model, "--frames", "1-12")
+    done = crfnet(*arguments)
+    assert done.code == 0
+    assert "Response estimated from clip.mp4 frame 1 and " in done.out
+    assert len(listed(tmp_path)) == 12
+
+
+@needs_av
+def test_an_estimate_of_a_movie(crfnet, fixed_model, movie, tmp_path):
+    done = crfnet("estimate", movie, "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
+    assert done.code == 0
+    assert "clip.mp4: H.264" in done.out
+    assert "clip.mp4 frame 1: 320 x 240, 8 bits" in done.out
+    assert "file metadata used: the file names no camera, a frame of a movie" in done.out
+    assert "The linear plate is frame 1; the whole movie, with the LUT:" in done.out
+    names = {"clip.spi1d", "clip.cube", "clip.clf", "config.ocio", "clip_linear.exr", "clip.json"}
+    assert set(listed(tmp_path / "look")) == names
+    found = json.loads((tmp_path / "look" / "clip.json").read_text())
+    assert found["movies"][0].startswith("clip.mp4: H.264")
+    assert found["photographs"][0] == {"name": "clip.mp4 frame 1", "width": 320, "height": 240, "bit_depth": 8}
+    assert read_exr(tmp_path / "look" / "clip_linear.exr")[0].shape == (240, 320, 3)
+
+
+@needs_av
+def test_the_line_for_the_whole_movie_is_right(crfnet, fixed_model, movie, tmp_path, monkeypatch):
+    done = crfnet("estimate", movie, "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
+    line = shlex.split(next(line for line in done.out.splitlines() if line.startswith("  crfnet linearize")))
+    monkeypatch.chdir(tmp_path)
+    assert crfnet(*line[1:]).code == 0
+    assert len(listed(tmp_path / "linear")) == 24
+
+
+@needs_av
+def test_movies_and_photographs_together(crfnet, fixed_model, movie, plate, tmp_path):
+    done = crfnet("estimate", plate, movie, "--each", "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
+    assert done.code == 0
+    assert {"plate_linear.exr", "clip_linear.exr"} <= set(listed(tmp_path / "look"))
+
+
+@pytest.mark.parametrize("command", ["estimate", "linearize"])
+def test_without_pyav_it_says_what_to_do(crfnet, look, movie, tmp_path, monkeypatch, command):
+    monkeypatch.setitem(sys.modules, "av", None)
+    out = ("--lut", look / "plate.spi1d", "--out", tmp_path / "a.%d.exr")
+    done = crfnet(command, movie, *(out if command == "linearize" else ("--out", tmp_path / "out")))
+    assert (done.code, done.out, done.err.count("\n")) == (BAD_INPUT, "", 1)
+    assert done.err.startswith(
+        f"crfnet: error: {movie}: is a movie, which needs PyAV: pip install 'crfnet[video]', or "
+    )
+    line = shlex.split(done.err.partition("extract its frames: ")[2])
+    assert line[0] == "ffmpeg"
+    run_ffmpeg(*line[1:])
+    written = sorted(movie.parent.glob("clip.*.png"))
+    assert len(written) == 24
+    assert read_photo(written[0]).bit_depth == 16
+    for path in written:
+        path.unlink()
+    assert listed(tmp_path) == []
+
+
+@needs_av
+@pytest.mark.parametrize(
+    ("more", "message"),
+    [
+        (("--frames", "100-200"), "there are 1-24; check the frames"),
+        (("--frames", "0"), "there are 1-24; check the frames"),
+        (("--frames", "x"), "frames 'x'"),
+        (("--out", "a.exr"), "one name for 24 frames"),
+    ],
+)
+def test_bad_frames_are_refused_in_one_line(linearize, tmp_path, monkeypatch, more, message):
+    monkeypatch.chdir(tmp_path)
+    done = linearize(*more)
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+    assert message in done.err
+    assert listed(tmp_path) == []
+
+
+@needs_av
+def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
+    options = "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -color_trc smpte2084"
+    path = make_movie(tmp_path / "hdr.mp4", options)
+    for arguments in (("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")):
+        done = crfnet(*arguments)
+        assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+        assert 'give it the color space "Rec.2100-PQ - Display"' in done.err
+    assert listed(tmp_path) == ["hdr.mp4"]
+
+
+@needs_av
+def test_the_document_of_a_movie_follows_the_schema(crfnet, fixed_model, movie, root, tmp_path):
+    jsonschema = pytest.importorskip("jsonschema")
+    done = crfnet("estimate", movie, "--out", tmp_path / "a", "--model", fixed_model, "--no-sheet", "--json")
+    schema = json.loads((root / "docs" / "estimate.schema.json").read_text(encoding="utf-8"))
+    document = json.loads(done.out)["estimates"][0]
+    jsonschema.validate(document, schema)
+    assert "movies" in schema["properties"]
+    assert document["metadata"][0]["encoding"] == "movie"

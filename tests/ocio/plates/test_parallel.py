@@ -1,0 +1,53 @@
+"""Jobs in threads, with bounded memory."""
+
+import threading
+from contextlib import closing
+
+import pytest
+
+from crfnet_core.errors import PlateError
+from ocio.plates.parallel import finished
+
+
+def test_every_job_ends_once():
+    done = []
+    jobs = ((number, lambda number=number: done.append(number)) for number in range(50))
+    assert sorted(name for name, _ in finished(jobs, 3)) == sorted(done) == list(range(50))
+
+
+@pytest.mark.parametrize("workers", [1, 3])
+def test_jobs_are_taken_only_when_there_is_room(workers):
+    taken, ended, most = [], [], []
+
+    def jobs():
+        for number in range(30):
+            taken.append(number)
+            most.append(len(taken) - len(ended))
+            yield number, lambda number=number: ended.append(number)
+
+    list(finished(jobs(), workers, waiting=2))
+    assert max(most) <= workers + 2
+
+
+def test_a_job_that_fails_does_not_stop_the_others():
+    def fail():
+        raise PlateError("damaged")
+
+    problems = {name: future.exception() for name, future in finished([(1, fail), (2, lambda: None)], 2)}
+    assert isinstance(problems[1], PlateError)
+    assert problems[2] is None
+
+
+def test_closing_finishes_what_has_begun_and_drops_the_rest():
+    begun, go = [], threading.Event()
+
+    def work():
+        begun.append(1)
+        go.wait(5)
+
+    jobs = [(0, lambda: None), *((number, work) for number in range(1, 9))]
+    with closing(finished(jobs, 1, waiting=4)) as ended:
+        assert next(ended)[0] == 0
+        go.set()
+    assert len(begun) < 8
+    assert not [thread for thread in threading.enumerate() if thread.name.startswith("plate")]
