@@ -63,7 +63,11 @@ def calibrated_response(path: Path, table: ArrayLike, source: str) -> ResponseFi
         notes.append(f"Made to increase, which moved it by up to {100 * moved:.2g} % of white")
     notes.append("Scaled so that white, of green, is 1")
     increasing = np.stack([strictly_increasing(column) for column in (rising / white).T], axis=1)
-    return described(path, ResponseFile(lut_of_columns(increasing), source), notes)
+    try:
+        lut = lut_of_columns(increasing)
+    except LutError as problem:
+        raise LutError(f"{path}: {problem}; calibrate again") from problem
+    return described(path, ResponseFile(lut, source), notes)
 
 
 def codes_table(light: Float64Array, *, middle: int) -> Float64Array:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 import re
 from pathlib import Path
+from tokenize import TokenError
 
 import numpy as np
 
@@ -88,10 +89,11 @@ def write_opencv(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
 def _read_npy(path: Path) -> Float64Array:
     """Return the array in a .npy file."""
     try:
-        return np.asarray(np.load(path, allow_pickle=False), dtype=np.float64)
+        with np.errstate(invalid="ignore"):  # a NaN of another kind stays a NaN
+            return np.asarray(np.load(path, allow_pickle=False), dtype=np.float64)
     except OSError as problem:
         raise LutError(f"{path}: cannot be read ({problem.strerror or problem}); check the name") from problem
-    except (ValueError, TypeError, EOFError) as problem:
+    except (ValueError, TypeError, EOFError, SyntaxError, TokenError) as problem:
         raise LutError(f"{path}: is no .npy file of numbers; save OpenCV's response with numpy.save") from problem
 
 

@@ -33,7 +33,9 @@ def read_other_lut(path: Path) -> ResponseFile:
     LutError
         If OpenColorIO refuses the file, it holds a 3D LUT or a matrix, or it falls somewhere.
     """
-    LutText.read(path)  # for its own errors: absent, too large, no text
+    lines = [line.strip() for line in LutText.read(path).lines]  # absent, too large or no text is refused here
+    if "BEGIN METADATA" in lines and "END METADATA" not in lines:  # OpenColorIO would look for it for ever
+        raise LutError(f"{path}: has no line END METADATA; the file is cut or altered")
     steps = _steps(path)
     mixing = next((type(step).__name__ for step in steps if not isinstance(step, _PER_CHANNEL)), None)
     if mixing or not steps:
@@ -56,6 +58,8 @@ def _steps(path: Path) -> list[OCIO.Transform]:
     transform = OCIO.FileTransform(src=str(path.absolute()), interpolation=OCIO.INTERP_LINEAR)
     try:
         return list(OCIO.Config.CreateRaw().getProcessor(transform).createGroupTransform())
+    except UnicodeDecodeError:  # OpenColorIO's message quotes the file
+        raise LutError(f"{path}: OpenColorIO reads no LUT from it; write the LUT again") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         said = one_line(problem).partition(" All formats")[0].replace(str(path.absolute()), path.name)
         raise LutError(f"{path}: OpenColorIO reads no LUT from it ({said}); write the LUT again") from None

@@ -107,6 +107,10 @@ def test_channels_that_agree_are_one_table(tmp_path):
         (powers(-1, -1, -1), "is not brighter for larger codes"),
         (np.full((256, 1, 3), np.nan), "holds light for 0 codes"),
         (np.array(["a", "b"]), "is no .npy file of numbers"),
+        (
+            np.linspace(0, 1, 256)[:, None, None] * np.array([1e40, 1, 1]),
+            r"a.npy: entry \d+ of the LUT, .*; calibrate again",
+        ),
     ],
 )
 def test_what_is_no_response_is_refused(tmp_path, table, message):

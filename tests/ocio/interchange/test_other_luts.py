@@ -15,7 +15,7 @@ SHAPER = "2\n0.0 1.0\n0.0 1.0\n" * 3
 
 
 def csp(rows, shaper=SHAPER):
-    body = "".join(" ".join(f"{value:.9g}" for value in row) + "\n" for row in rows)
+    body = "".join(" ".join(map(str, row)) + "\n" for row in rows)
     return f"CSPLUTV100\n1D\n\n{shaper}\n{len(rows)}\n{body}"
 
 
@@ -79,11 +79,13 @@ def test_3d_tables_are_refused(tmp_path):
         ("a.csp", csp([[0, 0, 0], [0.5, 0.5, 0.5], [0.4, 0.4, 0.4], [1, 1, 1]]), "does not increase"),
         ("a.csp", csp([[0.5, 0.5, 0.5], [0.5, 0.5, 0.5]]), "does not increase"),
         ("a.csp", "", "is empty"),
+        ("a.csp", csp([["0", "0", "0"], ["\xdd", "1", "1"]], SHAPER), "OpenColorIO reads no LUT from it"),
+        ("a.csp", "CSPLUTV100\n1D\n\nBEGIN METADATA\nhello\n", "has no line END METADATA"),
         ("a.tif", "x", r"responses are read from \.spi1d, \.cube, \.clf, .*; found '\.tif'"),
     ],
 )
 def test_what_is_no_response_is_refused(tmp_path, name, text, message):
-    (tmp_path / name).write_text(text)
+    (tmp_path / name).write_bytes(text.encode("latin-1"))
     with pytest.raises(LutError, match=message) as caught:
         read_response(tmp_path / name)
     assert "\n" not in str(caught.value)
