@@ -13,6 +13,7 @@ import PyOpenColorIO as OCIO
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
 from crfnet_core.types import Float64Array
+from ocio.configs.file_rules import rule_regex
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"
@@ -54,8 +55,8 @@ class PlateColorSpace:
     encoding : str
         OpenColorIO's name of the encoding.
     file_pattern : str or None
-        The names of the plate's files with `*` and `?`, for example "shot_plate01.*.png", for a file rule; they match
-        in any folder, and upper and lower case differ.
+        The names of the plate's files with `*`, `?` and `#` for a number, for example "shot_plate01.#.png", for a file
+        rule: see `ocio.configs.file_rules.rule_regex`.
     exposure : float
         Stops added after the response. They stand in the config as a transform of their own, to be edited there.
     primaries : Primaries
@@ -171,7 +172,7 @@ def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
         config.addColorSpace(color_space)
         if modern and space.file_pattern is not None:
             rules = config.getFileRules()
-            rules.insertRule(0, space.name, space.name, _rule_regex(space.file_pattern))
+            rules.insertRule(0, space.name, space.name, rule_regex([space.file_pattern]))
             config.setFileRules(rules)
     except OCIO.Exception as problem:
         raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
@@ -247,9 +248,3 @@ def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
     square = np.eye(4)
     square[:3, :3] = np.round(rows, 12) + 0.0  # not -0
     return OCIO.MatrixTransform(matrix=square.ravel().tolist())
-
-
-def _rule_regex(pattern: str) -> str:
-    """Return the regular expression of file names with * and ? in any folder, in a syntax that every host shares."""
-    escaped = re.sub(r"([.^$+(){}|\[\]\\])", r"\\\1", pattern)
-    return r"(.*[/\\])?" + escaped.replace("*", r"[^/\\]*").replace("?", r"[^/\\]")
