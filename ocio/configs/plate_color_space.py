@@ -13,7 +13,8 @@ import PyOpenColorIO as OCIO
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
 from crfnet_core.types import Float64Array
-from ocio.configs.file_rules import rule_regex
+from ocio.configs.file_rules import LINEAR_SUFFIX, remove_file_rules, rule_regex
+from ocio.configs.plate_views import add_plate_views, plate_views, remove_plate_views
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"
@@ -138,13 +139,15 @@ def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO
     config : PyOpenColorIO.Config
         Any config; it is not changed.
     *spaces : PlateColorSpace
-        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`.
+        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`, whose views are
+        renewed.
 
     Raises
     ------
     ConfigError
         If the config uses the name for something else, or cannot convert linear Rec.709 to its reference space.
     """
+    viewed = [space.name for space in spaces if plate_views(config, space.name)]
     config = copy.deepcopy(config)
     for space in spaces:
         _add(config, space)
@@ -152,7 +155,7 @@ def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO
     config.clearSearchPaths()
     for folder in (*folders, "."):
         config.addSearchPath(folder)
-    return config
+    return add_plate_views(config, viewed) if viewed else config
 
 
 def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
@@ -179,7 +182,7 @@ def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
 
 
 def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:
-    """Return a copy of `config` without a plate's colour space and its file rules; all else stays."""
+    """Return a copy of `config` without a plate's colour space, its file rules and its views; all else stays."""
     config = copy.deepcopy(config)
     _remove(config, name)
     return config
@@ -196,13 +199,10 @@ def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
 
 
 def _remove(config: OCIO.Config, name: str) -> None:
-    """Remove a colour space of a config, and the file rules of its name."""
+    """Remove a colour space of a config, its file rules and its views."""
     config.removeColorSpace(name)
-    rules = config.getFileRules()
-    for index in reversed(range(rules.getNumEntries())):
-        if rules.getName(index).casefold() == name.casefold():
-            rules.removeRule(index)
-    config.setFileRules(rules)
+    remove_file_rules(config, (name, name + LINEAR_SUFFIX))
+    remove_plate_views(config, [name])
 
 
 def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform:

@@ -57,7 +57,8 @@ def add_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Config:
     """
     if config.getMajorVersion() < 2:
         raise ConfigError("profile version 1 has no view transforms; leave --view out")
-    config = without_plate_views(config, spaces)
+    config = copy.deepcopy(config)
+    remove_plate_views(config, spaces)
     displays = _display_spaces(config)
     plain = [] if displays else [display for display in config.getDisplaysAll() if "srgb" in display.lower()]
     if not displays and not plain:
@@ -73,9 +74,8 @@ def add_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Config:
     return config
 
 
-def without_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Config:
-    """Return a copy of `config` without the views of plates' colour spaces."""
-    config = copy.deepcopy(config)
+def remove_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> None:
+    """Remove the views of plates' colour spaces from a config, which is changed."""
     names = {name for space in spaces for name in view_names(space)}
     for display in config.getDisplaysAll():
         for name in names.intersection(config.getViews(OCIO.VIEW_DISPLAY_DEFINED, display)):
@@ -88,7 +88,6 @@ def without_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Conf
                 config.addViewTransform(transform)
     if names.intersection(active := active_views(config)):
         config.setActiveViews(_listed([name for name in active if name not in names]))
-    return config
 
 
 def plate_views(config: OCIO.Config, space: str) -> tuple[str, ...]:

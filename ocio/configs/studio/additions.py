@@ -132,7 +132,7 @@ def _with_look(
     rules = PlateRules.of(added, look, options.patterns, options.linear_patterns, is_shared=is_shared)
     add_file_rule(added, space.name + LINEAR_SUFFIX, rules.linear_space, rules.linear if has_rules else ())
     add_file_rule(added, space.name, space.name, rules.encoded if has_rules else ())
-    if options.has_views or plate_views(config, space.name):
+    if options.has_views and not plate_views(added, space.name):
         added = add_plate_views(added, [space.name])
     is_same = _state(added, space.name) == _state(config, space.name)
     return (config if is_same else added), list(rules.notes) if options.has_rules else []

@@ -8,7 +8,6 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from ocio.configs.file_rules import LINEAR_SUFFIX, remove_file_rules
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import (
     RECORD_NAME,
@@ -20,7 +19,6 @@ from ocio.configs.installation_record import (
     write_record,
 )
 from ocio.configs.plate_color_space import without_plate_color_space
-from ocio.configs.plate_views import without_plate_views
 from ocio.configs.studio.plates import Changed, PlateInConfig, checked_target, plates_in_config
 from ocio.configs.studio.sources import ConfigSource, is_blender_config
 
@@ -43,8 +41,6 @@ def remove_plates(source: ConfigSource, names: Sequence[str]) -> Changed:
         if plate is None:
             listed = ", ".join(each.name for each in known.values()) or "none"
             raise ConfigError(f"{target}: has no plate {name!r}; its plates are: {listed}")
-        config = without_plate_views(config, [plate.name])
-        remove_file_rules(config, [plate.name + LINEAR_SUFFIX])
         config = without_plate_color_space(config, plate.name)
         plates.append(plate)
     try:
