@@ -1,5 +1,6 @@
 """OpenColorIO configs that know a plate's colour space.
 
+reference_space      from linear Rec.709 to the scene reference space of any config
 file_rules           which files are a plate's, by their names
 plate_color_space    the colour space, as data and as a part of any config
 plate_views          views that show a scene through the plate's camera

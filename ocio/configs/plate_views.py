@@ -1,10 +1,10 @@
 """Views "as photographed": the scene through a plate's own camera response, for review and for output.
 
-The view transform undoes the plate's conversion: from the scene reference to linear light in the plate's exposure, then
-through the response f to code values, which an sRGB display shows as they are. CG on a linear plate gets the camera's
-tone curve in this way, and the plate its own code values.
+The view transform undoes the plate's conversion: from the scene reference to linear light in the plate's exposure and
+primaries, then through the response f to code values. A display with the sRGB curve and these primaries shows the codes
+as they are. CG on a linear plate gets the camera's tone curve in this way, and the plate its own code values.
 
-A plate knows no light above its white. The plain view clips it. The other one rolls it off (docs/METHOD.md, Eq. 34).
+A plate knows no light above its white. The plain view clips it. The other one rolls it off (docs/METHOD.md, Eq. 37).
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from collections.abc import Mapping, Sequence
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.metadata.color_tags import REC709
+from ocio.configs.reference_space import matrix_transform, rec709_to_reference
 
 #: The names of the two views and view transforms of a plate's colour space.
 VIEW_NAMES = ("As photographed ({})", "As photographed with roll-off ({})")
@@ -105,7 +107,7 @@ def active_views(config: OCIO.Config) -> list[str]:
 
 
 def roll_off() -> OCIO.Transform:
-    """Return the roll-off of highlights, from linear light with the plate's white at 1 to at most 1 (Eq. 34).
+    """Return the roll-off of highlights, from linear light with the plate's white at 1 to at most 1 (Eq. 37).
 
     Up to `KNEE` it is the identity, above it a logarithm that continues with the same value and slope. White of the
     plate comes to 0.865, and 1 is reached at 14.2, or 3.8 stops above it.
@@ -136,6 +138,8 @@ def _add_views(config: OCIO.Config, space: str, displays: Mapping[str, str]) -> 
 def _add_plain_view(config: OCIO.Config, space: str, displays: Sequence[str]) -> tuple[str, ...]:
     """Add the clipped view of a plate to displays that show scene-referred colour spaces; return its name."""
     clipped, _ = view_names(space)
+    if _primaries_matrix(config, space) is not None:
+        raise ConfigError(f"{space}: an sRGB display cannot show its primaries as they are; leave --view out")
     for display in displays:
         config.addDisplayView(display, clipped, space)
     return (clipped,)
@@ -143,19 +147,42 @@ def _add_plain_view(config: OCIO.Config, space: str, displays: Sequence[str]) ->
 
 def _view_transform(config: OCIO.Config, space: str, name: str, *, is_rolled_off: bool) -> OCIO.ViewTransform:
     """Return the way from the scene reference through the plate's response to CIE XYZ of an sRGB display."""
-    conversion = config.getColorSpace(space).getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    response, *rest = list(conversion) if isinstance(conversion, OCIO.GroupTransform) else [conversion]
+    response, *rest = _steps(config, space)
     inverse = OCIO.TRANSFORM_DIR_INVERSE
     steps: list[OCIO.Transform] = [OCIO.GroupTransform(rest, inverse)] if rest else []
     if is_rolled_off:
         steps.append(roll_off())
-    steps += [OCIO.GroupTransform([response], inverse), OCIO.BuiltinTransform(SRGB_DISPLAY, direction=inverse)]
+    steps += [OCIO.GroupTransform([response], inverse), *_codes_to_xyz(_primaries_matrix(config, space))]
     transform = OCIO.ViewTransform(OCIO.REFERENCE_SPACE_SCENE)
     transform.setName(name)
     highlights = f"rolled off from {KNEE} of its white" if is_rolled_off else "clipped at its white"
     transform.setDescription(f"Through the camera response of {space}, {highlights}.")
     transform.setTransform(OCIO.GroupTransform(steps), OCIO.VIEWTRANSFORM_DIR_FROM_REFERENCE)
     return transform
+
+
+def _steps(config: OCIO.Config, space: str) -> list[OCIO.Transform]:
+    """Return the transforms of a plate's colour space to the reference space; the first one is its LUT."""
+    conversion = config.getColorSpace(space).getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    return list(conversion) if isinstance(conversion, OCIO.GroupTransform) else [conversion]
+
+
+def _primaries_matrix(config: OCIO.Config, space: str) -> OCIO.Transform | None:
+    """Return the matrix from a plate's primaries to linear Rec.709; None if it has these already.
+
+    A plate's colour space is a LUT, perhaps an exposure, perhaps this matrix, and the way from Rec.709.
+    """
+    own = _steps(config, space)[1:]
+    own = own[: len(own) - len(rec709_to_reference(config))]
+    return next((step for step in own if isinstance(step, OCIO.MatrixTransform)), None)
+
+
+def _codes_to_xyz(primaries: OCIO.Transform | None) -> list[OCIO.Transform]:
+    """Return the transforms from a photograph's code values, by the sRGB curve, to CIE XYZ of a display."""
+    if primaries is None:
+        return [OCIO.BuiltinTransform(SRGB_DISPLAY, direction=OCIO.TRANSFORM_DIR_INVERSE)]
+    curve = OCIO.ExponentWithLinearTransform(gamma=[2.4, 2.4, 2.4, 1], offset=[0.055, 0.055, 0.055, 0])
+    return [curve, primaries, matrix_transform(REC709.to_xyz())]
 
 
 def _display_spaces(config: OCIO.Config) -> dict[str, str]:

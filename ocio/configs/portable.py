@@ -18,13 +18,9 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
     conversion_matrix,
 )
-from ocio.configs.plate_color_space import (
-    REC709_TO_AP0,
-    PlateColorSpace,
-    add_plate_color_space,
-    matrix_transform,
-)
+from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
 from ocio.configs.plate_views import add_plate_views
+from ocio.configs.reference_space import REC709_TO_AP0, matrix_transform
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"

@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import PyOpenColorIO as OCIO
 
+from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.response import ResponseCurve
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
@@ -36,6 +38,8 @@ STUDIO = "studio-config-v4.0.0_aces-v2.0_ocio-v2.5"
 #: The colour space of `write_look`.
 NAME = "CRF plate01"
 
+CORNERS = ("red", "green", "blue", "white")
+
 
 def write_look(
     folder: Path,
@@ -44,12 +48,13 @@ def write_look(
     lut: Lut1D = LUT,
     exposure: float = 0.0,
     interop_id: str = "lin_rec709_scene",
+    primaries: Primaries = REC709,
 ) -> Path:
     """Write LUT, document, config and linear plates of photographs with these names, and return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     files = OutputFiles.named(folder, [Path(name) for name in photographs])
     write_lut(files.spi1d, lut, overwrite=True)
-    space = files.plate_color_space(Path(photographs[0]), exposure=exposure)
+    space = replace(files.plate_color_space(Path(photographs[0]), exposure=exposure), primaries=primaries)
     write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=True)
     for path in files.linear:
         attributes = {"colorInteropID": interop_id} if interop_id else {}
@@ -57,6 +62,8 @@ def write_look(
     document = {
         "photographs": [{"name": name} for name in photographs],
         "color_space": files.color_space,
+        "exposure": {"stops": exposure},
+        "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
         "files": {
             "spi1d": files.spi1d.name,
             "config": files.config.name,

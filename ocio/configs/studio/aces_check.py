@@ -10,8 +10,9 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
 from ocio.configs.files import plate_exposure
-from ocio.configs.plate_color_space import REC709_TO_AP0
+from ocio.configs.reference_space import REC709_TO_AP0
 from ocio.luts.lut1d import Lut1D
 
 #: Differences in ACES2065-1 between a config's processor and the LUT and matrix: absolute up to a value of 1, relative
@@ -25,7 +26,9 @@ INTERCHANGE = "aces_interchange"
 CHECKED_LEVELS = 17
 
 
-def check_in_ap0(config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D]) -> list[str]:
+def check_in_ap0(
+    config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D], primaries: Mapping[str, Primaries]
+) -> list[str]:
     """Check that plates' colour spaces reach ACES2065-1 as their LUTs and the matrix from Rec.709 do; return notes.
 
     Parameters
@@ -36,6 +39,8 @@ def check_in_ap0(config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D]) -
         The folder from which it finds its files.
     luts : mapping of str to Lut1D
         The LUT of each plate's colour space, by the name of the space.
+    primaries : mapping of str to Primaries
+        The primaries of each plate, in the same way.
 
     Raises
     ------
@@ -51,7 +56,7 @@ def check_in_ap0(config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D]) -
     OCIO.ClearAllCaches()
     for name, lut in luts.items():
         try:
-            error = ap0_error(config, name, lut)
+            error = ap0_error(config, name, lut, primaries[name])
         except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
             raise ConfigError(f"{name}: cannot be converted to ACES2065-1 ({one_line(problem)})") from problem
         if not error <= MOST_DIFFERENCE:
@@ -62,12 +67,13 @@ def check_in_ap0(config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D]) -
     return list(dict.fromkeys(notes))
 
 
-def ap0_error(config: OCIO.Config, name: str, lut: Lut1D) -> float:
+def ap0_error(config: OCIO.Config, name: str, lut: Lut1D, primaries: Primaries = REC709) -> float:
     """Return the largest difference in ACES2065-1 between a plate's colour space and its LUT and matrix."""
     levels = np.linspace(0, 1, CHECKED_LEVELS, dtype=np.float32)
     codes = np.stack(np.meshgrid(levels, levels, levels), axis=-1).reshape(-1, 3)
     gain = 2 ** plate_exposure(config.getColorSpace(name))
-    expected = lut.apply(codes).astype(np.float64) * gain @ np.transpose(REC709_TO_AP0)
+    matrix = np.array(REC709_TO_AP0) @ conversion_matrix(primaries, REC709)
+    expected = lut.apply(codes).astype(np.float64) * gain @ matrix.T
     found = codes.copy()
     config.getProcessor(name, INTERCHANGE).getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(found)
     return float((np.abs(found - expected) / np.maximum(np.abs(expected), 1)).max())

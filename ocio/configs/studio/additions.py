@@ -13,6 +13,7 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import Primaries
 from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import (
@@ -88,11 +89,13 @@ def add_looks(source: ConfigSource, target: Path | None, looks: Sequence[Look], 
     record = read_record(target) if target == source.path else None
     identities = dict(record.plates) if record else {}
     config, notes, luts = _moved(source, target), list[str](), dict[str, Lut1D]()
+    primaries = dict[str, Primaries]()
     is_shared = is_blender_config(source.path) or is_blender_config(target)
     for look in looks:
         space = own_space(config, look, target, identities)
         config, more = _with_look(config, look, space, options, is_shared=is_shared)
         identities[space.name], luts[space.name] = str(look.source), look.lut
+        primaries[space.name] = space.primaries
         notes += [note for note in more if note not in notes]
     files = {_lut_path(config, name, target): lut for name, lut in luts.items()}
     plates = tuple(plate for plate in plates_in_config(config) if plate.name in luts)
@@ -100,7 +103,7 @@ def add_looks(source: ConfigSource, target: Path | None, looks: Sequence[Look], 
         return Changed(target, plates, False, None, tuple(notes))
     if target != source.path and target.exists() and not options.overwrite:
         raise ConfigError(f"{target}: exists and differs; to add to it, name it as --base, or replace it: --overwrite")
-    backup, more = _write(target, config, luts, files, identities)
+    backup, more = _write(target, config, luts, primaries, files, identities)
     return Changed(target, plates, True, target.with_name(backup) if backup else None, (*notes, *more))
 
 
@@ -160,7 +163,12 @@ def _is_same(target: Path, text: str, files: dict[Path, Lut1D]) -> bool:
 
 
 def _write(
-    target: Path, config: OCIO.Config, luts: dict[str, Lut1D], files: dict[Path, Lut1D], identities: dict[str, str]
+    target: Path,
+    config: OCIO.Config,
+    luts: dict[str, Lut1D],
+    primaries: dict[str, Primaries],
+    files: dict[Path, Lut1D],
+    identities: dict[str, str],
 ) -> tuple[str | None, list[str]]:
     """Write the LUTs, check the config, and write it, its backup and its record; return the backup's name and notes."""
     record = read_record(target)
@@ -168,7 +176,7 @@ def _write(
         with output_folder(own_folder(target)), new_files_removed_on_failure(files):
             for path, lut in files.items():
                 write_spi1d(path, lut, overwrite=True)
-            notes = check_in_ap0(config, target.parent, luts)
+            notes = check_in_ap0(config, target.parent, luts, primaries)
             backup = backed_up(target, record)
             write_config(target, config, check=luts, overwrite=True)
             folders = record.folders if record else ()

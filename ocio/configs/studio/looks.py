@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -11,11 +11,15 @@ import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 from ocio.configs.files import load_config, plate_exposure
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.files import READERS, read_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles
+
+#: The manifest of many estimates (`ocio.pipeline.manifest`), whose files are in folders below it.
+MANIFEST = "estimates.jsonl"
 
 
 @dataclass(frozen=True, eq=False)
@@ -62,7 +66,8 @@ def read_looks(path: Path) -> list[Look]:
     """
     path = path.resolve()
     if path.is_dir():
-        documents = [found for found in sorted(path.glob("*.json")) if _document(found)]
+        pattern = "**/*.json" if (path / MANIFEST).is_file() else "*.json"
+        documents = [found for found in sorted(path.glob(pattern)) if _document(found)]
         if not documents:
             raise ConfigError(f"{path}: holds nothing that crfnet estimate wrote; give its folder, JSON or LUT")
         return [look for document in documents for look in read_looks(document)]
@@ -79,8 +84,9 @@ def _look(source: Path, lut_file: Path, document: dict[str, Any] | None) -> Look
     photographs = tuple(photo["name"] for photo in document["photographs"]) if document else ()
     names = Path(photographs[0] if photographs else lut_file.name)
     files = OutputFiles.named(source.parent, [names])
-    exposure = _exposure(source.with_name(document["files"]["config"]), document["color_space"]) if document else 0.0
-    space = files.plate_color_space(names, exposure=exposure)
+    space = files.plate_color_space(names)
+    if document:
+        space = replace(space, exposure=_exposure(source, document), primaries=_primaries(document))
     linear = [source.with_name(name) for name in document["files"]["linear"]] if document else [*files.linear]
     headers = {file.name: _interop_id(file) for file in linear if file.is_file()}
     return Look(source.with_suffix(""), space, read_lut(lut_file), photographs, headers)
@@ -92,15 +98,31 @@ def _document(path: Path) -> dict[str, Any] | None:
         document = json.loads(path.read_text(encoding="utf-8"))
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
+        float(document["exposure"]["stops"])
+        _primaries(document)
     except (OSError, ValueError, KeyError, TypeError):
         return None
     return document if all(isinstance(name, str) and Path(name).name == name for name in names) else None
 
 
-def _exposure(config: Path, name: str) -> float:
-    """Return the stops that a look's own config gives a plate; 0 if the config is gone."""
-    space: OCIO.ColorSpace | None = load_config(config).getColorSpace(name) if config.is_file() else None
-    return plate_exposure(space) if space is not None else 0.0
+def _exposure(source: Path, document: dict[str, Any]) -> float:
+    """Return the stops of a plate: those in the look's own config, where they may have been edited, or the document."""
+    config = source.with_name(document["files"]["config"])
+    space: OCIO.ColorSpace | None = None
+    if config.is_file():
+        space = load_config(config).getColorSpace(document["color_space"])
+    return plate_exposure(space) if space is not None else float(document["exposure"]["stops"])
+
+
+def _primaries(document: dict[str, Any]) -> Primaries:
+    """Return the primaries of a plate; unknown ones are taken for Rec.709."""
+    entry = document["primaries"]
+    if "red" not in entry:
+        return REC709
+    red, green, blue, white = ((float(x), float(y)) for x, y in map(entry.get, ("red", "green", "blue", "white")))
+    found = Primaries(str(entry["name"]), red, green, blue, white)
+    known = (each for each in PHOTOGRAPHIC.values() if replace(each, name=found.name, interop_id="") == found)
+    return next(known, found)
 
 
 def _interop_id(path: Path) -> str:

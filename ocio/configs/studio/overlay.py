@@ -16,6 +16,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, check_target
+from crfnet_core.metadata.color_tags import Primaries
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import own_folder
 from ocio.configs.plate_color_space import add_plate_color_space
@@ -112,10 +113,12 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     if target == base.path:
         raise ConfigError(f"{target}: is the config to merge with; choose another name for the overlay")
     config, luts, identities = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Lut1D](), dict[str, str]()
+    primaries = dict[str, Primaries]()
     for look in looks:
         space = own_space(config, look, target, identities)
         config = add_plate_color_space(config, space)
         luts[space.name], identities[space.name] = look.lut, str(look.source)
+        primaries[space.name] = space.primaries
     plates = plates_in_config(config)
     files = {target.parent / plate.lut_file: luts[plate.name] for plate in plates}
     text = MERGE.format(base=_quoted(base.name), overlay=_quoted(target.name))
@@ -124,7 +127,7 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
             check_target(path, overwrite=overwrite, error=ConfigError)
         for path, lut in files.items():
             write_spi1d(path, lut, overwrite=overwrite)
-        check_in_ap0(config, target.parent, luts)
+        check_in_ap0(config, target.parent, luts, primaries)
         write_config(target, config, check=luts, overwrite=overwrite)
         atomic_write_text(merge_file, text, overwrite=overwrite, error=ConfigError)
     return Overlay(target, merge_file, tuple(plates))

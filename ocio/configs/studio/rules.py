@@ -9,7 +9,7 @@ from dataclasses import dataclass
 import PyOpenColorIO as OCIO
 
 from ocio.configs.file_rules import is_counter_name, plate_pattern
-from ocio.configs.plate_color_space import LINEAR_REC709
+from ocio.configs.reference_space import LINEAR_REC709
 from ocio.configs.studio.looks import Look
 
 #: The space of linear plates of which no header says more.

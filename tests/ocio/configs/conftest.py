@@ -9,7 +9,7 @@ from tests.helpers.looks import OTHER_LUT, write_look
 
 
 @pytest.fixture
-def look(tmp_path):
+def small_look(tmp_path):
     return write_look(tmp_path / "look")
 
 

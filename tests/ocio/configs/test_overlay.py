@@ -10,8 +10,8 @@ import pytest
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
-from ocio.configs.plate_color_space import REC709_TO_AP0
 from ocio.configs.portable import portable_config
+from ocio.configs.reference_space import REC709_TO_AP0
 from ocio.configs.studio.looks import read_looks
 from ocio.configs.studio.overlay import write_overlay
 from ocio.configs.studio.sources import find_config

@@ -7,6 +7,7 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
 from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space, without_plate_color_space
 from ocio.configs.plate_views import (
     KNEE,
@@ -24,6 +25,7 @@ from tests.helpers.configs import loaded
 from tests.helpers.looks import LUT
 
 CLIPPED, ROLLED_OFF = view_names("CRF plate")
+P3_STUDIO = "studio-config-v4.0.0_aces-v2.0_ocio-v2.5"
 STUDIO = "studio-config-v2.1.0_aces-v1.3_ocio-v2.3"
 
 
@@ -110,6 +112,35 @@ def test_a_video_display_shows_the_same_colours(shown):
     srgb = shown(config, "sRGB", CLIPPED, light)[0, 0]
     video = shown(config, "Rec.709", CLIPPED, light)[0, 0]
     assert video == pytest.approx((srgb + 0.055) / 1.055, abs=1e-4)
+
+
+class TestOtherPrimaries:
+    """A photograph in Display P3, as phones take them."""
+
+    def config(self):
+        space = PlateColorSpace("CRF plate", "plate.spi1d", exposure=1, primaries=DISPLAY_P3)
+        return add_plate_views(
+            add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(P3_STUDIO), space), ["CRF plate"]
+        )
+
+    def test_its_codes_come_back_on_a_display_with_these_primaries(self, linear, shown, codes):
+        config, codes = self.config(), codes.reshape(-1, 3)
+        found = shown(config, "Display P3 - Display", CLIPPED, linear(config, codes))
+        np.testing.assert_array_equal(np.rint(found * 255), codes)
+
+    def test_an_srgb_display_shows_the_same_colours(self, linear, shown):
+        """Within its gamut: decoded by the sRGB curve, the two displays differ by the matrix between the primaries."""
+        config = self.config()
+        light = linear(config, [[120, 100, 90], [60, 64, 70]])
+        curve = lambda x: np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)  # noqa: E731
+        wide = curve(shown(config, "Display P3 - Display", CLIPPED, light))
+        narrow = curve(shown(config, "sRGB - Display", CLIPPED, light))
+        np.testing.assert_allclose(narrow, wide @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
+
+    def test_gray_is_as_that_of_any_plate(self, shown):
+        gray = [[0.36] * 3]
+        found = shown(self.config(), "sRGB - Display", CLIPPED, gray)
+        np.testing.assert_allclose(found, LUT.apply_inverse([[0.18] * 3]), atol=1e-4)
 
 
 class TestRollOff:
