@@ -10,12 +10,13 @@ from typing import Any
 import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
+from crfnet_core.errors import ConfigError, CRFNetError, LutError
 from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 from ocio.configs.files import load_config, plate_exposure
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.files import READERS, read_lut
 from ocio.luts.lut1d import Lut1D
+from ocio.luts.response import response_of_lut
 from ocio.output_files import OutputFiles
 
 #: The manifest of many estimates (`ocio.pipeline.manifest`), whose files are in folders below it.
@@ -62,7 +63,7 @@ def read_looks(path: Path) -> list[Look]:
     ConfigError
         If there is nothing of the kind.
     LutError
-        If a LUT cannot be read.
+        If a LUT cannot be read, or is none of an inverse response.
     """
     path = path.resolve()
     if path.is_dir():
@@ -89,7 +90,18 @@ def _look(source: Path, lut_file: Path, document: dict[str, Any] | None) -> Look
         space = replace(space, exposure=_exposure(source, document), primaries=_primaries(document))
     linear = [source.with_name(name) for name in document["files"]["linear"]] if document else [*files.linear]
     headers = {file.name: _interop_id(file) for file in linear if file.is_file()}
-    return Look(source.with_suffix(""), space, read_lut(lut_file), photographs, headers)
+    return Look(source.with_suffix(""), space, _inverse_response(lut_file), photographs, headers)
+
+
+def _inverse_response(path: Path) -> Lut1D:
+    """Return the LUT of an inverse response; raise a LutError if it is another kind of LUT."""
+    lut = read_lut(path)
+    try:
+        response_of_lut(lut)
+    except CRFNetError as problem:
+        raise LutError(f"{path}: {problem}") from problem
+    assert isinstance(lut, Lut1D)  # others have no response
+    return lut
 
 
 def _document(path: Path) -> dict[str, Any] | None:

@@ -2,6 +2,7 @@
 
 import json
 
+import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
@@ -10,9 +11,11 @@ from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, Primaries
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.looks import read_looks
 from ocio.luts.files import write_lut
+from ocio.luts.lut1d import Lut1D
+from ocio.luts.rgb_lut import RgbLut1D
 from ocio.pipeline.manifest import MANIFEST
 from tests.helpers.configs import loaded, rule_names
-from tests.helpers.looks import LUT, NAME, STUDIO, add, space_of, write_look
+from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 
 
 class TestRules:
@@ -143,3 +146,12 @@ class TestLooks:
         (folder / "plate01.spi1d").unlink()
         with pytest.raises(LutError, match=r"plate01\.spi1d: cannot be read"):
             read_looks(folder)
+
+    def test_a_lut_of_another_kind_is_refused(self, tmp_path):
+        """One that leads from light to codes, and one whose channels differ."""
+        write_lut(tmp_path / "forward.spi1d", Lut1D(np.linspace(0, 1, 256) ** 0.45))
+        with pytest.raises(LutError, match=r"forward\.spi1d: the LUT brightens, .* give its inverse"):
+            read_looks(tmp_path / "forward.spi1d")
+        write_lut(tmp_path / "rgb.cube", RgbLut1D((LUT, LUT, OTHER_LUT)))
+        with pytest.raises(LutError, match=r"rgb\.cube: the LUT treats R, G and B apart"):
+            read_looks(tmp_path / "rgb.cube")
