@@ -12,6 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
+from ocio.configs.file_rules import plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.files import WRITERS
@@ -117,7 +118,7 @@ class OutputFiles:
         exposure : float
             Stops added after the response.
         file_pattern : str or None
-            The file names for the file rule, with `*` and `?`; by default the photograph's own name, where a frame
+            The file names for the file rule, with `*`, `?` and `#`; by default the photograph's own name, where a frame
             number at the end (shot.0001.jpg) stands for any number.
 
         Raises
@@ -130,7 +131,7 @@ class OutputFiles:
             lut_file=self.spi1d.name,
             aliases=(re.sub(r"\W+", "_", self.color_space).lower(),),
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
-            file_pattern=file_pattern or re.sub(r"\.\d{2,}$", ".*", photo.stem) + photo.suffix,
+            file_pattern=file_pattern or plate_pattern(photo.name),
             exposure=exposure,
         )
 

@@ -19,7 +19,7 @@ from crfnet_core import ResponseCurve
 from crfnet_core.errors import ConfigError
 from crfnet_core.types import Float64Array
 from ocio.configs.files import role_name
-from ocio.configs.plate_color_space import LINEAR_REC709
+from ocio.configs.reference_space import LINEAR_REC709
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.output_files import distinct_names

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.files import atomic_write
 from crfnet_core.types import Float32Array
-from ocio.configs.plate_color_space import rec709_to_reference
+from ocio.configs.reference_space import rec709_to_reference
 from ocio.luts.lut1d import Lut1D
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
@@ -103,7 +103,7 @@ def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -
     brightness = np.linspace(low - margin, high + margin, CHECKED_VALUES, dtype=np.float32)
     linear = OCIO.ColorSpace(name="crfnet check", toReference=OCIO.GroupTransform(rec709_to_reference(config)))
     config.addColorSpace(linear)
-    gain = np.float32(2 ** _exposure(space))
+    gain = np.float32(2 ** plate_exposure(space))
     expected = lut.apply(brightness) * gain
     irradiance = _converted(config, space.getName(), linear.getName(), brightness)
     back = _converted(config, linear.getName(), space.getName(), expected)
@@ -114,7 +114,7 @@ def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -
     return max(float(forward.max()), float((backward / scale).max()))
 
 
-def _exposure(space: OCIO.ColorSpace) -> float:
+def plate_exposure(space: OCIO.ColorSpace) -> float:
     """Return the stops that a plate's colour space adds after its LUT."""
     transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
     steps = list(transform) if isinstance(transform, OCIO.GroupTransform) else [transform]

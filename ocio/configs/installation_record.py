@@ -1,18 +1,26 @@
-"""What was done to the config that a program reads at its start, written down beside it."""
+"""What was done to a config, written down in a folder of our own beside it, and the backup of what it was before."""
 
 from __future__ import annotations
 
 import hashlib
 import json
+import shutil
 from collections.abc import Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text
+from ocio.defaults import CONFIG_NAME
 
-#: The folder of our own beside the config, and the record in it.
+#: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"
+
+#: Name of the copy of an earlier config, and of further copies, after the config's own name without its suffix.
+BACKUP_NAME, NUMBERED_BACKUP = "{}.before-camera-response.ocio", "{}.before-camera-response-{}.ocio"
+
+#: Most backups of one config.
+MAX_BACKUPS = 999
 
 
 @dataclass(frozen=True)
@@ -37,18 +45,23 @@ class InstallationRecord:
     plates: Mapping[str, str] = field(default_factory=dict)
 
 
-def read_record(folder: Path) -> InstallationRecord | None:
-    """Return what was done in the folder of a config, or None if nothing was or the record is damaged."""
+def own_folder(config: Path) -> Path:
+    """Return the folder of our own beside a config, for LUTs and the record; every config has another one."""
+    return config.parent / (FOLDER if config.name == CONFIG_NAME else f"{config.stem}_{FOLDER}")
+
+
+def read_record(config: Path) -> InstallationRecord | None:
+    """Return what was done to a config, or None if nothing was or the record is damaged."""
     try:
-        entries = json.loads((folder / FOLDER / RECORD_NAME).read_text(encoding="utf-8"))
+        entries = json.loads((own_folder(config) / RECORD_NAME).read_text(encoding="utf-8"))
         folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
         return InstallationRecord(entries["sha256"], entries["backup"], folders, plates)
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
 
-def write_record(folder: Path, record: InstallationRecord) -> None:
-    """Write down what was done in the folder of a config.
+def write_record(config: Path, record: InstallationRecord) -> None:
+    """Write down what was done to a config.
 
     Raises
     ------
@@ -56,7 +69,20 @@ def write_record(folder: Path, record: InstallationRecord) -> None:
         If the record cannot be written.
     """
     text = json.dumps(asdict(record), indent=1) + "\n"
-    atomic_write_text(folder / FOLDER / RECORD_NAME, text, overwrite=True, error=ConfigError)
+    atomic_write_text(own_folder(config) / RECORD_NAME, text, overwrite=True, error=ConfigError)
+
+
+def backed_up(config: Path, record: InstallationRecord | None) -> str | None:
+    """Return the file name of the earlier config's copy, after making the copy unless the record names one."""
+    if not config.exists():
+        return None
+    if record is not None and digest(config) == record.sha256:
+        return record.backup
+    numbered = (NUMBERED_BACKUP.format(config.stem, number) for number in range(2, MAX_BACKUPS + 1))
+    names = (BACKUP_NAME.format(config.stem), *numbered)
+    name = next(name for name in names if not config.with_name(name).exists())
+    shutil.copy2(config, config.with_name(name))
+    return name
 
 
 def digest(path: Path) -> str:

@@ -20,6 +20,7 @@ from ocio.configs.installation_record import (
     FOLDER,
     RECORD_NAME,
     InstallationRecord,
+    backed_up,
     digest,
     read_record,
     write_record,
@@ -35,12 +36,6 @@ from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
 from ocio.output_files import check_folder, distinct_names, new_files_removed_on_failure, output_folder
-
-#: Name of the copy of an earlier config, and of further copies.
-BACKUP_NAME, NUMBERED_BACKUP = "config.before-camera-response.ocio", "config.before-camera-response-{}.ocio"
-
-#: Most backups of one config.
-MAX_BACKUPS = 999
 
 
 @dataclass(frozen=True)
@@ -115,12 +110,12 @@ def install(
     """
     check_folder(folder)
     config = folder / CONFIG_NAME
-    record = read_record(folder)
+    record = read_record(config)
     plates = dict(record.plates) if record else {}
     try:
         is_new = not config.exists()
         source = without_plate_rules(load_config(base if is_new else config))
-        space = replace(space.renamed(_free_name(source, space.name, plates, plate, hint)), file_pattern=None)
+        space = replace(space.renamed(free_name(source, space.name, plates, plate, hint)), file_pattern=None)
         lut_file = folder / FOLDER / space.lut_file
         before = (digest(config), digest(lut_file))
         with (
@@ -130,10 +125,10 @@ def install(
         ):
             write_spi1d(lut_file, lut, overwrite=True)
             added = add_plate_color_space(source, replace(space, lut_file=f"{FOLDER}/{space.lut_file}"))
-            backup = _backup(config, record)
+            backup = backed_up(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
-            write_record(folder, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}))
+            write_record(config, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}))
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be written ({problem.strerror}); choose another folder") from problem
     is_changed = before != (digest(config), digest(lut_file))
@@ -148,7 +143,8 @@ def restore(folder: Path) -> Restored:
     ConfigError
         If nothing was installed there, or somebody else has changed the config since.
     """
-    record, config = read_record(folder), folder / CONFIG_NAME
+    config = folder / CONFIG_NAME
+    record = read_record(config)
     if record is None and _remove_if_empty(folder):
         return Restored(config, is_removed=True)
     if record is None:
@@ -180,7 +176,7 @@ def installed_color_spaces(folder: Path) -> tuple[str, ...]:
         If OpenColorIO refuses the config.
     """
     config = folder / CONFIG_NAME
-    if read_record(folder) is None or not config.exists():
+    if read_record(config) is None or not config.exists():
         return ()
     return tuple(space.getName() for space in load_config(config).getColorSpaces() if _installed_lut(space))
 
@@ -196,7 +192,8 @@ def uninstall(folder: Path, name: str) -> None:
         If no such colour space was installed there, somebody else has changed the config since, or it cannot be
         written.
     """
-    record, config = read_record(folder), folder / CONFIG_NAME
+    config = folder / CONFIG_NAME
+    record = read_record(config)
     names = installed_color_spaces(folder)
     if record is None or name not in names:
         raise ConfigError(f"{config}: has no installed colour space {name!r}; check the name")
@@ -210,7 +207,7 @@ def uninstall(folder: Path, name: str) -> None:
     write_config(config, without_plate_color_space(loaded, name), check={}, overwrite=True)
     try:
         plates = {space: plate for space, plate in record.plates.items() if space != name}
-        write_record(folder, replace(record, sha256=digest(config), plates=plates))
+        write_record(config, replace(record, sha256=digest(config), plates=plates))
         (folder / lut_file).unlink(missing_ok=True)
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be changed ({problem.strerror}); check the folder") from problem
@@ -224,7 +221,7 @@ def _installed_lut(space: OCIO.ColorSpace) -> str:
     return source if space.getFamily() == FAMILY and source.startswith(f"{FOLDER}/") else ""
 
 
-def _free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: str, hint: str) -> str:
+def free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: str, hint: str) -> str:
     """Return a name for a plate's colour space that the config does not use for another plate."""
     for candidate in distinct_names(name, hint):
         found = config.getColorSpace(candidate)
@@ -267,15 +264,3 @@ def _copied_folders(config: OCIO.Config, folder: Path, home: Path | None) -> Ite
         for name in copied:
             shutil.rmtree(folder / name, ignore_errors=True)
         raise
-
-
-def _backup(config: Path, record: InstallationRecord | None) -> str | None:
-    """Return the file name of the earlier config's copy, after making the copy unless the record names one."""
-    if not config.exists():
-        return None
-    if record is not None and digest(config) == record.sha256:
-        return record.backup
-    names = (BACKUP_NAME, *map(NUMBERED_BACKUP.format, range(2, MAX_BACKUPS + 1)))
-    name = next(name for name in names if not config.with_name(name).exists())
-    shutil.copy2(config, config.with_name(name))
-    return name

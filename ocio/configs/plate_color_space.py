@@ -12,29 +12,12 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
-from crfnet_core.types import Float64Array
+from ocio.configs.file_rules import LINEAR_SUFFIX, remove_file_rules, rule_regex
+from ocio.configs.plate_views import add_plate_views, plate_views, remove_plate_views
+from ocio.configs.reference_space import matrix_transform, rec709_to_reference
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"
-
-#: Names and aliases of linear Rec.709 in common configs, the most specific first.
-LINEAR_REC709 = (
-    "lin_rec709_scene",
-    "lin_rec709_srgb",
-    "lin_rec709",
-    "lin_srgb",
-    "Linear Rec.709 (sRGB)",
-    "Linear Rec.709",
-    "Utility - Linear - Rec.709",
-    "Utility - Linear - sRGB",
-)
-
-#: Linear Rec.709 to ACES2065-1, row by row; with Bradford chromatic adaptation, as in the ACES configs.
-REC709_TO_AP0 = (
-    (0.439632981919, 0.382988698152, 0.177378319930),
-    (0.089776442959, 0.813439428749, 0.096784128292),
-    (0.017541170383, 0.111546553302, 0.870912276314),
-)
 
 
 @dataclass(frozen=True)
@@ -54,8 +37,8 @@ class PlateColorSpace:
     encoding : str
         OpenColorIO's name of the encoding.
     file_pattern : str or None
-        The names of the plate's files with `*` and `?`, for example "shot_plate01.*.png", for a file rule; they match
-        in any folder, and upper and lower case differ.
+        The names of the plate's files with `*`, `?` and `#` for a number, for example "shot_plate01.#.png", for a file
+        rule: see `ocio.configs.file_rules.rule_regex`.
     exposure : float
         Stops added after the response. They stand in the config as a transform of their own, to be edited there.
     primaries : Primaries
@@ -137,13 +120,15 @@ def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO
     config : PyOpenColorIO.Config
         Any config; it is not changed.
     *spaces : PlateColorSpace
-        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`.
+        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`, whose views are
+        renewed.
 
     Raises
     ------
     ConfigError
         If the config uses the name for something else, or cannot convert linear Rec.709 to its reference space.
     """
+    viewed = [space.name for space in spaces if plate_views(config, space.name)]
     config = copy.deepcopy(config)
     for space in spaces:
         _add(config, space)
@@ -151,7 +136,7 @@ def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO
     config.clearSearchPaths()
     for folder in (*folders, "."):
         config.addSearchPath(folder)
-    return config
+    return add_plate_views(config, viewed) if viewed else config
 
 
 def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
@@ -171,14 +156,14 @@ def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
         config.addColorSpace(color_space)
         if modern and space.file_pattern is not None:
             rules = config.getFileRules()
-            rules.insertRule(0, space.name, space.name, _rule_regex(space.file_pattern))
+            rules.insertRule(0, space.name, space.name, rule_regex([space.file_pattern]))
             config.setFileRules(rules)
     except OCIO.Exception as problem:
         raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
 
 
 def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:
-    """Return a copy of `config` without a plate's colour space and its file rules; all else stays."""
+    """Return a copy of `config` without a plate's colour space, its file rules and its views; all else stays."""
     config = copy.deepcopy(config)
     _remove(config, name)
     return config
@@ -195,13 +180,10 @@ def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
 
 
 def _remove(config: OCIO.Config, name: str) -> None:
-    """Remove a colour space of a config, and the file rules of its name."""
+    """Remove a colour space of a config, its file rules and its views."""
     config.removeColorSpace(name)
-    rules = config.getFileRules()
-    for index in reversed(range(rules.getNumEntries())):
-        if rules.getName(index).casefold() == name.casefold():
-            rules.removeRule(index)
-    config.setFileRules(rules)
+    remove_file_rules(config, (name, name + LINEAR_SUFFIX))
+    remove_plate_views(config, [name])
 
 
 def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform:
@@ -213,43 +195,3 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
     if space.primaries != REC709:
         steps.append(matrix_transform(conversion_matrix(space.primaries, REC709)))
     return OCIO.GroupTransform([*steps, *rec709_to_reference(config)])
-
-
-def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
-    """Return the transforms from linear Rec.709 to the scene reference space of a config.
-
-    Raises
-    ------
-    ConfigError
-        If the config has neither a linear Rec.709 space (`LINEAR_REC709`) nor a role `aces_interchange`.
-    """
-    for name in LINEAR_REC709:
-        found = config.getColorSpace(name)
-        if found is not None and found.getReferenceSpaceType() == OCIO.REFERENCE_SPACE_SCENE:
-            return _space_to_reference(found)
-    interchange = config.getColorSpace("aces_interchange")
-    if interchange is not None:
-        return [matrix_transform(np.array(REC709_TO_AP0)), *_space_to_reference(interchange)]
-    raise ConfigError("the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one")
-
-
-def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
-    """Return a colour space's transforms to its reference space, inverted where it defines the other direction only."""
-    forward = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    if forward is not None:
-        return [forward]
-    backward = space.getTransform(OCIO.COLORSPACE_DIR_FROM_REFERENCE)
-    return [] if backward is None else [OCIO.GroupTransform([backward], OCIO.TRANSFORM_DIR_INVERSE)]
-
-
-def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
-    """Return a transform that multiplies RGB by `rows`, shape (3, 3), of 12 decimals, which every machine computes."""
-    square = np.eye(4)
-    square[:3, :3] = np.round(rows, 12) + 0.0  # not -0
-    return OCIO.MatrixTransform(matrix=square.ravel().tolist())
-
-
-def _rule_regex(pattern: str) -> str:
-    """Return the regular expression of file names with * and ? in any folder, in a syntax that every host shares."""
-    escaped = re.sub(r"([.^$+(){}|\[\]\\])", r"\\\1", pattern)
-    return r"(.*[/\\])?" + escaped.replace("*", r"[^/\\]*").replace("?", r"[^/\\]")

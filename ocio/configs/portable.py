@@ -18,12 +18,9 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
     conversion_matrix,
 )
-from ocio.configs.plate_color_space import (
-    REC709_TO_AP0,
-    PlateColorSpace,
-    add_plate_color_space,
-    matrix_transform,
-)
+from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from ocio.configs.plate_views import add_plate_views
+from ocio.configs.reference_space import REC709_TO_AP0, matrix_transform
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"
@@ -36,12 +33,15 @@ LINEAR_SPACES = (
     (PROPHOTO, "Linear ProPhoto RGB", ("lin_prophoto",)),
 )
 
+#: The most plates whose views are in the config: more would bury the others in the menus.
+MOST_PLATES_WITH_VIEWS = 16
+
 
 def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     """Return a config of profile 2.0 with `spaces`, for every host from OpenColorIO 2.0 on.
 
     Its reference and scene-linear space is linear Rec.709 with a D65 white. Its colour spaces have the names that
-    Blender uses, so that Blender's files find them.
+    Blender uses, so that Blender's files find them. Up to `MOST_PLATES_WITH_VIEWS` plates get views "as photographed".
 
     Parameters
     ----------
@@ -60,7 +60,10 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     for space in spaces:
         if names[space.name.casefold()] > 1:
             raise ConfigError(f"{space.name}: two plates have this name; rename one")
-    return add_plate_color_space(config, *spaces)
+    config = add_plate_color_space(config, *spaces)
+    if not 0 < len(spaces) <= MOST_PLATES_WITH_VIEWS:
+        return config
+    return add_plate_views(config, [space.name for space in spaces])
 
 
 def _add_linear_space(config: OCIO.Config, primaries: Primaries, name: str, aliases: Sequence[str]) -> None:

@@ -204,7 +204,7 @@ class TestConfig:
         steps = text[text.index("name: CRF shot\n") :]
         assert steps.index("FileTransform") < steps.index("ExposureContrastTransform") < steps.index("MatrixTransform")
         before = converted(loaded(path), "CRF shot", "scene_linear", [[0.5, 0.5, 0.5]])
-        assert text.count("exposure: 0.5,") == 1
+        assert text.count("exposure: 0.5,") == 3  # the colour space, and its two views
         path.write_text(text.replace("exposure: 0.5,", "exposure: 1.5,"), encoding="utf-8")
         np.testing.assert_allclose(
             converted(loaded(path), "CRF shot", "scene_linear", [[0.5, 0.5, 0.5]]), 2 * before, rtol=1e-5

@@ -1,0 +1,62 @@
+"""From linear Rec.709, the space of our linear plates, to the scene reference space of any config."""
+
+from __future__ import annotations
+
+import numpy as np
+import PyOpenColorIO as OCIO
+
+from crfnet_core.errors import ConfigError
+from crfnet_core.types import Float64Array
+
+#: Names and aliases of linear Rec.709 in common configs, the most specific first.
+LINEAR_REC709 = (
+    "lin_rec709_scene",
+    "lin_rec709_srgb",
+    "lin_rec709",
+    "lin_srgb",
+    "Linear Rec.709 (sRGB)",
+    "Linear Rec.709",
+    "Utility - Linear - Rec.709",
+    "Utility - Linear - sRGB",
+)
+
+#: Linear Rec.709 to ACES2065-1, row by row; with Bradford chromatic adaptation, as in the ACES configs.
+REC709_TO_AP0 = (
+    (0.439632981919, 0.382988698152, 0.177378319930),
+    (0.089776442959, 0.813439428749, 0.096784128292),
+    (0.017541170383, 0.111546553302, 0.870912276314),
+)
+
+
+def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
+    """Return the transforms from linear Rec.709 to the scene reference space of a config.
+
+    Raises
+    ------
+    ConfigError
+        If the config has neither a linear Rec.709 space (`LINEAR_REC709`) nor a role `aces_interchange`.
+    """
+    for name in LINEAR_REC709:
+        found = config.getColorSpace(name)
+        if found is not None and found.getReferenceSpaceType() == OCIO.REFERENCE_SPACE_SCENE:
+            return _space_to_reference(found)
+    interchange = config.getColorSpace("aces_interchange")
+    if interchange is not None:
+        return [matrix_transform(np.array(REC709_TO_AP0)), *_space_to_reference(interchange)]
+    raise ConfigError("the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one")
+
+
+def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
+    """Return a colour space's transforms to its reference space, inverted where it defines the other direction only."""
+    forward = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    if forward is not None:
+        return [forward]
+    backward = space.getTransform(OCIO.COLORSPACE_DIR_FROM_REFERENCE)
+    return [] if backward is None else [OCIO.GroupTransform([backward], OCIO.TRANSFORM_DIR_INVERSE)]
+
+
+def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
+    """Return a transform that multiplies RGB by `rows`, shape (3, 3), of 12 decimals, which every machine computes."""
+    square = np.eye(4)
+    square[:3, :3] = np.round(rows, 12) + 0.0  # not -0
+    return OCIO.MatrixTransform(matrix=square.ravel().tolist())

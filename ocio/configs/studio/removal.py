@@ -1,0 +1,79 @@
+"""Take plates out of a config."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import PyOpenColorIO as OCIO
+
+from crfnet_core.errors import ConfigError
+from ocio.configs.files import write_config
+from ocio.configs.installation_record import (
+    RECORD_NAME,
+    InstallationRecord,
+    backed_up,
+    digest,
+    own_folder,
+    read_record,
+    write_record,
+)
+from ocio.configs.plate_color_space import without_plate_color_space
+from ocio.configs.studio.plates import Changed, PlateInConfig, checked_target, plates_in_config
+from ocio.configs.studio.sources import ConfigSource, is_blender_config
+
+
+def remove_plates(source: ConfigSource, names: Sequence[str]) -> Changed:
+    """Take plates' colour spaces, their rules, views and LUTs out of a config.
+
+    After the last one, a config that nobody else has changed since is put back from its backup, byte for byte.
+
+    Raises
+    ------
+    ConfigError
+        If the config has no such plate, or cannot be changed.
+    """
+    target = checked_target(source, None)
+    record, config, plates = read_record(target), source.config, []
+    known = {plate.name.casefold(): plate for plate in plates_in_config(config)}
+    for name in names:
+        plate = known.get(name.casefold())
+        if plate is None:
+            listed = ", ".join(each.name for each in known.values()) or "none"
+            raise ConfigError(f"{target}: has no plate {name!r}; its plates are: {listed}")
+        config = without_plate_color_space(config, plate.name)
+        plates.append(plate)
+    try:
+        backup = _write_less(target, config, plates, record)
+    except OSError as problem:
+        raise ConfigError(f"{target}: cannot be changed ({problem.strerror}); check the folder") from problem
+    return Changed(target, tuple(plates), True, target.with_name(backup) if backup else None)
+
+
+def _write_less(
+    target: Path, config: OCIO.Config, plates: Sequence[PlateInConfig], record: InstallationRecord | None
+) -> str | None:
+    """Write a config after plates were taken out, or put its backup back; return the backup's name if one remains."""
+    folder, kept = own_folder(target), plates_in_config(config)
+    earlier = record.backup if record and digest(target) == record.sha256 and not kept else None
+    if earlier is not None and target.with_name(earlier).is_file():
+        target.with_name(earlier).replace(target)
+        backup, is_recorded = None, False
+    else:
+        backup = backed_up(target, record)
+        write_config(target, config, check={}, overwrite=True)
+        is_recorded = bool(kept or backup) or is_blender_config(target)
+    unused = {plate.lut_file for plate in plates} - {plate.lut_file for plate in kept}
+    for lut_file in unused:
+        if lut_file.startswith(f"{folder.name}/"):
+            (target.parent / lut_file).unlink(missing_ok=True)
+    if is_recorded:
+        names = {plate.name for plate in plates}
+        identities = {name: plate for name, plate in (record.plates if record else {}).items() if name not in names}
+        folder.mkdir(exist_ok=True)
+        write_record(target, InstallationRecord(digest(target), backup, record.folders if record else (), identities))
+    elif folder.is_dir():
+        (folder / RECORD_NAME).unlink(missing_ok=True)
+        if not any(folder.iterdir()):
+            folder.rmdir()
+    return backup

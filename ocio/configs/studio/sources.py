@@ -1,0 +1,108 @@
+"""Which config a user means: a file, a name of OpenColorIO's built-in configs, $OCIO, or an installed Blender's."""
+
+from __future__ import annotations
+
+import os
+import shutil
+from dataclasses import dataclass
+from pathlib import Path
+
+import PyOpenColorIO as OCIO
+
+from crfnet_core.errors import ConfigError, one_line
+from ocio.configs.files import load_config
+from ocio.defaults import CONFIG_NAME
+
+#: How OpenColorIO marks the names of built-in configs.
+BUILT_IN = "ocio://"
+
+#: The environment variable that names the config of every host, and how a user writes it.
+VARIABLE, VARIABLE_NAMES = "OCIO", ("$OCIO", "${OCIO}", "%OCIO%")
+
+#: Where Blender keeps its config: below the folder of its version, and on macOS below the application's Resources.
+BLENDER_CONFIGS = tuple(
+    f"{start}datafiles/colormanagement/{CONFIG_NAME}"
+    for start in ("", "*/", "Contents/Resources/*/", "../Resources/*/")
+)
+
+
+@dataclass(frozen=True, eq=False)
+class ConfigSource:
+    """A config to build on.
+
+    Parameters
+    ----------
+    config : PyOpenColorIO.Config
+        The config; not to be changed.
+    name : str
+        What to call it.
+    path : Path or None
+        Its file; None if it is built into OpenColorIO.
+    """
+
+    config: OCIO.Config
+    name: str
+    path: Path | None
+
+
+def find_config(name: str) -> ConfigSource:
+    """Return the config that a user means.
+
+    Parameters
+    ----------
+    name : str
+        A file, or a folder that holds a `CONFIG_NAME`; the name of a built-in config, with or without "ocio://";
+        "$OCIO"; or the folder or the executable of a Blender.
+
+    Raises
+    ------
+    ConfigError
+        If there is none, or OpenColorIO refuses it.
+    """
+    if name in VARIABLE_NAMES:
+        if not (value := os.environ.get(VARIABLE, "").strip()):
+            raise ConfigError(f"{name}: the environment variable {VARIABLE} is not set; name a config")
+        return find_config(value)
+    if name.startswith(BUILT_IN):
+        return _built_in(name)
+    path = _config_file(Path(name).expanduser())
+    if path is None and (f"{BUILT_IN}{name}" in built_in_names()):
+        return _built_in(f"{BUILT_IN}{name}")
+    if path is None:
+        message = "is no config, no built-in config's name, and no Blender with one"
+        raise ConfigError(f"{name}: {message}; built in are {', '.join(built_in_names())}")
+    if path.suffix.lower() == ".ocioz":
+        raise ConfigError(f"{path}: is an archive; unpack it first: ocioarchive --extract {path.name} --dir FOLDER")
+    return ConfigSource(load_config(path), str(path), path)
+
+
+def built_in_names() -> tuple[str, ...]:
+    """Return the names of OpenColorIO's built-in configs, the short ones first, each with "ocio://"."""
+    configs = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
+    return tuple(BUILT_IN + name for name in ("default", "cg-config-latest", "studio-config-latest", *configs))
+
+
+def is_blender_config(path: Path | None) -> bool:
+    """Return whether a config is one that Blender reads at its start, whatever the project."""
+    return path is not None and path.parts[-3:] == ("datafiles", "colormanagement", CONFIG_NAME)
+
+
+def _built_in(name: str) -> ConfigSource:
+    """Return a built-in config by its name with "ocio://"."""
+    try:
+        return ConfigSource(OCIO.Config.CreateFromFile(name), name, None)
+    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
+        known = f"known are {', '.join(built_in_names())}"
+        raise ConfigError(f"{name}: is not built into this OpenColorIO ({one_line(problem)}); {known}") from None
+
+
+def _config_file(path: Path) -> Path | None:
+    """Return the config file that a path means, with links resolved so that the file itself is changed; or None."""
+    if (path.is_file() and not os.access(path, os.X_OK)) or path.suffix.lower() in (".ocio", ".ocioz"):
+        return path.resolve()
+    if path.is_dir() and (path / CONFIG_NAME).is_file():
+        return (path / CONFIG_NAME).resolve()
+    executable = path if path.is_file() else Path(shutil.which(str(path)) or "")
+    home = path if path.is_dir() else executable.resolve().parent if executable.is_file() else None
+    found = sorted(match for pattern in BLENDER_CONFIGS if home for match in home.glob(pattern))
+    return found[-1].resolve() if found else None

@@ -1,0 +1,74 @@
+"""The files for Nuke are well-formed Tcl of known nodes. Nuke itself is not run."""
+
+import re
+
+import pytest
+
+tkinter = pytest.importorskip("tkinter", reason="needs Tcl, the language of Nuke's files")
+
+#: The knobs that the files set, by the node's class, as Foundry's reference guide and its published sources name them.
+KNOBS = {
+    "Gizmo": {"help", "addUserKnob"},
+    "Input": {"inputs", "name"},
+    "Output": {"name"},
+    "Read": {"inputs", "file", "raw", "name"},
+    "Write": {"file", "file_type", "datatype", "raw", "name"},
+    "Multiply": {"channels", "value", "name"},
+    "OCIOFileTransform": {"file", "invert", "interpolation", "name"},
+    "OCIOColorSpace": {"in_colorspace", "out_colorspace", "name"},
+    "OCIODisplay": {"colorspace", "display", "view", "name"},
+}
+
+
+def nodes_of(path):
+    """The nodes of a Nuke file, as Tcl itself reads it: class and knobs; in the order of the file."""
+    tcl = tkinter.Tcl()
+    found = []
+
+    def node(name, body):
+        words = [str(word) for word in tcl.splitlist(body)]
+        assert len(words) % 2 == 0, f"{path.name}: {name} has a knob without a value"
+        found.append((name, list(zip(words[::2], words[1::2], strict=True))))
+        return ""
+
+    for name in KNOBS:
+        tcl.createcommand(name, lambda body, name=name: node(name, body))
+    for name in ("version", "push", "end_group", "stack"):
+        tcl.createcommand(name, lambda *words: "node")
+    tcl.eval(path.read_text(encoding="utf-8"))
+    return found
+
+
+@pytest.fixture(params=["CameraResponse.gizmo", "plate01.nk"])
+def file(root, request):
+    return root / "docs" / "nuke" / request.param
+
+
+def test_tcl_reads_the_files(file):
+    nodes = nodes_of(file)
+    assert len(nodes) > 4
+    for name, knobs in nodes:
+        assert {knob for knob, _ in knobs} <= KNOBS[name]
+
+
+def test_names_are_given_once(file):
+    names = [value for _, knobs in nodes_of(file) for knob, value in knobs if knob == "name"]
+    assert len(names) == len(set(names)) > 4
+
+
+def test_the_expressions_ask_for_knobs_that_the_gizmo_has(root):
+    path = root / "docs" / "nuke" / "CameraResponse.gizmo"
+    (_, gizmo), *inner = nodes_of(path)
+    own = {value.split()[1] for knob, value in gizmo if knob == "addUserKnob"}
+    asked = set(re.findall(r"parent\.(\w+)", str(inner)))
+    assert asked == {"lut", "stops", "invert"} <= own
+
+
+def test_the_names_are_those_that_crfnet_writes(root):
+    from ocio.configs.plate_views import view_names
+    from ocio.output_files import OutputFiles
+
+    files = OutputFiles.named(root / "look", [root / "plate01.jpg"])
+    text = (root / "docs" / "nuke" / "plate01.nk").read_text(encoding="utf-8")
+    for name in (f"look/{files.spi1d.name}", files.color_space, view_names(files.color_space)[0], files.linear[0].name):
+        assert name in text

@@ -1,0 +1,102 @@
+"""Folders as `crfnet estimate` writes them, small, without an estimate; and configs that such plates were added to."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import PyOpenColorIO as OCIO
+
+from crfnet_core.metadata.color_tags import REC709, Primaries
+from crfnet_core.response import ResponseCurve
+from ocio.configs.files import write_config
+from ocio.configs.portable import portable_config
+from ocio.configs.studio.additions import AdditionOptions, add_looks
+from ocio.configs.studio.looks import read_looks
+from ocio.configs.studio.plates import Changed
+from ocio.configs.studio.sources import find_config
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import Lut1D, inverse_response_lut
+from ocio.output_files import OutputFiles
+from tests.helpers.configs import rule_names
+from tests.helpers.images import write_image
+
+#: A response that is no power law, so that no config has a space that converts as it does.
+LUT = inverse_response_lut(
+    ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 0.4 * (1.2 - 0.2 * np.linspace(0, 1, 1024)))
+)
+
+OTHER_LUT = inverse_response_lut(ResponseCurve.gamma(1.8))
+
+#: Of all built-in configs, it reads every OpenEXR file as ACES2065-1.
+STUDIO = "studio-config-v4.0.0_aces-v2.0_ocio-v2.5"
+
+#: The colour space of `write_look`.
+NAME = "CRF plate01"
+
+CORNERS = ("red", "green", "blue", "white")
+
+
+def write_look(
+    folder: Path,
+    photographs: Sequence[str] = ("plate01.jpg",),
+    *,
+    lut: Lut1D = LUT,
+    exposure: float = 0.0,
+    interop_id: str = "lin_rec709_scene",
+    primaries: Primaries = REC709,
+) -> Path:
+    """Write LUT, document, config and linear plates of photographs with these names, and return the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    files = OutputFiles.named(folder, [Path(name) for name in photographs])
+    write_lut(files.spi1d, lut, overwrite=True)
+    space = replace(files.plate_color_space(Path(photographs[0]), exposure=exposure), primaries=primaries)
+    write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=True)
+    for path in files.linear:
+        attributes = {"colorInteropID": interop_id} if interop_id else {}
+        write_image(path, np.zeros((2, 2, 3), np.float32), **attributes)
+    document = {
+        "photographs": [{"name": name} for name in photographs],
+        "color_space": files.color_space,
+        "exposure": {"stops": exposure},
+        "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
+        "files": {
+            "spi1d": files.spi1d.name,
+            "config": files.config.name,
+            "linear": [path.name for path in files.linear],
+        },
+    }
+    files.report.write_text(json.dumps(document), encoding="utf-8")
+    return folder
+
+
+def add(base: str | Path, look: Path, out: Path | None = None, **options: Any) -> Changed:
+    """Add a look to a config."""
+    return add_looks(find_config(str(base)), out, read_looks(look), AdditionOptions(**options))
+
+
+def space_of(config: OCIO.Config, path: str) -> str:
+    """Return the colour space that a config's rules give a file."""
+    return str(config.getColorSpaceFromFilepath(path)[0])
+
+
+def all_names(config: OCIO.Config, *, but: str = "CRF plate01") -> dict[str, Any]:
+    """Return everything of a config that has a name, but a plate, its rules and its views."""
+    every = (OCIO.SEARCH_REFERENCE_SPACE_ALL, OCIO.COLORSPACE_ALL)
+    views = {name: [view for view in config.getViews(name) if but not in view] for name in config.getDisplaysAll()}
+    return {
+        "version": (config.getMajorVersion(), config.getMinorVersion()),
+        "roles": dict(config.getRoles()),
+        "spaces": [name for name in config.getColorSpaceNames(*every) if name != but],
+        "named transforms": list(config.getNamedTransformNames()),
+        "view transforms": [name for name in config.getViewTransformNames() if but not in name],
+        "default view transform": config.getDefaultViewTransformName(),
+        "looks": list(config.getLookNames()),
+        "views": views,
+        "rules": [name for name in rule_names(config) if but not in name],
+        "description": config.getDescription(),
+    }

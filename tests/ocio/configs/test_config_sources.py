@@ -1,0 +1,141 @@
+"""Which config a user means: a file, a built-in name, $OCIO, or a Blender's."""
+
+import os
+from pathlib import Path
+
+import pytest
+
+from crfnet_core.errors import ConfigError
+from ocio.configs.portable import portable_config
+from ocio.configs.studio.sources import built_in_names, find_config, is_blender_config
+
+
+@pytest.fixture
+def config(tmp_path):
+    path = tmp_path / "show.ocio"
+    path.write_text(portable_config([]).serialize())
+    return path
+
+
+def blender(root, *, version="5.2", resources=""):
+    """A Blender's files: the executable, and its config."""
+    folder = root / resources / version / "datafiles" / "colormanagement"
+    folder.mkdir(parents=True)
+    (folder / "config.ocio").write_text(portable_config([]).serialize())
+    return folder / "config.ocio"
+
+
+def executable(path):
+    path.parent.mkdir(parents=True, exist_ok=True)
+    path.write_text("a program")
+    path.chmod(0o755)
+    return path
+
+
+def test_a_file_is_itself(config):
+    found = find_config(str(config))
+    assert (found.path, found.name) == (config, str(config))
+    assert found.config.getName() == "crfnet"
+
+
+def test_a_folder_holds_a_config(config):
+    moved = config.rename(config.with_name("config.ocio"))
+    assert find_config(str(config.parent)).path == moved
+
+
+def test_a_link_leads_to_the_file_that_is_changed(config, tmp_path):
+    link = tmp_path / "link.ocio"
+    link.symlink_to(config)
+    assert find_config(str(link)).path == config
+
+
+def test_a_config_may_be_marked_as_executable(config):
+    config.chmod(0o755)
+    assert find_config(str(config)).path == config
+
+
+def test_the_home_folder_is_known(config, monkeypatch):
+    monkeypatch.setenv("HOME", str(config.parent))
+    monkeypatch.setenv("USERPROFILE", str(config.parent))
+    assert find_config("~/show.ocio").path == config
+
+
+@pytest.mark.parametrize("name", ["studio-config-v2.1.0_aces-v1.3_ocio-v2.3", "cg-config-latest", "default"])
+@pytest.mark.parametrize("start", ["", "ocio://"])
+def test_built_in_configs_have_names(name, start):
+    found = find_config(start + name)
+    assert (found.path, found.name) == (None, f"ocio://{name}")
+    assert found.config.getColorSpace("ACES2065-1") is not None
+
+
+def test_every_built_in_name_works():
+    assert len(built_in_names()) > 3
+    assert all(find_config(name).path is None for name in built_in_names())
+
+
+@pytest.mark.parametrize("name", ["$OCIO", "${OCIO}", "%OCIO%"])
+def test_the_environments_config(name, config, monkeypatch):
+    monkeypatch.setenv("OCIO", str(config))
+    assert find_config(name).path == config
+    monkeypatch.setenv("OCIO", "ocio://cg-config-latest")
+    assert find_config(name).path is None
+    monkeypatch.delenv("OCIO")
+    with pytest.raises(ConfigError, match="the environment variable OCIO is not set; name a config"):
+        find_config(name)
+
+
+class TestBlender:
+    def test_the_folder_of_a_blender(self, tmp_path):
+        path = blender(tmp_path / "blender")
+        assert find_config(str(tmp_path / "blender")).path == path
+        assert find_config(str(tmp_path / "blender" / "5.2")).path == path
+        assert is_blender_config(path)
+
+    def test_its_executable(self, tmp_path, monkeypatch):
+        path = blender(tmp_path / "blender")
+        program = executable(tmp_path / "blender" / "blender")
+        assert find_config(str(program)).path == path
+        (tmp_path / "bin").mkdir()
+        (tmp_path / "bin" / "blender").symlink_to(program)
+        assert find_config(str(tmp_path / "bin" / "blender")).path == path
+        monkeypatch.setenv("PATH", str(tmp_path / "bin") + os.pathsep + os.environ["PATH"])
+        monkeypatch.chdir(tmp_path / "bin")
+        Path("blender").unlink()
+        monkeypatch.setenv("PATH", str(program.parent))
+        assert find_config("blender").path == path
+
+    def test_that_of_macos(self, tmp_path):
+        path = blender(tmp_path / "Blender.app", resources="Contents/Resources")
+        program = executable(tmp_path / "Blender.app" / "Contents" / "MacOS" / "Blender")
+        assert find_config(str(tmp_path / "Blender.app")).path == path
+        assert find_config(str(program)).path == path
+
+    def test_of_two_versions_the_newer(self, tmp_path):
+        blender(tmp_path / "blender", version="4.5")
+        path = blender(tmp_path / "blender", version="5.2")
+        assert find_config(str(tmp_path / "blender")).path == path
+
+    def test_another_config_is_no_blenders(self, config):
+        assert not is_blender_config(config)
+        assert not is_blender_config(None)
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("nowhere", "nowhere: is no config, no built-in config's name, and no Blender with one; built in are ocio://"),
+        ("ocio://nowhere", r"ocio://nowhere: is not built into this OpenColorIO \(.*\); known are ocio://default"),
+        ("nowhere.ocio", r"nowhere\.ocio: OpenColorIO refuses this config"),
+    ],
+)
+def test_anything_else_is_refused(name, message, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(ConfigError, match=message) as caught:
+        find_config(name)
+    assert "\n" not in str(caught.value)
+
+
+def test_an_archive_has_to_be_unpacked(tmp_path):
+    (tmp_path / "a.ocioz").write_bytes(b"PK")
+    with pytest.raises(ConfigError, match=r"a\.ocioz: is an archive; unpack it first: ocioarchive --extract a\.ocioz"):
+        find_config(str(tmp_path / "a.ocioz"))

@@ -1,0 +1,114 @@
+"""Which files are a plate's: full names in upper and lower case, frames, and no names that cameras give again."""
+
+import re
+
+import PyOpenColorIO as OCIO
+import pytest
+
+from ocio.configs.file_rules import add_file_rule, file_rules, is_counter_name, plate_pattern, rule_regex
+from ocio.configs.portable import portable_config
+from tests.helpers.configs import rule_names
+
+
+def space_of(pattern, path):
+    """The colour space that OpenColorIO's own rules give a file."""
+    config = portable_config([])
+    add_file_rule(config, "plate", "ACEScct", [pattern])
+    return config.getColorSpaceFromFilepath(path)[0]
+
+
+@pytest.mark.parametrize(
+    ("pattern", "matching", "others"),
+    [
+        (
+            "plate01.jpg",
+            ["plate01.jpg", "PLATE01.JPG", "/a/b/Plate01.jpg", r"C:\a\plate01.JPG", "../plate01.jpg"],
+            ["plate01.jpeg", "aplate01.jpg", "plate01.jpg.exr", "plate01.jpg/b.jpg", "plate011.jpg", "plate01xjpg"],
+        ),
+        ("shot.#.png", ["shot.1.png", "a/SHOT.01001.PNG"], ["shot.png", "shot..png", "shot.v2.png", "shot.1.2.png"]),
+        ("shot_??.*", ["shot_ab.tif", "shot_01.a.b"], ["shot_1.tif", "shot_abc.tif", "shot_a/.tif"]),
+        ("Größe (1).jpg", ["größe (1).JPG".replace("ö", "ö"), "x/Größe (1).jpg"], ["Größe 1.jpg", "Größe (1)jpg"]),
+        (
+            "s010/*/a.jpg",
+            ["s010/v1/a.jpg", "/x/S010/v1/A.jpg", r"x\s010\v1\a.jpg"],
+            ["a.jpg", "s010/a.jpg", "xs010/v/a.jpg"],
+        ),
+        ("a+b[1]^$|{2}.jpg", ["A+B[1]^$|{2}.JPG"], ["aab1.jpg"]),
+    ],
+)
+def test_a_pattern_holds_for_full_names(pattern, matching, others):
+    assert {path: space_of(pattern, path) for path in matching} == dict.fromkeys(matching, "ACEScct")
+    assert "ACEScct" not in [space_of(pattern, path) for path in others]
+    assert all(re.fullmatch(rule_regex([pattern]), path) for path in matching)
+
+
+def test_several_patterns_are_one_rule():
+    config = portable_config([])
+    add_file_rule(config, "plate", "ACEScct", ["a.jpg", "b.#.png"])
+    found = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
+    assert found == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
+    assert list(file_rules(config, ["PLATE"]).values()) == ["ACEScct"]
+
+
+def test_a_rule_is_replaced_and_removed_and_the_others_stay():
+    config = portable_config([])
+    before = rule_names(config)
+    add_file_rule(config, "plate", "ACEScct", ["a.jpg"])
+    add_file_rule(config, "plate", "ACEScg", ["a.jpg"])
+    assert rule_names(config) == ["plate", *before]
+    assert config.getColorSpaceFromFilepath("a.jpg")[0] == "ACEScg"
+    add_file_rule(config, "plate", "ACEScg", [])
+    assert rule_names(config) == before
+
+
+def test_profile_version_1_gets_no_rules():
+    config = OCIO.Config.CreateRaw()
+    config.setVersion(1, 0)
+    add_file_rule(config, "plate", "raw", ["a.jpg"])
+    assert "plate" not in rule_names(config)
+
+
+@pytest.mark.parametrize(
+    "name",
+    [
+        "IMG_0042.JPG",
+        "img_e0042.heic",
+        "DSC_1234.NEF",
+        "DSCF0001.jpg",
+        "DSC01234.ARW",
+        "_MG_7081.CR2",
+        "P1010001.JPG",
+        "GOPR0123.JPG",
+        "DJI_0001.jpg",
+        "0001.png",
+        "12-3.png",
+        "image.jpg",
+        "photo_2.jpg",
+        "photo(2).jpg",
+        "IMG_0042.0001.jpg",
+    ],
+)
+def test_names_of_cameras_are_many_peoples(name):
+    assert is_counter_name(name)
+
+
+@pytest.mark.parametrize(
+    "name", ["plate01.jpg", "shot.0001.png", "sh010_bg_v002.jpg", "beach.jpg", "IMG_0042_graded.jpg"]
+)
+def test_names_that_somebody_gave_are_his(name):
+    assert not is_counter_name(name)
+
+
+@pytest.mark.parametrize(
+    ("name", "pattern"),
+    [
+        ("plate01.jpg", "plate01.jpg"),
+        ("shot.0001.jpg", "shot.#.jpg"),
+        ("shot.1.jpg", "shot.1.jpg"),
+        ("a#1.0001.jpg", "a?1.#.jpg"),
+        ("noextension", "noextension"),
+        (".hidden", ".hidden"),
+    ],
+)
+def test_a_frame_stands_for_all_frames(name, pattern):
+    assert plate_pattern(name) == pattern

@@ -1,0 +1,234 @@
+"""Views "as photographed": CG and plate through the camera's response, and highlights above the plate's white."""
+
+import math
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
+from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space, without_plate_color_space
+from ocio.configs.plate_views import (
+    KNEE,
+    SOFTNESS,
+    active_views,
+    add_plate_views,
+    plate_views,
+    remove_plate_views,
+    roll_off,
+    view_names,
+)
+from ocio.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
+from ocio.luts.files import write_lut
+from tests.helpers.configs import loaded
+from tests.helpers.looks import LUT
+
+CLIPPED, ROLLED_OFF = view_names("CRF plate")
+P3_STUDIO = "studio-config-v4.0.0_aces-v2.0_ocio-v2.5"
+STUDIO = "studio-config-v2.1.0_aces-v1.3_ocio-v2.3"
+
+
+@pytest.fixture
+def shown(tmp_path):
+    """Show scene-linear pixels, shape (N, 3), in a view of a config with the plate: values that go to the display."""
+    write_lut(tmp_path / "plate.spi1d", LUT)
+
+    def show(config, display, view, pixels, *, optimization=OCIO.OPTIMIZATION_DEFAULT):
+        (tmp_path / "config.ocio").write_text(config.serialize())
+        found = loaded(tmp_path / "config.ocio")
+        pixels = np.array(pixels, dtype=np.float32)
+        processor = found.getProcessor("scene_linear", display, view, OCIO.TRANSFORM_DIR_FORWARD)
+        processor.getOptimizedCPUProcessor(optimization).applyRGB(pixels)
+        return pixels
+
+    return show
+
+
+@pytest.fixture
+def linear(tmp_path):
+    """Linearise code values, shape (N, 3), by the plate's colour space."""
+
+    def convert(config, codes):
+        write_lut(tmp_path / "plate.spi1d", LUT, overwrite=True)
+        (tmp_path / "linear.ocio").write_text(config.serialize())
+        pixels = (np.array(codes) / 255).astype(np.float32)
+        loaded(tmp_path / "linear.ocio").getProcessor("CRF plate", "scene_linear").getDefaultCPUProcessor().applyRGB(
+            pixels
+        )
+        return pixels
+
+    return convert
+
+
+def with_plate(base, *, exposure=0.0):
+    """A config with the plate and its views; `base` is portable, or the name of a built-in config."""
+    space = PlateColorSpace("CRF plate", "plate.spi1d", exposure=exposure)
+    if base == "portable":
+        return portable_config([space])
+    return add_plate_views(add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(base), space), ["CRF plate"])
+
+
+DISPLAYS = {"portable": "sRGB", STUDIO: "sRGB - Display"}
+
+
+@pytest.mark.parametrize("exposure", [0, 1.5, -2])
+@pytest.mark.parametrize("base", DISPLAYS)
+class TestRoundTrip:
+    def test_every_code_of_the_plate_comes_back(self, base, exposure, linear, shown, codes):
+        config, codes = with_plate(base, exposure=exposure), codes.reshape(-1, 3)
+        found = shown(config, DISPLAYS[base], CLIPPED, linear(config, codes))
+        np.testing.assert_array_equal(np.rint(found * 255), codes)
+
+    def test_the_rolled_off_view_leaves_codes_up_to_the_knee(self, base, exposure, linear, shown, codes):
+        config, codes = with_plate(base, exposure=exposure), codes.reshape(-1, 3)
+        found = np.rint(shown(config, DISPLAYS[base], ROLLED_OFF, linear(config, codes)) * 255)
+        highest = int(np.floor(LUT.apply_inverse(KNEE) * 255))
+        assert 200 < highest < 255
+        below = (codes <= highest).all(axis=1)
+        np.testing.assert_array_equal(found[below], codes[below])
+        assert found[codes == 255].max() < 255
+
+
+def test_cg_gets_the_cameras_response(shown):
+    light = np.repeat(np.float32([[0.01], [0.18], [0.5], [0.99]]), 3, axis=1)
+    np.testing.assert_allclose(
+        shown(with_plate("portable"), "sRGB", CLIPPED, light), LUT.apply_inverse(light), atol=1e-4
+    )
+
+
+def test_highlights_are_clipped_in_one_view_and_differ_in_the_other(shown):
+    light = np.repeat(np.float32([[1], [2], [4], [8], [14.3], [100]]), 3, axis=1)
+    config = with_plate("portable")
+    np.testing.assert_allclose(shown(config, "sRGB", CLIPPED, light), 1, atol=1e-5)
+    rolled_off = shown(config, "sRGB", ROLLED_OFF, light)[:, 0]
+    assert (np.diff(rolled_off)[:4] > 0.004).all()
+    np.testing.assert_allclose(rolled_off[4:], 1, atol=1e-5)
+
+
+def test_a_video_display_shows_the_same_colours(shown):
+    """The code of Rec.1886 is x^(1/2.4); that of sRGB, above its linear part, 1.055 x^(1/2.4) - 0.055."""
+    light, config = np.float32([[0.18, 0.18, 0.18]]), with_plate("portable")
+    srgb = shown(config, "sRGB", CLIPPED, light)[0, 0]
+    video = shown(config, "Rec.709", CLIPPED, light)[0, 0]
+    assert video == pytest.approx((srgb + 0.055) / 1.055, abs=1e-4)
+
+
+class TestOtherPrimaries:
+    """A photograph in Display P3, as phones take them."""
+
+    def config(self):
+        space = PlateColorSpace("CRF plate", "plate.spi1d", exposure=1, primaries=DISPLAY_P3)
+        return add_plate_views(
+            add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(P3_STUDIO), space), ["CRF plate"]
+        )
+
+    def test_its_codes_come_back_on_a_display_with_these_primaries(self, linear, shown, codes):
+        config, codes = self.config(), codes.reshape(-1, 3)
+        found = shown(config, "Display P3 - Display", CLIPPED, linear(config, codes))
+        np.testing.assert_array_equal(np.rint(found * 255), codes)
+
+    def test_an_srgb_display_shows_the_same_colours(self, linear, shown):
+        """Within its gamut: decoded by the sRGB curve, the two displays differ by the matrix between the primaries."""
+        config = self.config()
+        light = linear(config, [[120, 100, 90], [60, 64, 70]])
+        curve = lambda x: np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)  # noqa: E731
+        wide = curve(shown(config, "Display P3 - Display", CLIPPED, light))
+        narrow = curve(shown(config, "sRGB - Display", CLIPPED, light))
+        np.testing.assert_allclose(narrow, wide @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
+
+    def test_gray_is_as_that_of_any_plate(self, shown):
+        gray = [[0.36] * 3]
+        found = shown(self.config(), "sRGB - Display", CLIPPED, gray)
+        np.testing.assert_allclose(found, LUT.apply_inverse([[0.18] * 3]), atol=1e-4)
+
+
+class TestRollOff:
+    def rolled_off(self, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
+        pixels = np.repeat(np.float32(values)[:, None], 3, axis=1)
+        OCIO.Config.CreateRaw().getProcessor(roll_off(), direction).getDefaultCPUProcessor().applyRGB(pixels)
+        return pixels[:, 0]
+
+    def test_it_is_the_equation(self):
+        x = np.linspace(0, 16, 999)
+        with np.errstate(invalid="ignore"):
+            expected = np.where(x <= KNEE, x, KNEE + SOFTNESS * np.log(1 + (x - KNEE) / SOFTNESS))
+        np.testing.assert_allclose(self.rolled_off(x), expected, atol=2e-6)
+
+    def test_nothing_below_the_knee_moves(self):
+        x = np.linspace(-1, KNEE, 1000, dtype=np.float32)
+        np.testing.assert_allclose(self.rolled_off(x), x, atol=1e-7)
+
+    def test_white_and_the_end_are_as_stated(self):
+        end = KNEE + SOFTNESS * (math.exp((1 - KNEE) / SOFTNESS) - 1)
+        assert (round(end, 1), round(math.log2(end), 1)) == (14.2, 3.8)
+        np.testing.assert_allclose(self.rolled_off([1, end]), [0.865, 1], atol=5e-4)
+
+    def test_it_can_be_undone(self):
+        x = np.linspace(0, 14, 500)
+        back = self.rolled_off(self.rolled_off(x), OCIO.TRANSFORM_DIR_INVERSE)
+        np.testing.assert_allclose(back, x, rtol=1e-4, atol=1e-6)
+
+
+class TestInAConfig:
+    def test_menus_show_them_where_a_config_lists_its_views(self):
+        base = OCIO.Config.CreateFromBuiltinConfig(STUDIO)
+        config = with_plate(STUDIO)
+        assert active_views(config) == [*active_views(base), CLIPPED, ROLLED_OFF]
+        assert {CLIPPED, ROLLED_OFF} <= set(config.getViews("sRGB - Display"))
+
+    def test_removing_them_leaves_the_config_as_it_was(self):
+        config = with_plate(STUDIO)
+        remove_plate_views(config, ["CRF plate"])
+        space = PlateColorSpace("CRF plate", "plate.spi1d")
+        assert (
+            config.serialize() == add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(STUDIO), space).serialize()
+        )
+
+    def test_they_go_with_the_plate(self):
+        config = without_plate_color_space(with_plate(STUDIO), "CRF plate")
+        config.validate()
+        assert plate_views(config, "CRF plate") == ()
+        assert "CRF plate" not in config.serialize()
+
+    def test_they_are_renewed_with_the_plate(self):
+        config = add_plate_color_space(with_plate(STUDIO), PlateColorSpace("CRF plate", "new.spi1d"))
+        assert plate_views(config, "CRF plate") == (CLIPPED, ROLLED_OFF)
+        assert "plate.spi1d" not in config.serialize()
+
+    def test_displays_of_scene_referred_spaces_show_the_plates_own_space(self, shown, linear, codes):
+        """As in Blender 4.5."""
+        config = portable_config([])
+        for display in list(config.getDisplaysAll()):
+            for view in list(config.getViews(display)):
+                config.removeDisplayView(display, view)
+        config.setActiveDisplays("")
+        config.setActiveViews("")
+        config.addDisplayView("sRGB", "Standard", "sRGB")
+        config.addDisplayView("Rec.2020", "Standard", "Linear Rec.709")
+        space = PlateColorSpace("CRF plate", "plate.spi1d", exposure=1)
+        config = add_plate_views(add_plate_color_space(config, space), ["CRF plate"])
+        assert list(config.getViews("sRGB")) == ["Standard", CLIPPED]
+        assert list(config.getViews("Rec.2020")) == ["Standard"]
+        codes = codes.reshape(-1, 3)
+        np.testing.assert_array_equal(np.rint(shown(config, "sRGB", CLIPPED, linear(config, codes)) * 255), codes)
+
+    def test_hdr_displays_get_none(self):
+        config = with_plate(STUDIO)
+        for display in ("Rec.2100-PQ - Display", "ST2084-P3-D65 - Display"):
+            assert CLIPPED not in list(config.getViews(display))
+
+    def test_many_plates_do_not_bury_the_other_views(self):
+        spaces = [PlateColorSpace(f"CRF {number}", f"{number}.spi1d") for number in range(MOST_PLATES_WITH_VIEWS + 1)]
+        assert len(active_views(portable_config(spaces[:-1]))) == 2 + 2 * MOST_PLATES_WITH_VIEWS
+        assert active_views(portable_config(spaces)) == ["Standard", "Raw"]
+
+    def test_a_config_without_a_display_for_them_is_refused(self):
+        config = OCIO.Config.CreateRaw()
+        config.removeDisplayView("sRGB", "Raw")
+        config.addDisplayView("projector", "Raw", "raw")
+        with pytest.raises(ConfigError, match="no standard-range display for a view; leave --view out"):
+            add_plate_views(config, ["raw"])
+        config.setVersion(1, 0)
+        with pytest.raises(ConfigError, match="profile version 1 has no view transforms"):
+            add_plate_views(config, ["raw"])
