@@ -2,6 +2,7 @@
 
 estimate             the method on one screen: photographs in, response and uncertainty out
 response_estimate    what comes out, and the same as a document for JSON
+calibration          the response measured from an exposure stack instead
 photo, image_io      a photograph's code values, of a file or an array, and the one reader of image files
 metadata             what a file says of how its photograph was made
 windows              the windows of a photograph that are analysed

@@ -25,6 +25,10 @@ class EstimateError(CRFNetError):
     """A document that holds no estimate, or one of a later version."""
 
 
+class CalibrationError(CRFNetError):
+    """An exposure stack that cannot be read as one, or that no camera response explains."""
+
+
 class LutError(CRFNetError):
     """A lookup table that is malformed or cannot be written."""
 

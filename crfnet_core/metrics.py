@@ -63,6 +63,16 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     return float(np.std(stops))
 
 
+def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
+    """Return by how many stops the estimated linear light is too bright beside white: Eq. 38.
+
+    The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out. Both
+    responses have white at 1.
+    """
+    brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    return float(np.mean(np.log2(estimated.inverse(brightness) / true.inverse(brightness))))
+
+
 def peak_signal_to_noise(error: float) -> float:
     """Return the PSNR in decibels of a linearisation error above 0 (peak of the true linear image = 1)."""
     return float(-20 * np.log10(error))

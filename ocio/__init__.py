@@ -7,7 +7,7 @@ options       typed options of the pipeline
 pipeline      the one way from photographs to files, for the command and for the add-on
 output_files  which files an estimate writes, and whether they may be written
 report        estimates and files in words, as JSON, and as provenance
-sheet         an estimate as a picture
+sheet         an estimate as a picture; calibration_sheet a measured response
 luts          the LUT, and its file formats
 configs       OpenColorIO configs with a plate's colour space
 plates        frame sequences, and linear EXR files made of them

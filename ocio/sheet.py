@@ -6,6 +6,8 @@ It needs matplotlib, which is an optional dependency.
 from __future__ import annotations
 
 import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -78,24 +80,37 @@ def draw_sheet(
     PlateError
         If the file cannot be written.
     """
+    with sheet_figure(path, overwrite=overwrite) as figure:
+        _draw_heading(figure, estimate)
+        _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
+        before, after = _picture_axes(figure, portrait=preview.shape[0] > preview.shape[1])
+        _draw_photograph(before, preview, estimate, stride)
+        _draw_linear(after, preview, estimate.curve)
+
+
+@contextmanager
+def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
+    """Yield an empty figure in the style of the sheets, and write it as PNG; the same drawing gives the same bytes.
+
+    Raises
+    ------
+    PlateError
+        If the file cannot be written.
+    """
     with mpl.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # file names may hold any character
         mpl.rcdefaults()
         mpl.rcParams.update(STYLE)
         figure = Figure(figsize=SIZE, dpi=DPI, facecolor="white")
         FigureCanvasAgg(figure)
-        _draw_heading(figure, estimate)
-        _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
-        before, after = _picture_axes(figure, portrait=preview.shape[0] > preview.shape[1])
-        _draw_photograph(before, preview, estimate, stride)
-        _draw_linear(after, preview, estimate.curve)
+        yield figure
         with atomic_write(path, overwrite=overwrite, error=PlateError) as temporary:
             figure.savefig(temporary, format="png", metadata={"Software": None}, pil_kwargs={"compress_level": 4})
 
 
 def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     """Draw the photograph's name, the verdict with the expected errors, what it rests on, and the warnings."""
-    name = _shortened(estimate.photos[0], LONGEST_NAME)
+    name = shortened(estimate.photos[0], LONGEST_NAME)
     more = f" + {len(estimate.photos) - 1}" if len(estimate.photos) > 1 else ""
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
     color = VERDICT_INK[estimate.verdict]
@@ -107,9 +122,9 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
         found, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=INK
     )
     figure.add_artist(beside)
-    figure.text(0.058, 0.872, _shortened(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
+    figure.text(0.058, 0.872, shortened(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
     figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
-    warning_line = _shortened(DOT.join(estimate.warnings), LONGEST_LINE)
+    warning_line = shortened(DOT.join(estimate.warnings), LONGEST_LINE)
     figure.text(0.058, 0.026, warning_line, va="center", color=VERDICT_INK[Verdict.USABLE])
 
 
@@ -176,7 +191,7 @@ def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:
     axes.set_axis_off()
 
 
-def _shortened(text: str, longest: int) -> str:
+def shortened(text: str, longest: int) -> str:
     """Return `text`, with its middle replaced by an ellipsis if it has more than `longest` characters."""
     if len(text) <= longest:
         return text

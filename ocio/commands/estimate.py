@@ -4,23 +4,19 @@ from __future__ import annotations
 
 import argparse
 import shlex
-import sys
 from collections.abc import Mapping, Sequence
 from dataclasses import asdict
-from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
-from ocio.commands.printing import print_json, print_lines, progress_bar
+from ocio.commands.printing import has_matplotlib, print_json, print_lines, progress_bar
 from ocio.movies.frames import MovieFrames
 from ocio.options import EstimateOptions, OutputOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import PhotographEstimate, PhotographRecord
-
-NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -28,7 +24,7 @@ def run(arguments: argparse.Namespace) -> None:
     options = estimate_options(arguments, windows=arguments.windows, seed=arguments.seed)
     outputs = OutputOptions(
         lut_length=arguments.length,
-        has_sheet=not arguments.no_sheet and _has_matplotlib(),
+        has_sheet=not arguments.no_sheet and has_matplotlib(),
         has_linear=not arguments.no_linear,
         has_forward=arguments.forward,
     )
@@ -64,14 +60,6 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
     if failed := [record for record in records if record.error]:
         first = f"the first: {failed[0].error}"
         raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
-
-
-def _has_matplotlib() -> bool:
-    """Return whether a sheet can be drawn; if not, say on stderr what to do."""
-    if find_spec("matplotlib") is not None:
-        return True
-    print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
-    return False
 
 
 def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles) -> None:

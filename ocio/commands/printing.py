@@ -6,6 +6,7 @@ import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
+from importlib.util import find_spec
 from typing import Any
 
 from tqdm import tqdm
@@ -15,6 +16,16 @@ from ocio import report
 
 #: Seconds between two lines of progress where there is no terminal.
 LINE_SECONDS = 60
+
+NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
+
+
+def has_matplotlib() -> bool:
+    """Return whether a sheet can be drawn; if not, say on stderr what to do."""
+    if find_spec("matplotlib") is not None:
+        return True
+    print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
+    return False
 
 
 def print_json(document: Mapping[str, Any]) -> None:

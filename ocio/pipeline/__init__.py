@@ -5,6 +5,7 @@ folders    the folder that `crfnet estimate` writes: all checks first, then LUTs
 each       many photographs, one response each: written as they end, continued when interrupted
 manifest   the file in which they stand
 workers    processes of this machine, or a Dask cluster
+calibrations  the folder that `crfnet calibrate` writes, and responses to compare with
 delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
 
 Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
@@ -13,6 +14,7 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 """
 
 from ocio.luts.exposure import anchored_exposure
+from ocio.pipeline.calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
 from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
 from ocio.pipeline.each import estimate_each, find_photographs, plan_each
 from ocio.pipeline.estimates import (
@@ -28,6 +30,7 @@ from ocio.pipeline.manifest import MANIFEST, PhotographRecord
 
 __all__ = [
     "MANIFEST",
+    "CalibrationPlan",
     "OutputPlan",
     "PhotographEstimate",
     "PhotographRecord",
@@ -41,8 +44,11 @@ __all__ = [
     "find_photographs",
     "load_network",
     "load_prior",
+    "plan_calibration",
     "plan_each",
     "plan_outputs",
     "response_lut",
+    "response_to_compare",
+    "write_calibration",
     "write_outputs",
 ]

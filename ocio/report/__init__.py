@@ -1,10 +1,17 @@
 """What is said of an estimate and of files.
 
-facts      what is said everywhere, among it the provenance that LUT files carry
-words      lines for people: of the command and of the add-on
-documents  the same for machines, ready for JSON
+facts        what is said everywhere, among it the provenance that LUT files carry
+words        lines for people: of the command and of the add-on
+documents    the same for machines, ready for JSON
+calibration  a measured response in words, as JSON and as provenance
 """
 
+from ocio.report.calibration import (
+    calibration_document,
+    calibration_lines,
+    calibration_provenance,
+    comparison_lines,
+)
 from ocio.report.documents import estimate_document, json_text, lut_document, model_document, plate_document
 from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error, provenance, shape_error
 from ocio.report.words import (
@@ -27,6 +34,10 @@ __all__ = [
     "PhotoFacts",
     "agreeing",
     "basis",
+    "calibration_document",
+    "calibration_lines",
+    "calibration_provenance",
+    "comparison_lines",
     "curve_error",
     "estimate_document",
     "file_lines",

@@ -48,7 +48,7 @@ def estimate_document(
         "photographs": [vars(photo) for photo in photos],
         **_light_document(light),
         "color_space": files.color_space,
-        "files": _file_names(files),
+        "files": file_names(files),
     }
 
 
@@ -76,9 +76,9 @@ def lut_document(path: Path, lut: AnyLut, found: ResponseFile) -> dict[str, Any]
         "channels": len(lut.channels),
         "converts": ["brightness", "irradiance"] if is_inverse else ["irradiance", "brightness"],
         "length": len(lut.values),
-        "domain": [_rounded(first), _rounded(last)],
-        "range": [_rounded(lut.values[0].min()), _rounded(lut.values[-1].max())],
-        "at_quarters": _rounded(quarters[0] if len(quarters) == 1 else quarters),
+        "domain": [rounded(first), rounded(last)],
+        "range": [rounded(lut.values[0].min()), rounded(lut.values[-1].max())],
+        "at_quarters": rounded(quarters[0] if len(quarters) == 1 else quarters),
         "provenance": list(lut.comments),
     }
 
@@ -96,19 +96,19 @@ def _light_document(light: PlateLight) -> dict[str, Any]:
         "primaries": {
             "name": light.plate.name,
             "source": light.plate.source,
-            **({corner: _rounded(getattr(primaries, corner)) for corner in corners} if primaries else {}),
+            **({corner: rounded(getattr(primaries, corner)) for corner in corners} if primaries else {}),
         },
         "exposure": {
-            "stops": _rounded(light.stops),
+            "stops": rounded(light.stops),
             "gray_brightness": GRAY_BRIGHTNESS,
-            "gray_linear": _rounded(gray * 2**light.stops),
-            "gray_stops": _rounded(np.log2(MIDDLE_GRAY / gray)) if gray > 0 else None,
+            "gray_linear": rounded(gray * 2**light.stops),
+            "gray_stops": rounded(np.log2(MIDDLE_GRAY / gray)) if gray > 0 else None,
         },
         "output_space": {"name": str(light.space), "interop_id": light.space.interop_id},
     }
 
 
-def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
+def file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
     """Return the file names by kind."""
     return {
         "spi1d": files.spi1d.name,
@@ -122,6 +122,6 @@ def _file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
     }
 
 
-def _rounded(values: ArrayLike) -> Any:
+def rounded(values: ArrayLike) -> Any:
     """Return a number, or nested lists of numbers, rounded to `DECIMALS` decimals."""
     return np.round(np.asarray(values, dtype=np.float64), DECIMALS).tolist()

@@ -61,14 +61,14 @@ def result_line(estimate: ResponseEstimate) -> str:
     return f"{estimate.photos[0]}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
 
 
-def file_lines(files: OutputFiles) -> list[str]:
+def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty and the windows") -> list[str]:
     """Return what was written, one line for each kind of file; names are relative to the folder."""
     rows = [
         (files.luts, "inverse response as a LUT"),
         (files.forward, "response as a LUT: light in, code values out"),
         ((files.config,), f'OpenColorIO config with "{files.color_space}"'),
         (files.linear, "linear plate"),
-        ((files.sheet,), "the curve, its uncertainty and the windows"),
+        ((files.sheet,), sheet),
         ((files.report,), "all figures"),
     ]
     named = [(", ".join(path.name for path in paths if path), meaning) for paths, meaning in rows]

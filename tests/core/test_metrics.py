@@ -5,6 +5,7 @@ from crfnet_core.metrics import (
     estimation_error,
     linearization_error,
     peak_signal_to_noise,
+    scale_error,
     shape_error,
 )
 from crfnet_core.response import SAMPLES, ResponseCurve
@@ -46,6 +47,13 @@ def test_the_shape_error_ignores_the_exposure():
     clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
     assert estimation_error(STRAIGHT, clipped) > 5
     assert shape_error(STRAIGHT, clipped) < 2e-3
+
+
+def test_the_scale_error_is_the_exposure():
+    """f(E) = 2 E until it clips: its light beside white is a stop below that of f(E) = E."""
+    clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
+    assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
+    assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)
 
 
 def test_psnr():

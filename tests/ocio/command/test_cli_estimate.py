@@ -10,7 +10,7 @@ import pytest
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
-from ocio.commands import estimate as command
+from ocio.commands import printing
 from ocio.luts.spi1d import read_spi1d
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
@@ -206,10 +206,10 @@ def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
 
 
 def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model, tmp_path, monkeypatch):
-    monkeypatch.setattr(command, "find_spec", lambda name: None)
+    monkeypatch.setattr(printing, "find_spec", lambda name: None)
     done = crfnet("estimate", plate, "--out", tmp_path, "--model", fixed_model)
     assert done.code == 0
-    assert done.err.splitlines() == [command.NO_MATPLOTLIB]
+    assert done.err.splitlines() == [printing.NO_MATPLOTLIB]
     assert not (tmp_path / "plate_sheet.png").exists()
 
 

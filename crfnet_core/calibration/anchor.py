@@ -1,0 +1,85 @@
+"""Where white is: the irradiance at which the codes reach white, which sets the scale of a response (Eq. 41)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.calibration.blocks import ALL_WHITE, PARTLY_WHITE, Observations
+from crfnet_core.calibration.curve_model import CurveModel, table_stops
+from crfnet_core.calibration.solver import StackFit
+from crfnet_core.types import Float64Array
+
+#: 8-bit codes from which the crossing is extrapolated in a straight line, and through which the parabola leads.
+LINE_FROM, PARABOLA_FROM, LAST_CODE, WHITE_CODE = 252, 240, 254, 254.5
+
+#: Samples that have to be white in one frame and measured in another for the crossing to be known.
+LEAST_CROSSINGS = 30
+
+#: Share of the samples, the flattest, that the crossing is looked for in.
+FLATTEST = 0.5
+
+#: Standard deviation in stops of the anchor where its methods agree: the end of a response is seen in steps of a code.
+LEAST_DEVIATION = 0.02
+
+#: Standard deviation in stops where no frame reaches white: the end is that of the nearest known responses.
+UNSEEN_DEVIATION = 0.4
+
+
+@dataclass(frozen=True)
+class Anchor:
+    """Where the codes reach white.
+
+    Parameters
+    ----------
+    log_white : float
+        log2 of the irradiance of white, in the units of the fit; 0 if the fit has it right.
+    deviation : float
+        Its standard deviation in stops.
+    is_seen : bool
+        Whether samples reach white in some frame and are measured in another.
+    """
+
+    log_white: float
+    deviation: float
+    is_seen: bool
+
+
+def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, fit: StackFit) -> Anchor:
+    """Return where white is.
+
+    Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
+    and a parabola for the irradiance over the last codes of the fitted curve. The first counts twice.
+    """
+    crosses = (seen.white_share >= ALL_WHITE).any(axis=1) & seen.is_used.any(axis=1)
+    if crosses.sum() < LEAST_CROSSINGS:
+        return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
+    codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
+    irradiance = np.exp2(_log_irradiance(model, fit, codes / 255))
+    parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
+    parabolic = float(np.log2(max(parabola, irradiance[-1])))
+    crossing = _crossing(seen, fit.exposed(exposures, seen))
+    before = float(_log_irradiance(model, fit, np.array([LINE_FROM / 255]))[0])
+    per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
+    crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
+    spread = abs(crossed - parabolic) / 2
+    return Anchor((2 * crossed + parabolic) / 3, float(np.hypot(LEAST_DEVIATION, spread)), is_seen=True)
+
+
+def _crossing(seen: Observations, log_exposed: Float64Array) -> float:
+    """Return log2 of the irradiance that parts white pixels from others best, over the flattest samples."""
+    partly = (seen.white_share > PARTLY_WHITE).any(axis=1)
+    flat = seen.spread <= np.quantile(seen.spread[partly], FLATTEST)
+    order = log_exposed[flat].ravel().argsort()
+    stops, share = log_exposed[flat].ravel()[order], seen.white_share[flat].ravel()[order]
+    near = np.abs(stops - stops[np.cumsum(share - 0.5).argmin()]) < 1
+    stops, share = stops[near], share[near]
+    return float(stops[np.cumsum(share - 0.5).argmin()])
+
+
+def _log_irradiance(model: CurveModel, fit: StackFit, brightness: Float64Array) -> Float64Array:
+    """Return log2 of the irradiance that the fitted response needs for brightness."""
+    table = np.maximum.accumulate(model.mean + model.basis @ fit.weights)
+    rising = table + 1e-9 * np.arange(len(table))
+    return np.interp(brightness, rising, table_stops())

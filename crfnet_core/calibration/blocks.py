@@ -1,0 +1,187 @@
+"""Blocks of pixels that a stack is measured in, and the brightness of those that tell most."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+
+from crfnet_core.photo import CodeArray
+from crfnet_core.types import BoolArray, Float64Array, IndexArray
+
+#: A block is so many cells along each side, and a picture's longer side has about so many blocks.
+CELLS, BLOCKS_ACROSS = 4, 190
+
+#: A pixel is white within so many 8-bit codes of the white level: JPEG and rounding take that much.
+WHITE_MARGIN = 0.5
+
+#: A block is white if at least so many of its pixels are, and partly white if more than so many are.
+ALL_WHITE, PARTLY_WHITE = 0.98, 0.03
+
+#: 8-bit code below which brightness is not used: there black level and clipping rule.
+DARKEST_CODE = 5
+
+#: 8-bit code at which that begins: the deviation is twice as large there, and grows with the square of 1 / code.
+DARK_CODE = 10
+
+#: Standard deviation of a block's mean, in 8-bit codes: rounding, JPEG; and the part of the spread within the block.
+CODE_NOISE, SPREAD_NOISE = 0.4, 0.15
+
+#: Factor on it where another channel clips, and the chroma (a part of the brightness) from which colour doubles it.
+CLIPPED_NEIGHBOUR, STRONG_CHROMA = 4.0, 0.35
+
+#: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
+BIN, BLOCKS = 0.2, 650
+
+
+class BlockMeans(NamedTuple):
+    """Means over the blocks of one frame, each of shape (N, 3): brightness, its spread over cells, share of white."""
+
+    brightness: Float64Array
+    spread: Float64Array
+    white: Float64Array
+
+
+@dataclass(frozen=True, eq=False)
+class Observations:
+    """What was seen of M samples (a block in one channel) in T frames.
+
+    Parameters
+    ----------
+    brightness : ndarray, float64, shape (M, T)
+        Mean brightness, white = 1.
+    deviation : ndarray, float64, shape (M, T)
+        Its expected standard deviation.
+    is_used : ndarray, bool, shape (M, T)
+        Whether the brightness counts.
+    is_white : ndarray, bool, shape (M, T)
+        Whether the sample is white: it then says only that its irradiance is at least that of white.
+    white_share : ndarray, float64, shape (M, T)
+        Share of white pixels.
+    spread : ndarray, float64, shape (M,)
+        Typical spread within the block, in brightness.
+    block, channel : ndarray, int, shape (M,)
+        Which block of the picture, and which channel, the sample is.
+    """
+
+    brightness: Float64Array
+    deviation: Float64Array
+    is_used: BoolArray
+    is_white: BoolArray
+    white_share: Float64Array
+    spread: Float64Array
+    block: IndexArray
+    channel: IndexArray
+
+    def of(self, samples: BoolArray | IndexArray) -> Observations:
+        """Return some of the samples."""
+        return Observations(**{name: values[samples] for name, values in vars(self).items()})
+
+    def in_frames(self, frames: BoolArray) -> Observations:
+        """Return what some of the frames show."""
+        cut = {name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2}
+        return Observations(**{**vars(self), **cut})
+
+    def without(self, is_outlier: BoolArray) -> Observations:
+        """Return the observations, of which those of shape (M, T) that are outliers do not count."""
+        kept = {"is_used": self.is_used & ~is_outlier, "is_white": self.is_white & ~is_outlier}
+        return Observations(**{**vars(self), **kept})
+
+
+def block_means(codes: CodeArray, white: float) -> BlockMeans:
+    """Return the means over the blocks of a frame, row by row.
+
+    Parameters
+    ----------
+    codes : ndarray, uint8 or uint16, shape (H, W, 3)
+        Code values.
+    white : float
+        The code of white.
+    """
+    cell = cell_size(codes.shape[:2])
+    rows, columns = (side // (CELLS * cell) for side in codes.shape[:2])
+    cut = codes[: rows * CELLS * cell, : columns * CELLS * cell]
+    is_white = cut >= white * (1 - WHITE_MARGIN / 255)
+    means = _means(cut, cell) / white
+    cells = means.reshape(rows, CELLS, columns, CELLS, 3).swapaxes(1, 2).reshape(rows * columns, CELLS**2, 3)
+    return BlockMeans(
+        brightness=np.minimum(cells.mean(axis=1), 1),
+        spread=cells.std(axis=1),
+        white=_means(is_white, CELLS * cell).reshape(rows * columns, 3),
+    )
+
+
+def cell_size(shape: tuple[int, ...]) -> int:
+    """Return the side of a cell in pixels: at least one, so small pictures have fewer blocks."""
+    return max(1, round(max(shape) / (CELLS * BLOCKS_ACROSS)))
+
+
+def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
+    """Return every sample of every block: those of one block follow each other, one channel only if gray."""
+    channels = 1 if is_gray else 3
+    brightness, spread, white = (
+        np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)
+    )  # (N, C, T)
+    is_white = white >= ALL_WHITE
+    is_used = (white <= PARTLY_WHITE) & (brightness * 255 >= DARKEST_CODE)
+    deviation = np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread)
+    deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
+    chroma = np.ptp(brightness, axis=1, keepdims=True) / np.maximum(brightness.max(axis=1, keepdims=True), 1 / 255)
+    has_clipped = (white > PARTLY_WHITE).any(axis=1, keepdims=True) & is_used
+    deviation = deviation * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOUR, 1)
+    count = is_used.sum(axis=2)
+    typical = np.where(count > 0, (spread * is_used).sum(axis=2) / np.maximum(count, 1), np.inf)
+    blocks, frame_count = len(brightness), brightness.shape[2]
+    flat = (blocks * channels, frame_count)
+    return Observations(
+        brightness=brightness.reshape(flat),
+        deviation=deviation.reshape(flat),
+        is_used=is_used.reshape(flat),
+        is_white=is_white.reshape(flat),
+        white_share=white.reshape(flat),
+        spread=typical.ravel(),
+        block=np.repeat(np.arange(blocks), channels),
+        channel=np.tile(np.arange(channels), blocks),
+    )
+
+
+def pick_blocks(seen: Observations, log_irradiance: Float64Array, *, count: int = BLOCKS) -> Observations:
+    """Return the samples of the flattest and most neutral blocks of every level of irradiance.
+
+    Parameters
+    ----------
+    seen : Observations
+        Every sample.
+    log_irradiance : ndarray, float64, shape (M,)
+        log2 of each sample's irradiance, roughly; NaN where no frame shows it.
+    count : int
+        Blocks to pick.
+    """
+    channels = int(seen.channel.max()) + 1
+    levels = log_irradiance.reshape(-1, channels)
+    seen_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels).all(axis=1)
+    fit = np.flatnonzero(seen_often & np.isfinite(levels).all(axis=1))
+    colour = np.ptp(levels[fit], axis=1)
+    rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + colour)
+    bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
+    picked = _best_of_bins(rank, bins, count)
+    return seen.of(np.isin(seen.block, fit[picked]))
+
+
+def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:
+    """Return about `count` places of the lowest ranks, as evenly from the bins as they allow."""
+    order = np.lexsort((rank, bins))
+    starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) > 0]) if order.size else np.zeros(0, int)
+    sizes = np.diff(np.r_[starts, order.size])
+    place = np.arange(order.size) - np.repeat(starts, sizes)  # place within the bin
+    return order[np.argsort(place, kind="stable")[:count]]
+
+
+def _means(values: CodeArray | BoolArray, side: int) -> Float64Array:
+    """Return the means of squares of `side` pixels, shape (H / side, W / side, 3)."""
+    height, width, channels = values.shape
+    sums = values.reshape(height // side, side, width, channels).sum(axis=1, dtype=np.uint32)
+    sums = sums.reshape(height // side, width // side, side, channels).sum(axis=2)
+    return np.asarray(sums / (side * side), dtype=np.float64)

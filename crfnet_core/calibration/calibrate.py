@@ -1,0 +1,276 @@
+"""Measure a camera's response from an exposure stack: the whole of it on one screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import NamedTuple
+
+import numpy as np
+
+from crfnet_core.calibration.alignment import Shift
+from crfnet_core.calibration.blocks import Observations, block_means, observe
+from crfnet_core.calibration.checks import (
+    check_labels,
+    check_measurement,
+    check_range,
+    check_seen,
+    nearest_known,
+    warnings_of,
+)
+from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
+from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
+from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
+from crfnet_core.calibration.uncertainty import Uncertainty, uncertainty_of
+from crfnet_core.emor import EmorBasis
+from crfnet_core.errors import CalibrationError
+from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata.devices import Device, device_of
+from crfnet_core.metrics import estimation_error, linearization_error, scale_error, shape_error
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float64Array, Progress
+
+#: By how much the cost of exact powers of two may exceed that of the labels as they are.
+SNAPPED_BONUS = 30.0
+
+#: Largest distance in stops between nominal and snapped labels that makes no difference.
+SAME_LABELS = 0.005
+
+
+@dataclass(frozen=True, eq=False)
+class FrameReport:
+    """What was found of one frame.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    label : ExposureLabel
+        Its exposure by EXIF or as given.
+    stops : float
+        Its exposure as it was used, relative to the mean of the stack.
+    offsets : ndarray, float64, shape (C,)
+        Stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
+    shift : (int, int)
+        Rows and columns in pixels by which it was displaced.
+    residual : float
+        Root mean square of brightness less that of the model, in 8-bit codes; NaN if it was left out.
+    is_used : bool
+        Whether it fits the others.
+    """
+
+    path: Path
+    label: ExposureLabel
+    stops: float
+    offsets: Float64Array
+    shift: Shift
+    residual: float
+    is_used: bool
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """How far another response is from a measured one.
+
+    Parameters
+    ----------
+    estimation_error, linearization_error, shape_error, scale_error : float
+        See the functions of these names in `crfnet_core.metrics`; E_lin is that of the best exposed frame.
+    """
+
+    estimation_error: float
+    linearization_error: float
+    shape_error: float
+    scale_error: float
+
+
+@dataclass(frozen=True, eq=False)
+class Calibration:
+    """A measured response, how far it may be off, and what it was measured on.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response.
+    weights : ndarray, float64, shape (11,)
+        Its EMoR weights.
+    uncertainty : Uncertainty
+        Of its shape and of its scale, in stops.
+    residual : float
+        Root mean square of brightness less that of the model, in 8-bit codes.
+    white : float
+        Code of white as a part of the largest code.
+    reaches_white : bool
+        Whether white was seen; otherwise the scale is that of similar known responses.
+    labels : str
+        How the exposure labels were read: "nominal", or "exact powers of two".
+    nearest_known : float
+        E_est between it and the nearest packaged response.
+    metadata : FileMetadata
+        What the first frame's file says of its camera.
+    frames : tuple of FrameReport
+        The frames in the order given.
+    points : ndarray, float64, shape (N, 4)
+        What was measured: log2 of irradiance (white = 0), brightness, brightness less that of the model, frame.
+    counts : ndarray, float64, shape (256,)
+        How often each of 256 steps of brightness occurs in the best exposed frame.
+    warnings : tuple of str
+        What to know, in words.
+    """
+
+    curve: ResponseCurve
+    weights: Float64Array
+    uncertainty: Uncertainty
+    residual: float
+    white: float
+    reaches_white: bool
+    labels: str
+    nearest_known: float
+    metadata: FileMetadata
+    frames: tuple[FrameReport, ...]
+    points: Float64Array
+    counts: Float64Array
+    warnings: tuple[str, ...]
+
+    def compare(self, other: ResponseCurve) -> Comparison:
+        """Return how far another response, such as an estimate, is from this one."""
+        steps = np.arange(256) / 255
+        return Comparison(
+            estimation_error=estimation_error(self.curve, other),
+            linearization_error=linearization_error(steps, self.curve, other, counts=self.counts),
+            shape_error=shape_error(self.curve, other),
+            scale_error=scale_error(self.curve, other),
+        )
+
+
+def calibrate_stack(
+    paths: Sequence[Path],
+    *,
+    seconds: Sequence[float] | None = None,
+    accept_edited: bool = False,
+    progress: Progress | None = None,
+) -> Calibration:
+    """Measure the response of the camera that took an exposure stack of one static scene.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        The frames, in any order.
+    seconds : sequence of float, optional
+        Their exposure times; by default EXIF's. ISO and f-number count too where EXIF has them.
+    accept_edited : bool
+        Whether files may be measured that a program has edited.
+    progress : callable, optional
+        Called with (done, total) after every frame that is read.
+
+    Raises
+    ------
+    PhotoError
+        If a frame cannot be read.
+    CalibrationError
+        If the frames are no stack, or no camera response explains them: the message says what is wrong.
+    """
+    frames = _labelled(read_frames(paths, progress=progress), seconds)
+    check_labels(frames, accept_edited=accept_edited)
+    exposures = stack_exposures([frame.label for frame in frames])
+    check_range(exposures)
+    white = white_level(frames)
+    codes, shifts = align(frames, exposures.nominal.argsort().tolist())
+    means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
+    every = observe(means, is_gray=all(frame.is_gray for frame in frames))
+    check_seen(every.brightness[every.is_used])
+    model = CurveModel.load()
+    labels, found, other = _measured(every, _readings(exposures, frames[0]), model)
+    names = [frame.path.name for frame in frames]
+    check_measurement(found, names)
+    reports = _frame_reports(frames, found, labels.stops, shifts)
+    return Calibration(
+        curve=found.curve,
+        weights=EmorBasis.load().project(found.curve.brightness),
+        uncertainty=uncertainty_of(found, other, model),
+        residual=found.residual,
+        white=white,
+        reaches_white=found.anchor.is_seen,
+        labels=labels.name,
+        nearest_known=nearest_known(found.curve),
+        metadata=frames[0].metadata,
+        frames=reports,
+        points=_points(found),
+        counts=_best_exposed(frames, found).counts,
+        warnings=warnings_of(found, names, exposures, white=white),
+    )
+
+
+def _labelled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
+    """Return the frames with the times that were given, if any were."""
+    if seconds is None:
+        return tuple(frames)
+    if len(seconds) != len(frames):
+        raise CalibrationError(f"{len(seconds)} times are given for {len(frames)} frames; give one for each, in order")
+    pairs = zip(frames, seconds, strict=True)
+    return tuple(replace(frame, label=replace(frame.label, seconds=time)) for frame, time in pairs)
+
+
+class _Reading(NamedTuple):
+    """A way to read the exposure labels."""
+
+    name: str
+    stops: Float64Array
+    bonus: float
+
+
+def _readings(exposures: Exposures, first: Frame) -> list[_Reading]:
+    """Return the readings of the labels to try: phones expose by any time, so theirs stay as they are."""
+    nominal = _Reading("nominal", exposures.nominal, 0)
+    is_phone = device_of(first.metadata.make, first.metadata.model) is Device.PHONE
+    if exposures.snapped is None or is_phone:
+        return [nominal]
+    snapped = _Reading("exact powers of two", exposures.snapped, SNAPPED_BONUS)
+    is_same = np.abs(exposures.snapped - exposures.nominal).max() < SAME_LABELS
+    return [snapped] if is_same else [snapped, nominal]
+
+
+def _measured(
+    every: Observations, readings: Sequence[_Reading], model: CurveModel
+) -> tuple[_Reading, Measurement, ResponseCurve | None]:
+    """Return the reading of the labels that costs less, what was measured with it, and the other's response."""
+    first, *others = readings
+    found = measure(every, first.stops, model)
+    if not others:
+        return first, found, None
+    other = others[0]
+    again = fit_and_anchor(found.seen, other.stops[found.frames], model, found.curve)
+    if found.fit.cost - first.bonus <= again.fit.cost - other.bonus:
+        return first, found, again.curve
+    return other, replace(again, frames=found.frames, outliers=found.outliers), found.curve
+
+
+def _frame_reports(
+    frames: Sequence[Frame], found: Measurement, stops: Float64Array, shifts: Sequence[Shift]
+) -> tuple[FrameReport, ...]:
+    """Return what was found of each frame."""
+    offsets = np.full((len(frames), found.fit.offsets.shape[1]), np.nan)
+    offsets[found.frames] = found.fit.offsets
+    residuals = np.full(len(frames), np.nan)
+    residuals[found.frames] = frame_residuals(found.fit)
+    return tuple(
+        FrameReport(frame.path, frame.label, float(stops[i]), offsets[i], shifts[i], float(residuals[i]), bool(is_used))
+        for i, (frame, is_used) in enumerate(zip(frames, found.frames, strict=True))
+    )
+
+
+def _points(found: Measurement) -> Float64Array:
+    """Return what was measured, for a picture: see `Calibration.points`."""
+    log_irradiance = found.fit.exposed(found.exposures, found.seen) - found.anchor.log_white
+    used = np.broadcast_to(np.flatnonzero(found.frames), log_irradiance.shape)
+    columns = (log_irradiance, found.seen.brightness, found.fit.residual, used)
+    return np.stack([column[found.seen.is_used] for column in columns], axis=1)
+
+
+def _best_exposed(frames: Sequence[Frame], found: Measurement) -> Frame:
+    """Return the used frame whose mean brightness is nearest to the middle."""
+    used = [frame for frame, is_used in zip(frames, found.frames, strict=True) if is_used]
+    steps = np.arange(256) / 255
+    return min(used, key=lambda frame: abs(float(np.average(steps, weights=frame.counts)) - 0.45))

@@ -1,0 +1,239 @@
+"""What is wrong with a stack: refused in one line that says what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from itertools import pairwise
+
+import numpy as np
+
+from crfnet_core.calibration.blocks import Observations
+from crfnet_core.calibration.exposures import Exposures
+from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
+from crfnet_core.calibration.measurement import Measurement
+from crfnet_core.errors import CalibrationError
+from crfnet_core.metadata import file_origin
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.posterior import IN_CAMERA, ResponseBank
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float64Array
+
+#: Stops that the exposures of a stack have to span.
+LEAST_RANGE = 2.0
+
+#: Largest difference in stops between a frame's exposure and its label.
+MOST_OFFSET = 0.3
+
+#: Offset in stops from its label, and share of samples left out, from which a warning says so.
+NOTABLE_OFFSET, NOTABLE_OUTLIERS = 0.1, 0.1
+
+#: Largest root mean square residual in 8-bit codes, and largest share of samples that fit in no way.
+MOST_RESIDUAL, MOST_OUTLIERS = 2.5, 0.3
+
+#: Largest E_est between a measured response and the nearest known one.
+MOST_UNKNOWN = 2.0
+
+#: Scatter in 8-bit codes of blocks that are equal in one frame and not in the next, from which something has moved:
+#: whatever curve each frame was rendered with, equal light stays equal.
+MOST_SCATTER = 6.0
+
+#: Levels that blocks count as equal within.
+EQUAL_LEVELS = 48
+
+#: Samples that a measurement needs.
+LEAST_SAMPLES = 200
+
+#: Parts that the codes are divided into, and how many of them have to be seen.
+CODE_BINS, LEAST_BINS = 28, 0.5
+
+
+def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
+    """Refuse frames without exposure times, and frames that a program has edited.
+
+    Raises
+    ------
+    CalibrationError
+        In either case; edited frames only if `accept_edited` is false.
+    """
+    if untimed := [frame for frame in frames if frame.label.seconds is None]:
+        raise CalibrationError(
+            f"{untimed[0].path}: names no exposure time; give the times of all frames with --times 1/60,1/30,..."
+            " or a CSV file"
+        )
+    editors = [file_origin(frame.metadata).editor for frame in frames]
+    if any(editors) and not accept_edited:
+        editor, frame = next((editor, frame) for editor, frame in zip(editors, frames, strict=True) if editor)
+        raise CalibrationError(
+            f"{frame.path}: saved by {editor}, which may have changed the tones; give the camera's own files,"
+            " or add --accept-edited to measure what that program makes of them"
+        )
+
+
+def check_range(exposures: Exposures) -> None:
+    """Refuse a stack whose exposures lie too close together.
+
+    Raises
+    ------
+    CalibrationError
+        If they span less than `LEAST_RANGE` stops.
+    """
+    if exposures.range < LEAST_RANGE:
+        raise CalibrationError(
+            f"the exposures span {exposures.range:.1f} stops, by EXIF or --times; a stack needs {LEAST_RANGE:g} or"
+            " more, from nearly nothing white to nearly everything white"
+        )
+
+
+def check_seen(brightness: Float64Array) -> None:
+    """Refuse a stack that does not show enough of the codes between black and white.
+
+    Parameters
+    ----------
+    brightness : ndarray, float64, shape (N,)
+        What was measured.
+
+    Raises
+    ------
+    CalibrationError
+        If fewer than `LEAST_BINS` of the codes that the shape is measured over occur.
+    """
+    edges = np.linspace(FIRST_SHAPE_CODE, LAST_SHAPE_CODE, CODE_BINS + 1)
+    counts = np.histogram(255 * brightness, edges)[0]
+    if np.mean(counts > 0) < LEAST_BINS:
+        raise CalibrationError(
+            f"flat parts of the pictures show {np.mean(counts > 0):.0%} of the codes between {FIRST_SHAPE_CODE} and"
+            f" {LAST_SHAPE_CODE}; take a scene with more range, or frames closer together"
+        )
+
+
+def check_measurement(found: Measurement, names: Sequence[str]) -> None:
+    """Refuse what no camera response explains, and say why.
+
+    Parameters
+    ----------
+    found : Measurement
+        The response.
+    names : sequence of str
+        The names of all frames.
+
+    Raises
+    ------
+    CalibrationError
+        If the frames moved, are mistimed, or follow no one curve, or the curve is far from every known response.
+    """
+    if len(found.seen.block) < LEAST_SAMPLES:
+        raise CalibrationError(
+            f"only {len(found.seen.block)} flat places are seen well in two frames, {LEAST_SAMPLES} are needed; take"
+            " more frames, closer together, or a scene with even surfaces"
+        )
+    left_out = [name for name, is_used in zip(names, found.frames, strict=True) if not is_used]
+    is_moved = found.frames.sum() < LEAST_FRAMES or found.outliers > MOST_OUTLIERS
+    if found.residual > MOST_RESIDUAL:
+        is_moved = is_moved or scatter(found.seen, found.exposures) > MOST_SCATTER
+    if is_moved:
+        which = f"{', '.join(left_out)} and more" if left_out else "some blocks"
+        raise CalibrationError(
+            f"the frames do not show the same: {which} differ from what the rest says, even if shifted; the camera or"
+            " the scene has moved, so use a tripod and a still scene, or leave these frames out"
+        )
+    _check_offsets(found, [name for name, is_used in zip(names, found.frames, strict=True) if is_used])
+    if found.residual > MOST_RESIDUAL:
+        raise CalibrationError(
+            f"no single curve explains the frames: they are off by {found.residual:.1f} codes (RMS), at most"
+            f" {MOST_RESIDUAL:g} are usual; each was rendered or edited on its own (automatic tones, local tone"
+            " mapping, HDR): switch that off, and give the camera's own files"
+        )
+    if (distance := nearest_known(found.curve)) > MOST_UNKNOWN and found.anchor.is_seen:
+        raise CalibrationError(
+            f"the curve that explains the frames is far from every known response (E_est {distance:.1f}, at most"
+            f" {MOST_UNKNOWN:g}); the exposure times are probably wrong, so check them, or the files were edited"
+        )
+
+
+def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, *, white: float) -> tuple[str, ...]:
+    """Return what to know of a measurement that is no reason to refuse it, in words.
+
+    Parameters
+    ----------
+    found : Measurement
+        The response.
+    names : sequence of str
+        The names of all frames.
+    exposures : Exposures
+        Their exposures.
+    white : float
+        The code of white as a part of the largest code.
+    """
+    frames = list(zip(names, found.frames, strict=True))
+    warnings = [f"{name} does not fit the other frames and was left out" for name, is_used in frames if not is_used]
+    used = [name for name, is_used in frames if is_used]
+    offsets = zip(used, off_trend(found), strict=True)
+    warnings += [
+        f"{name} is {off:+.2f} stop from its exposure label" for name, off in offsets if abs(off) > NOTABLE_OFFSET
+    ]
+    if exposures.differing:
+        differing = " and ".join(exposures.differing)
+        warnings.append(f"{differing} differ between the frames: exposures are time x ISO / f-number^2")
+    if (distance := nearest_known(found.curve, in_camera=True)) > MOST_UNKNOWN:
+        warnings.append(f"unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times")
+    highest = 255 * float(found.seen.brightness[found.seen.is_used].max())
+    if highest < LAST_SHAPE_CODE:
+        warnings.append(f"no code above {highest:.0f} is seen: there the curve is that of known responses")
+    if not found.anchor.is_seen:
+        warnings.append("no frame reaches white: the scale is a guess; add a longer exposure")
+    if found.outliers > NOTABLE_OUTLIERS:
+        warnings.append(f"{found.outliers:.0%} of the blocks do not fit and were left out: something moved")
+    if white < 1:
+        warnings.append(f"white is {255 * white:.0f} of 255 codes: the response ends there")
+    return tuple(warnings)
+
+
+def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:
+    """Return E_est between a response and the nearest packaged one: ordinary, or of cameras' own rendering only."""
+    bank = ResponseBank.load()
+    members = np.any([bank.of(family) for family in IN_CAMERA], axis=0) if in_camera else bank.ordinary
+    off = bank.brightness[members] - curve.brightness
+    return float(np.sqrt((off**2).sum(axis=1).min()))
+
+
+def scatter(seen: Observations, exposures: Float64Array) -> float:
+    """Return by how many codes blocks of one code differ in the next frame: the median over pairs of frames.
+
+    Frames are compared with the next brighter one, per channel, in `EQUAL_LEVELS` levels.
+    """
+    order = exposures.argsort()
+    found = []
+    for first, second in pairwise(order.tolist()):
+        for channel in np.unique(seen.channel):
+            both = seen.is_used[:, first] & seen.is_used[:, second] & (seen.channel == channel)
+            codes = 255 * seen.brightness[both][:, [first, second]]
+            level = np.floor(codes[:, 0] * EQUAL_LEVELS / 256).astype(int)
+            parts = [codes[level == value, 1] for value in np.unique(level)]
+            found += [float(np.std(part)) for part in parts if len(part) >= 4]
+    return float(np.median(found)) if found else 0.0
+
+
+def off_trend(found: Measurement) -> Float64Array:
+    """Return by how many stops green is brighter than its label in each used frame, beside the trend of most: (T,).
+
+    The slope is Theil and Sen's, the median over pairs, so that one wrong label does not spoil the others.
+    """
+    offsets = found.fit.offsets[:, found.fit.offsets.shape[1] // 2]
+    first, second = np.triu_indices(len(offsets), 1)
+    distance = found.exposures[second] - found.exposures[first]
+    apart = np.abs(distance) > 0.1
+    slope = np.median((offsets[second] - offsets[first])[apart] / distance[apart])
+    rest = offsets - slope * found.exposures
+    return np.asarray(rest - np.median(rest), dtype=np.float64)
+
+
+def _check_offsets(found: Measurement, names: Sequence[str]) -> None:
+    """Refuse a frame whose exposure is not the one of its label."""
+    offsets = off_trend(found)
+    worst = int(np.abs(offsets).argmax())
+    if abs(offsets[worst]) > MOST_OFFSET:
+        direction = "brighter" if offsets[worst] > 0 else "darker"
+        raise CalibrationError(
+            f"{names[worst]}: is {abs(offsets[worst]):.2f} stop {direction} than its exposure time says, beside the"
+            " other frames; correct its time with --times, or leave the frame out"
+        )

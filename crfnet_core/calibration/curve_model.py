@@ -1,0 +1,149 @@
+"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. 39)."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cache
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from crfnet_core.emor import EmorBasis
+from crfnet_core.posterior import ResponseBank
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
+
+#: log2 of the least and of the largest irradiance, white = 1, and steps to a stop of the table between them.
+LOWEST, HIGHEST, STEPS = -14.0, 1.0, 32
+
+#: Knots of the splines in brightness of the mean response: dense at both ends, where EMoR is too stiff.
+KNOTS = (
+    *(0.0, 0.01, 0.02, 0.035, 0.055, 0.08, 0.11, 0.15, 0.2, 0.26, 0.33, 0.41, 0.5),
+    *(0.59, 0.67, 0.74, 0.8, 0.85, 0.89, 0.92, 0.945, 0.965, 0.982, 1.0),
+)
+
+#: Standard deviation of the splines' weights beforehand, in brightness.
+SPLINE_DEVIATION = 0.012
+
+#: Factor on the covariance of the EMoR weights of known responses: this one may be of a kind that is not among them.
+WIDENING = 4.0
+
+#: Samples at the end of a response by which its slope at white is measured.
+END_SAMPLES = 24
+
+
+class CurveValues(NamedTuple):
+    """A response at irradiances of any shape S: f, shape S; df / du, shape S; df / d weights, shape (*S, K)."""
+
+    brightness: Float64Array
+    slope: Float64Array
+    gradient: Float64Array
+
+
+@dataclass(frozen=True, eq=False)
+class CurveModel:
+    """Responses that are linear in K weights, tabulated over u = log2 of irradiance.
+
+    Beyond white they go on as straight lines in irradiance, so that an irradiance that was taken for too high can be
+    corrected.
+
+    Parameters
+    ----------
+    mean : ndarray, float64, shape (G,)
+        The response of weights 0.
+    basis : ndarray, float64, shape (G, K)
+        What a unit of each weight adds.
+    precision : ndarray, float64, shape (K, K)
+        Inverse covariance of the weights beforehand.
+    """
+
+    mean: Float64Array
+    basis: Float64Array
+    precision: Float64Array
+
+    @classmethod
+    @cache
+    def load(cls) -> CurveModel:
+        """Return the model of the packaged EMoR, its weights spread as those of the packaged responses."""
+        emor, bank = EmorBasis.load(), ResponseBank.load()
+        weights = bank.weights[bank.ordinary]
+        covariance = WIDENING * weights.T @ weights / len(weights)
+        splines = cubic_splines(emor.mean)
+        curves = np.vstack([emor.components, splines])
+        precision = np.zeros((len(curves), len(curves)))
+        size = len(covariance)
+        precision[:size, :size] = np.linalg.inv(covariance)
+        precision[range(size, len(curves)), range(size, len(curves))] = SPLINE_DEVIATION**-2
+        return cls(_tabulated(emor.mean), _tabulated(curves).T.copy(), precision)
+
+    def values(self, weights: Float64Array, log_irradiance: Float64Array) -> CurveValues:
+        """Return the response with `weights`, shape (K,), at `log_irradiance`, which is clipped to the table."""
+        position = np.clip((log_irradiance - LOWEST) * STEPS, 0, len(self.mean) - 1.001)
+        below = position.astype(np.intp)
+        part = (position - below)[..., None]
+        gradient = (1 - part) * self.basis[below] + part * self.basis[below + 1]
+        table = self.mean + self.basis @ weights
+        brightness = (1 - part[..., 0]) * table[below] + part[..., 0] * table[below + 1]
+        return CurveValues(brightness, (table[below + 1] - table[below]) * STEPS, gradient)
+
+    def weights_of(self, curve: ResponseCurve) -> Float64Array:
+        """Return the weights, shape (K,), whose response is nearest to `curve` and not unlikely beforehand."""
+        wanted = _tabulated(curve.brightness) - self.mean
+        system = self.basis.T @ self.basis + 1e-4 * self.precision
+        return np.asarray(np.linalg.solve(system, self.basis.T @ wanted), dtype=np.float64)
+
+    def response(self, weights: ArrayLike, *, log_white: float = 0.0) -> ResponseCurve:
+        """Return the response with `weights` as a strictly monotone curve.
+
+        Parameters
+        ----------
+        weights : array_like, shape (K,)
+            The weights.
+        log_white : float
+            log2 of the model's irradiance that is white; 0 unless the anchor was corrected afterwards.
+        """
+        irradiance = np.linspace(0, 1, SAMPLES)
+        table = self.mean + self.basis @ np.asarray(weights, dtype=np.float64)
+        stops = np.log2(np.maximum(irradiance, 1e-9)) + log_white
+        samples = np.interp(stops, table_stops(), table)
+        low = stops < LOWEST  # as at the bottom of every sampled response, a straight line leads to black
+        samples[low] = table[0] * np.exp2(stops[low] - LOWEST)
+        samples[0] = 0.0
+        return ResponseCurve.from_samples(np.append(np.minimum(samples[:-1], 1), 1.0))
+
+
+def table_stops() -> Float64Array:
+    """Return the table's log2 of irradiance, shape (G,)."""
+    return np.arange(round((HIGHEST - LOWEST) * STEPS) + 1) / STEPS + LOWEST
+
+
+def cubic_splines(mean: Float64Array) -> Float64Array:
+    """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both its ends.
+
+    Source: de Boor, "On calculating with B-splines", 1972.
+    """
+    knots = np.r_[(KNOTS[0],) * 3, KNOTS, (KNOTS[-1],) * 3]
+    at = np.clip(mean, 0, 1 - 1e-9)[None]
+    splines = ((knots[:-1, None] <= at) & (at < knots[1:, None])).astype(np.float64)
+    for degree in range(1, 4):
+        rise = _ratio(at - knots[: -degree - 1, None], (knots[degree:-1] - knots[: -degree - 1])[:, None])
+        fall = _ratio(knots[degree + 1 :, None] - at, (knots[degree + 1 :] - knots[1:-degree])[:, None])
+        splines = rise * splines[:-1] + fall * splines[1:]
+    return np.asarray(splines[1:-1], dtype=np.float64)
+
+
+def _ratio(number: Float64Array, size: Float64Array) -> Float64Array:
+    """Return number / size, and 0 where size is 0."""
+    return np.where(size > 0, number / np.where(size > 0, size, 1), 0)
+
+
+def _tabulated(curves: Float64Array) -> Float64Array:
+    """Return curves of shape (..., 1024) over uniform irradiance on the table, continued beyond white: (..., G)."""
+    irradiance = np.exp2(table_stops())
+    position = np.minimum(irradiance, 1) * (SAMPLES - 1)
+    below = np.minimum(position.astype(np.intp), SAMPLES - 2)
+    inside = curves[..., below] + (position - below) * (curves[..., below + 1] - curves[..., below])
+    slope = (curves[..., -1] - curves[..., -1 - END_SAMPLES]) * (SAMPLES - 1) / END_SAMPLES
+    beyond = np.maximum(irradiance - 1, 0)
+    return np.asarray(inside + slope[..., None] * beyond, dtype=np.float64)

@@ -1,0 +1,163 @@
+"""Exposures of the frames of a stack, in stops: from EXIF or given times, as labelled and as cameras really expose."""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from crfnet_core.errors import CalibrationError
+from crfnet_core.types import Float64Array
+
+#: Steps of cameras, as parts of a stop, and how far at most a label is from the exposure that it stands for, in stops:
+#: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
+STEPS = {3: 0.13, 2: 0.18}
+
+
+@dataclass(frozen=True)
+class ExposureLabel:
+    """What a file, or the user, says of a frame's exposure; None where nothing is said.
+
+    Parameters
+    ----------
+    seconds : float, optional
+        Exposure time.
+    f_number : float, optional
+        Focal length over aperture.
+    iso : float, optional
+        Sensitivity.
+    """
+
+    seconds: float | None = None
+    f_number: float | None = None
+    iso: float | None = None
+
+    @classmethod
+    def of_header(cls, header: Any) -> ExposureLabel:
+        """Return what EXIF says, from an `OpenImageIO.ImageSpec`."""
+        return cls(
+            seconds=_positive(header, "ExposureTime"),
+            f_number=_positive(header, "FNumber"),
+            iso=_positive(header, "Exif:PhotographicSensitivity"),
+        )
+
+
+@dataclass(frozen=True, eq=False)
+class Exposures:
+    """The exposures of a stack.
+
+    Parameters
+    ----------
+    nominal : ndarray, float64, shape (T,)
+        log2 of seconds x ISO / f-number^2, as labelled, relative to the mean over the stack.
+    snapped : ndarray, float64, shape (T,), optional
+        The same with each factor on the exact power of two that its label stands for; None if labels stand for none.
+    differing : tuple of str
+        Which settings beside the time differ between the frames: "ISO", "aperture".
+    """
+
+    nominal: Float64Array
+    snapped: Float64Array | None
+    differing: tuple[str, ...]
+
+    @property
+    def range(self) -> float:
+        """Stops between the shortest and the longest exposure."""
+        return float(np.ptp(self.nominal))
+
+
+def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
+    """Return the exposures of frames; each label needs its time.
+
+    ISO and aperture count where every frame states them. A scene's light on the sensor is proportional to
+    seconds / f-number^2, and the code values follow its product with ISO (ISO 12232).
+    """
+    seconds = _stops([label.seconds for label in labels])
+    iso, aperture = _stops([label.iso for label in labels]), -2 * _stops([label.f_number for label in labels])
+    parts = [seconds, iso, aperture]
+    rounded = [_snapped(part) for part in parts]
+    differing = [name for name, part in (("ISO", iso), ("aperture", aperture)) if np.ptp(part) > 0]
+    nominal = np.sum(parts, axis=0)
+    known = [part for part in rounded if part is not None]
+    snapped = np.sum(known, axis=0) if len(known) == len(parts) else None
+    return Exposures(
+        nominal - nominal.mean(), None if snapped is None else snapped - snapped.mean(), differing=tuple(differing)
+    )
+
+
+def parse_times(text: str) -> tuple[float, ...]:
+    """Return the seconds in "1/60,1/30,0.5".
+
+    Raises
+    ------
+    CalibrationError
+        If one is no positive number.
+    """
+    return tuple(_seconds(part) for part in text.split(","))
+
+
+def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
+    """Return the seconds of each of the files `names`, in a CSV file of rows such as "IMG_1.jpg,1/60".
+
+    Rows may be in any order, and may name other files too; a first row without a time is a heading.
+
+    Raises
+    ------
+    CalibrationError
+        If the file cannot be read, a row holds no name and time, or a frame has no row.
+    """
+    try:
+        rows = [row for row in csv.reader(path.read_text(encoding="utf-8-sig").splitlines()) if any(row)]
+    except (OSError, UnicodeDecodeError, csv.Error) as problem:
+        raise CalibrationError(f"{path}: cannot be read as CSV ({problem}); give rows such as IMG_1.jpg,1/60") from None
+    found: dict[str, float] = {}
+    for number, row in enumerate(rows):
+        if len(row) < 2:
+            raise CalibrationError(f"{path}: row {number + 1} holds no file and time; write it as IMG_1.jpg,1/60")
+        if number == 0 and not any(character.isdigit() for character in row[1]):
+            continue
+        found[Path(row[0].strip()).name] = _seconds(row[1])
+    if missing := [name for name in names if name not in found]:
+        raise CalibrationError(f"{path}: has no row for {missing[0]}; add its exposure time")
+    return tuple(found[name] for name in names)
+
+
+def _seconds(text: str) -> float:
+    """Return the seconds in "1/60", "0.5" or "2"."""
+    numerator, _, denominator = text.strip().removesuffix("s").partition("/")
+    try:
+        value = float(numerator) / float(denominator or 1)
+    except (ValueError, ZeroDivisionError):
+        value = 0.0
+    if not 0 < value < math.inf:
+        raise CalibrationError(f"{text.strip()!r} is no exposure time; give seconds such as 1/60 or 0.5")
+    return value
+
+
+def _stops(values: Sequence[float | None]) -> Float64Array:
+    """Return log2 of the values, or zeros where one of them is unknown."""
+    known = [value for value in values if value is not None]
+    return np.log2(known) if len(known) == len(values) else np.zeros(len(values))
+
+
+def _snapped(stops: Float64Array) -> Float64Array | None:
+    """Return stops on the grid of thirds or of halves that is nearer, or None if a label is too far from both."""
+    if not np.ptp(stops):
+        return stops  # a setting that all frames share has no effect, whatever it is
+    grids = [(np.round(stops * step) / step, most) for step, most in STEPS.items()]
+    near = [grid for grid, most in grids if np.abs(grid - stops).max() <= most]
+    return min(near, key=lambda grid: float(np.abs(grid - stops).sum())) if near else None
+
+
+def _positive(header: Any, name: str) -> float | None:
+    """Return a positive number in a header."""
+    try:
+        value = header.getattribute(name)
+    except (RuntimeError, TypeError, ValueError):
+        return None
+    return float(value) if isinstance(value, int | float) and 0 < value < math.inf else None

@@ -1,0 +1,170 @@
+"""The frames of a stack: read, thinned out, and checked against each other."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.calibration.alignment import LONGEST_SIDE, chain_of_shifts, common_area, rank_image
+from crfnet_core.calibration.exposures import ExposureLabel
+from crfnet_core.errors import CalibrationError
+from crfnet_core.image_io import read_codes
+from crfnet_core.metadata import FileMetadata
+from crfnet_core.photo import CodeArray, CodeValues
+from crfnet_core.types import Float64Array, Progress
+
+#: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
+LEAST_FRAMES = 4
+
+#: Longest side in pixels that is kept: every second pixel, or fewer, of larger frames.
+KEPT_SIDE = 3000
+
+#: Part of the largest code, and share of all samples of green above it, that make a peak there the white of the file.
+WHITE_FROM, WHITE_SHARE = 236 / 255, 0.002
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """One frame of a stack.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    codes : ndarray, uint8 or uint16, shape (H, W, 3)
+        Its code values, every `stride`-th in both directions.
+    stride : int
+        Distance of the samples in the file.
+    largest : int
+        The largest code that the file can hold.
+    counts : ndarray, float64, shape (256,)
+        How often each brightness occurs over all channels, in 256 steps.
+    label : ExposureLabel
+        What EXIF says of its exposure.
+    metadata : FileMetadata
+        What the file says beside the pixels.
+    is_gray : bool
+        Whether the three channels are equal everywhere.
+    """
+
+    path: Path
+    codes: CodeArray
+    stride: int
+    largest: int
+    counts: Float64Array
+    label: ExposureLabel
+    metadata: FileMetadata
+    is_gray: bool
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the file's picture in pixels."""
+        return self.metadata.width, self.metadata.height
+
+
+def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> tuple[Frame, ...]:
+    """Read the frames of one static scene, checked to be of one size, bit depth and camera.
+
+    Parameters
+    ----------
+    paths : sequence of Path
+        JPEG, PNG, TIFF, WebP or DPX files: see `crfnet_core.image_io.read_photo`.
+    progress : callable, optional
+        Called with (done, total) after every frame.
+
+    Raises
+    ------
+    PhotoError
+        If a frame cannot be read.
+    CalibrationError
+        If there are fewer than `LEAST_FRAMES`, or they differ in what a stack has in common.
+    """
+    if len(paths) < LEAST_FRAMES:
+        raise CalibrationError(
+            f"a stack needs at least {LEAST_FRAMES} frames of one scene at different exposures, found {len(paths)};"
+            " take more, a stop apart"
+        )
+    if twice := [path for index, path in enumerate(paths) if path.resolve() in {p.resolve() for p in paths[:index]}]:
+        raise CalibrationError(f"{twice[0]}: is given twice; give each frame once")
+    frames = []
+    for number, path in enumerate(paths):
+        frames.append(_frame(path, read_codes(path)))
+        _check_like_first(frames[0], frames[-1])
+        if progress is not None:
+            progress(number + 1, len(paths))
+    return tuple(frames)
+
+
+def white_level(frames: Sequence[Frame]) -> float:
+    """Return the code at which the camera clips, as a part of the largest code.
+
+    Most cameras clip at the largest code, some a little below. It is the highest peak of green in the top 20 of 256
+    steps over all frames, where that holds `WHITE_SHARE` of a frame and far more than the steps around it.
+    """
+    green = [np.asarray(frame.codes[::2, ::2, 1], dtype=np.int64) * 255 // frame.largest for frame in frames]
+    counts = np.max([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in green], axis=0)
+    first = round(WHITE_FROM * 255)
+    peak = first + int(counts[first:].argmax())
+    others = np.delete(counts[first:], peak - first)
+    stands_out = counts[peak] > WHITE_SHARE and counts[peak] > 4 * np.median(others)
+    is_last = counts[peak + 1 :].sum() < counts[peak] / 4  # JPEG rings beyond white
+    return peak / 255 if stands_out and is_last else 1.0
+
+
+def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[tuple[int, int], ...]]:
+    """Return the codes of all frames cut to what they have in common, and by how many pixels each was displaced.
+
+    Parameters
+    ----------
+    frames : sequence of Frame
+        The stack.
+    order : sequence of int
+        The frames from the shortest to the longest exposure.
+    """
+    height, width = frames[0].codes.shape[:2]
+    stride = max(1, -(-max(height, width) // LONGEST_SIDE))
+    ranks = [rank_image(frame.codes[::stride, ::stride].mean(axis=2, dtype=np.float64)) for frame in frames]
+    shifts = chain_of_shifts(ranks, order, stride)
+    rows, columns = common_area((height, width), shifts)
+    cut = tuple(
+        frame.codes[rows.start + down : rows.stop + down, columns.start + right : columns.stop + right]
+        for frame, (down, right) in zip(frames, shifts, strict=True)
+    )
+    return cut, tuple((down * frames[0].stride, right * frames[0].stride) for down, right in shifts)
+
+
+def _frame(path: Path, values: CodeValues) -> Frame:
+    """Return a file's samples, thinned out."""
+    stride = max(1, -(-max(values.codes.shape[:2]) // KEPT_SIDE))
+    codes = values.codes[::stride, ::stride].copy()
+    steps = codes if values.largest == 255 else (codes.astype(np.int64) * 255 + values.largest // 2) // values.largest
+    return Frame(
+        path=path,
+        codes=codes,
+        stride=stride,
+        largest=values.largest,
+        counts=np.bincount(np.asarray(steps).ravel(), minlength=256).astype(np.float64),
+        label=ExposureLabel.of_header(values.header),
+        metadata=values.metadata,
+        is_gray=values.is_gray,
+    )
+
+
+def _check_like_first(first: Frame, frame: Frame) -> None:
+    """Refuse a frame whose size, bit depth or camera is not that of the first."""
+    if frame.size != first.size:
+        sizes = "{} x {} pixels, {} has {} x {}".format(*frame.size, first.path.name, *first.size)
+        raise CalibrationError(f"{frame.path}: has {sizes}; give the frames of one stack, all as the camera wrote them")
+    if frame.largest != first.largest:
+        raise CalibrationError(
+            f"{frame.path}: has other bits per sample than {first.path.name}; give files of one kind"
+        )
+    cameras = [(each.metadata.make, each.metadata.model) for each in (first, frame)]
+    if cameras[0] != cameras[1]:
+        names = [" ".join(filter(None, camera)) or "no camera" for camera in cameras]
+        raise CalibrationError(
+            f"{frame.path}: names {names[1]}, {first.path.name} {names[0]}; give frames of one camera"
+        )

@@ -1,0 +1,127 @@
+"""From observations to an anchored response: start, fit, anchor, and what does not fit left out."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.calibration.anchor import Anchor, find_white
+from crfnet_core.calibration.blocks import Observations, pick_blocks
+from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.frames import LEAST_FRAMES
+from crfnet_core.calibration.solver import StackFit, fit_stack
+from crfnet_core.calibration.start import best_known_response, rough_irradiance
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import BoolArray, Float64Array
+
+#: Fits with the anchor corrected in between.
+ROUNDS = 2
+
+#: Residual in 8-bit codes from which a frame does not fit, and how many times it has to be that of the others.
+WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
+
+#: A sample is an outlier if its residuals are so many times those expected, and of the typical sample.
+OUTLIER = 5.0
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """An anchored response, and what it was measured on.
+
+    Parameters
+    ----------
+    seen : Observations
+        The samples that were used, in the frames that were used.
+    exposures : ndarray, float64, shape (T,)
+        The labels of these frames, in stops.
+    frames : ndarray, bool, shape (all frames,)
+        Which frames these are.
+    fit : StackFit
+        The fit; its unit of irradiance is white but for `anchor`.
+    anchor : Anchor
+        Where white is in that unit.
+    curve : ResponseCurve
+        The response.
+    outliers : float
+        Share of the samples that were left out.
+    """
+
+    seen: Observations
+    exposures: Float64Array
+    frames: BoolArray
+    fit: StackFit
+    anchor: Anchor
+    curve: ResponseCurve
+    outliers: float
+
+    @property
+    def residual(self) -> float:
+        """Root mean square of brightness less the model's, in 8-bit codes."""
+        return float(255 * np.sqrt(np.nanmean(self.fit.residual**2)))
+
+
+def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> Measurement:
+    """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
+
+    Parameters
+    ----------
+    every : Observations
+        Every sample of the stack.
+    exposures : ndarray, float64, shape (T,)
+        Labels of the exposures, in stops.
+    model : CurveModel
+        The responses to choose from.
+    """
+    frames = np.ones(len(exposures), dtype=bool)
+    while True:
+        within, stops = every.in_frames(frames), exposures[frames]
+        known = best_known_response(within, stops)
+        seen = pick_blocks(within, rough_irradiance(within, stops, known))
+        found = fit_and_anchor(seen, stops, model, known)
+        worst = _worst_frame(found.fit)
+        if worst is None or frames.sum() <= LEAST_FRAMES - 1:
+            break
+        frames[np.flatnonzero(frames)[worst]] = False
+    is_outlier = _outliers(seen, found.fit)
+    if is_outlier.any() and not is_outlier.all():
+        found = fit_and_anchor(seen.of(~is_outlier), stops, model, found.curve)
+    return Measurement(
+        **{**vars(found), "frames": frames, "outliers": float(is_outlier.mean())},
+    )
+
+
+def fit_and_anchor(
+    seen: Observations, exposures: Float64Array, model: CurveModel, start: ResponseCurve, *, rounds: int = ROUNDS
+) -> Measurement:
+    """Return the response of some samples in all their frames, beginning at a response that is near."""
+    curve = start
+    irradiance = rough_irradiance(seen, exposures, start)
+    for _ in range(rounds):
+        fit = fit_stack(seen, exposures, model, model.weights_of(curve), irradiance)
+        anchor = find_white(seen, exposures, model, fit)
+        curve = model.response(fit.weights, log_white=anchor.log_white)
+        irradiance = fit.log_irradiance - anchor.log_white
+    return Measurement(seen, exposures, np.ones(len(exposures), dtype=bool), fit, anchor, curve, 0.0)
+
+
+def frame_residuals(fit: StackFit) -> Float64Array:
+    """Return the root mean square residual of each frame in 8-bit codes, shape (T,); 0 where it shows nothing."""
+    squares = np.where(np.isfinite(fit.residual), fit.residual, 0) ** 2
+    count = np.isfinite(fit.residual).sum(axis=0)
+    return np.asarray(255 * np.sqrt(squares.sum(axis=0) / np.maximum(count, 1)), dtype=np.float64)
+
+
+def _worst_frame(fit: StackFit) -> int | None:
+    """Return the frame that does not fit, if there is one."""
+    residuals = frame_residuals(fit)
+    worst = int(residuals.argmax())
+    others = float(np.median(np.delete(residuals, worst)))
+    return worst if residuals[worst] > max(WORST_FRAME, WORSE_THAN_OTHERS * others) else None
+
+
+def _outliers(seen: Observations, fit: StackFit) -> BoolArray:
+    """Return which samples do not fit in some frame, shape (M,)."""
+    scaled = np.abs(np.where(np.isfinite(fit.residual), fit.residual, 0)) / seen.deviation
+    worst = scaled.max(axis=1)
+    return np.asarray(worst > OUTLIER * max(1.0, float(np.median(worst))), dtype=bool)

@@ -1,0 +1,131 @@
+"""How far a measured response may be off: its shape and its scale, both in stops (Eq. 42 and 43 of docs/METHOD.md)."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from crfnet_core.calibration.anchor import UNSEEN_DEVIATION
+from crfnet_core.calibration.blocks import Observations
+from crfnet_core.calibration.curve_model import CurveModel, table_stops
+from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
+from crfnet_core.calibration.solver import TIME_DEVIATION
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
+from crfnet_core.response import ResponseCurve
+from crfnet_core.types import Float64Array
+
+#: Draws from the posterior of the curve's weights, and their seed.
+DRAWS, SEED = 64, 0
+
+#: What remains in stops where nothing disagrees: blocks are not flat, JPEG, the model.
+LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
+
+#: Part of the difference between the channels' own responses that counts: they have a response in common.
+CHANNEL_PART = 0.5
+
+#: A channel needs so many samples for a response of its own.
+LEAST_SAMPLES = 60
+
+
+@dataclass(frozen=True)
+class Uncertainty:
+    """Standard deviations in stops, each with its parts by name.
+
+    Parameters
+    ----------
+    shape : dict
+        Parts of the shape's: see `crfnet_core.metrics.shape_error`.
+    scale : dict
+        Parts of the scale's: see `crfnet_core.metrics.scale_error`.
+    """
+
+    shape: dict[str, float]
+    scale: dict[str, float]
+
+    @property
+    def shape_stops(self) -> float:
+        """The root of the sum of squares of the shape's parts."""
+        return float(np.sqrt(sum(part**2 for part in self.shape.values())))
+
+    @property
+    def scale_stops(self) -> float:
+        """The same of the scale's parts."""
+        return float(np.sqrt(sum(part**2 for part in self.scale.values())))
+
+
+def uncertainty_of(found: Measurement, other_labels: ResponseCurve | None, model: CurveModel) -> Uncertainty:
+    """Return how far a measured response may be off.
+
+    Parameters
+    ----------
+    found : Measurement
+        The response.
+    other_labels : ResponseCurve, optional
+        The response by the other reading of the exposure labels, if there is one.
+    model : CurveModel
+        The responses to choose from.
+    """
+    even = found.seen.block % 2 == 0
+    halves = [_curve_of(found.seen.of(part), found.exposures, found, model) for part in (even, ~even)]
+    channels = [_channel_curve(found, channel, model) for channel in range(found.fit.offsets.shape[1])]
+    posterior = _posterior_deviation(found, model)
+    others = [] if other_labels is None else [other_labels]
+    shape = {
+        "posterior": posterior[0],
+        "sampling": shape_error(halves[0], halves[1]) / 2,
+        "channels": CHANNEL_PART * _rms(shape_error(found.curve, channel) for channel in channels),
+        "times": _time_deviation(found),
+        "labels": 0.5 * _rms(shape_error(found.curve, other) for other in others),
+        "least": LEAST_SHAPE,
+    }
+    scale = {
+        "posterior": posterior[1],
+        "sampling": abs(scale_error(halves[0], halves[1])) / 2,
+        "channels": CHANNEL_PART * _rms(scale_error(found.curve, channel) for channel in channels),
+        "white": found.anchor.deviation if found.anchor.is_seen else UNSEEN_DEVIATION,
+        "labels": 0.5 * _rms(scale_error(found.curve, other) for other in others),
+        "least": LEAST_SCALE,
+    }
+    return Uncertainty(shape, scale)
+
+
+def _curve_of(seen: Observations, exposures: Float64Array, found: Measurement, model: CurveModel) -> ResponseCurve:
+    """Return the response of a part of the samples; that of all if the part is too small."""
+    if len(seen.block) < LEAST_SAMPLES:
+        return found.curve
+    return fit_and_anchor(seen, exposures, model, found.curve, rounds=1).curve
+
+
+def _channel_curve(found: Measurement, channel: int, model: CurveModel) -> ResponseCurve:
+    """Return the response of one channel by itself, with the exposures that all channels found for it."""
+    part = found.seen.of(found.seen.channel == channel)
+    alone = replace(part, channel=np.zeros_like(part.channel))
+    return _curve_of(alone, found.exposures + found.fit.offsets[:, channel], found, model)
+
+
+def _posterior_deviation(found: Measurement, model: CurveModel) -> tuple[float, float]:
+    """Return the standard deviations of shape and scale over draws from the posterior, in stops."""
+    rng = np.random.default_rng(SEED)
+    weights = rng.multivariate_normal(found.fit.weights, found.fit.covariance, size=DRAWS, method="eigh")
+    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    tables = np.maximum.accumulate(model.mean + weights @ model.basis.T, axis=1)
+    tables += 1e-9 * np.arange(tables.shape[1])
+    stops = np.stack([np.interp(codes, table, table_stops()) for table in tables])
+    off = stops - stops.mean(axis=0)
+    scales = off.mean(axis=1)
+    return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
+
+
+def _time_deviation(found: Measurement) -> float:
+    """Return the shape error in stops by labels that are off by `TIME_DEVIATION` each: a trend bends the response."""
+    trend = TIME_DEVIATION / np.sqrt(((found.exposures - found.exposures.mean()) ** 2).sum())
+    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    return float(trend * np.log2(found.curve.inverse(codes)).std())
+
+
+def _rms(values: Iterable[float]) -> float:
+    """Return the root mean square, 0 of nothing."""
+    squares = [value**2 for value in values]
+    return float(np.sqrt(np.mean(squares))) if squares else 0.0

@@ -1,0 +1,48 @@
+"""`crfnet calibrate`: its arguments."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import shtab
+
+from ocio.arguments.parts import Commands, add_command, add_json, positive
+from ocio.defaults import LUT_LENGTH
+
+EXAMPLES = """examples:
+  crfnet calibrate stack/*.jpg --out camera --name eos20d
+  crfnet calibrate a.jpg b.jpg c.jpg d.jpg --times 1/60,1/30,1/15,1/8 --out camera
+  crfnet calibrate stack/*.png --times times.csv --out camera           rows such as IMG_1.jpg,1/60
+  crfnet calibrate stack/*.jpg --out camera --compare look/plate01.json       how good was that estimate?
+
+A stack is one still scene, from a tripod, in 4 or more frames a stop or so apart: the darkest shows nearly nothing
+white, the brightest is mostly white. Fix ISO, aperture, white balance and the picture style; switch off automatic
+tones. For eos20d the folder then holds eos20d.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
+eos20d_sheet.png (every frame's points on the curve) and eos20d.json."""
+
+
+def add(commands: Commands) -> None:
+    """Add `crfnet calibrate`."""
+    parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
+    photos = parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, PNG, TIFF, WebP or DPX")
+    photos.complete = shtab.FILE  # type: ignore[attr-defined]
+    out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
+    out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    parser.add_argument("--name", metavar="NAME", help="how the files and the colour space are called (first frame)")
+    times = parser.add_argument(
+        "--times", metavar="LIST|CSV", help="exposure times in seconds, one for each frame, instead of EXIF's"
+    )
+    times.complete = shtab.FILE  # type: ignore[attr-defined]
+    compare = parser.add_argument(
+        "--compare", type=Path, metavar="FILE", help="a response to check: JSON of an estimate, or a LUT"
+    )
+    compare.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument(
+        "--accept-edited", action="store_true", help="measure what a program makes of its files, not the camera"
+    )
+    parser.add_argument(
+        "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
+    )
+    parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
+    parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
+    add_json(parser)

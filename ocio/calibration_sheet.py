@@ -1,0 +1,137 @@
+"""The sheet of a calibration: the measured response under every frame's points, and what is left of them.
+
+It needs matplotlib, which is an optional dependency.
+"""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+from matplotlib import colormaps
+from matplotlib.axes import Axes
+from matplotlib.figure import Figure
+
+from crfnet_core.calibration import Calibration
+from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
+from ocio.report import calibration_lines
+from ocio.sheet import (
+    BOTTOM,
+    CURVE,
+    DOT,
+    GRID,
+    HEIGHT,
+    INK,
+    LONGEST_LINE,
+    QUIET,
+    SIZE,
+    VERDICT_INK,
+    sheet_figure,
+    shortened,
+)
+
+#: Darkest irradiance that is drawn, log2; white is 0.
+DARKEST = -12
+
+#: Colours of the frames, the darkest first.
+FRAMES = "viridis"
+
+#: Largest residual that is drawn, in 8-bit codes.
+LARGEST_RESIDUAL = 8
+
+_WARNING = list(VERDICT_INK.values())[1]
+
+
+def draw_calibration(path: Path, calibration: Calibration, *, overwrite: bool = False) -> None:
+    """Write the picture of a calibration as PNG; the same input gives the same bytes.
+
+    Parameters
+    ----------
+    path : Path
+        The file to write.
+    calibration : Calibration
+        The measured response.
+    overwrite : bool
+        Whether an existing file may be replaced.
+
+    Raises
+    ------
+    PlateError
+        If the file cannot be written.
+    """
+    with sheet_figure(path, overwrite=overwrite) as figure:
+        _draw_heading(figure, path, calibration)
+        _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)
+        colors = _frame_colors(calibration)
+        upper, lower = 0.42, HEIGHT - 0.42 - 0.09
+        _draw_points(figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper)), calibration, colors)
+        _draw_residuals(figure.add_axes((0.56, BOTTOM, 0.412, lower)), calibration, colors)
+
+
+def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
+    """Draw what was measured, both uncertainties, and the warnings."""
+    uncertainty = calibration.uncertainty
+    name = path.stem.removesuffix("_sheet")
+    figure.text(0.058, 0.945, shortened(f"Measured response {name}", 60), size=15, weight="bold", va="center")
+    parts = [
+        f"shape to {uncertainty.shape_stops:.2f} stop",
+        f"scale to {uncertainty.scale_stops:.2f} stop",
+        f"residual {calibration.residual:.1f} codes (RMS)",
+        "white reached" if calibration.reaches_white else "white not reached",
+    ]
+    figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
+    lines = calibration_lines(calibration)
+    figure.text(0.058, 0.868, shortened(lines[0], LONGEST_LINE), va="center", color=QUIET)
+    warnings = shortened(DOT.join(calibration.warnings), LONGEST_LINE)
+    figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
+
+
+def _draw_curve(axes: Axes, calibration: Calibration) -> None:
+    """Draw the response beside gamma 2.2."""
+    irradiance = np.linspace(0, 1, SAMPLES)
+    gamma = ResponseCurve.gamma().brightness
+    axes.plot(irradiance, calibration.curve.brightness, color=CURVE, linewidth=2.2, label="measured")
+    axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
+    axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
+    axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
+    axes.legend(loc="lower right", frameon=False, fontsize=10)
+    _plain(axes)
+
+
+def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
+    """Draw what every frame shows over its irradiance in stops, and the curve through it."""
+    stops, brightness, _, frame = calibration.points.T
+    axes.scatter(stops, brightness, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
+    dense = np.linspace(DARKEST, 0.5, 600)
+    axes.plot(dense, calibration.curve.forward(np.exp2(dense)), color=INK, linewidth=1)
+    axes.set(xlim=(DARKEST, 0.5), ylim=(0, 1.02), ylabel="Brightness")
+    axes.set_title("Points of every frame, dark to bright", loc="left", size=9, color=QUIET, pad=5)
+    axes.tick_params(labelbottom=False)
+    _plain(axes)
+
+
+def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
+    """Draw what the curve leaves of every point."""
+    stops, _, residual, frame = calibration.points.T
+    left = np.clip(255 * residual, -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
+    axes.scatter(stops, left, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
+    axes.axhline(0, color=INK, linewidth=1)
+    axes.set(xlim=(DARKEST, 0.5), ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL))
+    axes.set(xlabel="Irradiance in stops, white = 0", ylabel="Residual (codes)")
+    _plain(axes)
+
+
+def _frame_colors(calibration: Calibration) -> Float64Array:
+    """Return a colour for each frame by its exposure, shape (T, 4)."""
+    stops = np.array([frame.stops for frame in calibration.frames])
+    place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
+    return np.asarray(colormaps[FRAMES](0.9 * place))
+
+
+def _plain(axes: Axes) -> None:
+    """Draw a grid, and no frame above and on the right."""
+    axes.grid(color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=0)
+    axes.spines[["top", "right"]].set_visible(False)

@@ -1,0 +1,40 @@
+"""`crfnet calibrate`: the response of a camera, measured from an exposure stack."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Sequence
+from pathlib import Path
+
+from crfnet_core.calibration import calibrate_stack, parse_times, read_times
+from ocio import pipeline, report
+from ocio.commands.printing import has_matplotlib, print_json, print_lines, progress_bar
+from ocio.options import OutputOptions
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Measure a response; write every file; say what was found, and how far another response is from it."""
+    frames: list[Path] = arguments.photos
+    outputs = OutputOptions(
+        lut_length=arguments.length, has_sheet=not arguments.no_sheet and has_matplotlib(), has_linear=False
+    )
+    plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
+    other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
+    seconds = _seconds(arguments.times, frames) if arguments.times else None
+    with progress_bar("frames") as progress:
+        found = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
+    comparison = found.compare(other) if other else None
+    document = pipeline.write_calibration(plan, found, comparison)
+    if arguments.json:
+        print_json(document)
+        return
+    print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
+    lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
+    print_lines(["", f"Written to {arguments.out}:", *lines])
+
+
+def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:
+    """Return the times in a list, or in a CSV file."""
+    if Path(times).suffix.lower() == ".csv":
+        return read_times(Path(times), [frame.name for frame in frames])
+    return parse_times(times)

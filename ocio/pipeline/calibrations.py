@@ -1,0 +1,145 @@
+"""The folder that `crfnet calibrate` writes: LUTs, a config, a sheet and a JSON document; responses to compare with."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import PyOpenColorIO as OCIO
+
+from crfnet_core.calibration import Calibration, Comparison
+from crfnet_core.errors import CalibrationError, CurveError, PlateError
+from crfnet_core.files import atomic_write_text
+from crfnet_core.response import ResponseCurve
+from ocio.configs.files import write_config
+from ocio.configs.portable import portable_config
+from ocio.interchange.files import read_response
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.response import response_of_lut
+from ocio.options import OutputOptions
+from ocio.output_files import OutputFiles, check_outputs, output_folder
+from ocio.report import calibration_document, calibration_provenance, json_text
+from ocio.staging import staged_files
+
+
+@dataclass(frozen=True, eq=False)
+class CalibrationPlan:
+    """What will be written of a calibration, checked before any work is done; see `plan_calibration`.
+
+    Parameters
+    ----------
+    files : OutputFiles
+        The files, all in one folder, which need not exist yet; no linear plates are among them.
+    config : PyOpenColorIO.Config
+        The config of the folder, with the camera's colour space.
+    lut_length : int
+        Entries of the LUTs.
+    """
+
+    files: OutputFiles
+    config: OCIO.Config
+    lut_length: int
+
+
+def plan_calibration(
+    folder: Path, frames: Sequence[Path], outputs: OutputOptions, *, name: str | None = None, overwrite: bool = False
+) -> CalibrationPlan:
+    """Return which files are written of a stack, after checking that they can be; create nothing.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder to write to.
+    frames : sequence of Path
+        The frames; at least one.
+    outputs : OutputOptions
+        Which files there are beside the LUTs, and how long the LUTs are.
+    name : str, optional
+        How the files and the colour space are called; by default as the first frame.
+    overwrite : bool
+        Whether existing files may be replaced.
+
+    Raises
+    ------
+    CalibrationError
+        If the name is none for a file.
+    PlateError
+        If a file cannot be written or would replace another, or a frame: see `check_outputs`.
+    ConfigError
+        If the colour space cannot be in a config.
+    """
+    if name is not None and (not name.strip(" .") or Path(name).name != name):
+        raise CalibrationError(f"{name!r} is no name for a file; give one without slashes, such as eos20d")
+    stem = frames[0] if name is None else Path(f"{name}.stack")
+    files = OutputFiles.named(folder, [stem], has_sheet=outputs.has_sheet, has_linear=False)
+    check_outputs(folder, [files], photos=frames, overwrite=overwrite)
+    description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
+    space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length)
+
+
+def write_calibration(
+    plan: CalibrationPlan, calibration: Calibration, comparison: Comparison | None = None
+) -> dict[str, Any]:
+    """Write every file of a plan and return the document that its JSON file holds.
+
+    Parameters
+    ----------
+    plan : CalibrationPlan
+        See `plan_calibration`.
+    calibration : Calibration
+        The measured response.
+    comparison : Comparison, optional
+        How far another response is from it; kept in the document.
+
+    Raises
+    ------
+    CRFNetError
+        If a file cannot be written, or the LUT length is out of range. The folder is then as it was.
+    """
+    lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
+    folder = plan.files.report.parent
+    document = calibration_document(calibration, plan.files, comparison)
+    with output_folder(folder), staged_files(folder) as staged:
+        files = plan.files.in_folder(staged)
+        for path in files.luts:
+            write_lut(path, lut)
+        if files.sheet:
+            _write_sheet(files.sheet, calibration)
+        atomic_write_text(files.report, json_text(document), error=PlateError)
+        write_config(files.config, plan.config, check={files.color_space: lut})
+    return document
+
+
+def response_to_compare(path: Path) -> ResponseCurve:
+    """Return the response in the JSON document of an estimate or a calibration, or in a file that `convert` reads.
+
+    Raises
+    ------
+    CalibrationError
+        If the document cannot be read or holds no response.
+    CRFNetError
+        If another file holds none: see `ocio.interchange.files.read_response`.
+    """
+    if path.suffix.lower() != ".json":
+        return response_of_lut(read_response(path).lut)
+    try:
+        samples = json.loads(path.read_text(encoding="utf-8"))["response"]["brightness"]
+        return ResponseCurve.from_samples(samples)
+    except OSError as problem:
+        raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem
+    except (ValueError, KeyError, TypeError, CurveError) as problem:
+        raise CalibrationError(
+            f"{path}: holds no response; give the JSON that crfnet estimate or calibrate wrote, or a LUT"
+        ) from problem
+
+
+def _write_sheet(path: Path, calibration: Calibration) -> None:
+    """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
+    from ocio.calibration_sheet import draw_calibration
+
+    draw_calibration(path, calibration)

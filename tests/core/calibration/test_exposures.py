@@ -1,0 +1,82 @@
+"""Exposures in stops: from EXIF or given times, nominal and exact."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.calibration.exposures import ExposureLabel, parse_times, read_times, stack_exposures
+from crfnet_core.errors import CalibrationError
+
+
+def of_times(*seconds):
+    return stack_exposures([ExposureLabel(time) for time in seconds])
+
+
+def test_exposures_are_stops_beside_their_mean():
+    np.testing.assert_allclose(of_times(0.25, 0.5, 1, 2).nominal, [-1.5, -0.5, 0.5, 1.5])
+
+
+def test_nominal_times_stand_for_powers_of_two():
+    """1/60 s is 2^-6 s, 1/15 s is 2^-4 s: two stops, though the labels say 2 stops too; 1/125 s to 1/60 s is one."""
+    found = of_times(1 / 125, 1 / 60, 1 / 30, 1 / 15)
+    np.testing.assert_allclose(np.diff(found.snapped), 1)
+    np.testing.assert_allclose(found.nominal[1] - found.nominal[0], np.log2(125 / 60))
+
+
+@pytest.mark.parametrize(
+    ("times", "step"),
+    [((1 / 60, 1 / 50, 1 / 40, 1 / 30), 1 / 3), ((1 / 60, 1 / 45, 1 / 30, 1 / 20), 1 / 2), ((4, 5, 6, 8), 1 / 3)],
+)
+def test_thirds_and_halves_of_stops_are_told_apart(times, step):
+    np.testing.assert_allclose(np.diff(of_times(*times).snapped), step)
+
+
+def test_times_of_no_steps_stay_as_they_are():
+    assert of_times(1 / 60, 1 / 56, 1 / 30, 1 / 15).snapped is None
+
+
+def test_iso_and_aperture_count():
+    """ISO 200 doubles the exposure, f/11 halves that of f/8: log2(11 / 8) * 2 is 0.92, and stands for 1."""
+    labels = [ExposureLabel(1.0, 8.0, 100.0), ExposureLabel(1.0, 8.0, 200.0), ExposureLabel(1.0, 11.0, 200.0)]
+    found = stack_exposures(labels)
+    np.testing.assert_allclose(np.diff(found.snapped), [1, -1])
+    np.testing.assert_allclose(np.diff(found.nominal), [1, -2 * np.log2(11 / 8)])
+    assert found.differing == ("ISO", "aperture")
+
+
+def test_a_setting_that_one_frame_does_not_state_is_left_out():
+    labels = [ExposureLabel(1.0, iso=100.0), ExposureLabel(2.0, iso=None), ExposureLabel(4.0, iso=400.0)]
+    found = stack_exposures(labels)
+    np.testing.assert_allclose(np.diff(found.nominal), 1)
+    assert found.differing == ()
+
+
+def test_times_are_read_from_a_list():
+    assert parse_times("1/60, 0.5s,2") == pytest.approx((1 / 60, 0.5, 2))
+
+
+@pytest.mark.parametrize("text", ["", "1/0", "fast", "-1", "0", "nan", "inf", "1/60,"])
+def test_what_is_no_time_is_refused(text):
+    with pytest.raises(CalibrationError, match=r"is no exposure time; give seconds such as 1/60 or 0.5"):
+        parse_times(text)
+
+
+def test_times_are_read_from_csv_by_name(tmp_path):
+    path = tmp_path / "times.csv"
+    path.write_text("file,time\nb.jpg,1/30\nsub/a.jpg,1/60\nother.jpg,1\n")
+    assert read_times(path, ["a.jpg", "b.jpg"]) == pytest.approx((1 / 60, 1 / 30))
+
+
+@pytest.mark.parametrize(
+    ("text", "message"),
+    [("a.jpg,1/60\n", "has no row for b.jpg"), ("a.jpg\n", "row 1 holds no file and time"), ("a.jpg,x1\n", "no expo")],
+)
+def test_a_csv_file_that_lacks_something_is_refused(tmp_path, text, message):
+    path = tmp_path / "times.csv"
+    path.write_text(text)
+    with pytest.raises(CalibrationError, match=message):
+        read_times(path, ["a.jpg", "b.jpg"])
+
+
+def test_an_absent_csv_file_is_refused(tmp_path):
+    with pytest.raises(CalibrationError, match=r"cannot be read as CSV"):
+        read_times(tmp_path / "none.csv", ["a.jpg"])

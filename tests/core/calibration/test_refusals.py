@@ -1,0 +1,89 @@
+"""Stacks that are none: the message says what is wrong."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.calibration import calibrate_stack
+from crfnet_core.errors import CalibrationError
+from tests.helpers.images import write_image
+from tests.helpers.stacks import emor_response
+
+
+def test_three_frames_are_too_few(stack):
+    with pytest.raises(CalibrationError, match=r"at least 4 frames of one scene at different exposures, found 3"):
+        calibrate_stack(stack()[:3])
+
+
+def test_a_frame_that_is_given_twice_is_named(stack):
+    paths = stack(frames=4)
+    with pytest.raises(CalibrationError, match=r"stack_00.jpg: is given twice"):
+        calibrate_stack([*paths, paths[0]])
+
+
+def test_frames_of_different_sizes_are_refused(stack, tmp_path):
+    paths = stack()
+    write_image(paths[2], np.zeros((64, 80, 3), np.uint8), ExposureTime=1.0)
+    with pytest.raises(CalibrationError, match=r"stack_02.jpg: has 80 x 64 pixels, stack_00.jpg has \d+ x \d+"):
+        calibrate_stack(paths)
+
+
+def test_frames_of_two_cameras_are_refused(stack, tmp_path):
+    paths = stack(frames=4, step=6, header={"Make": "Canon", "Model": "A"})
+    (tmp_path / "other").mkdir()
+    others = stack(frames=4, step=6, header={"Make": "Canon", "Model": "B"}, folder=tmp_path / "other")
+    with pytest.raises(CalibrationError, match=r"names Canon B, stack_00.jpg Canon A; give frames of one camera"):
+        calibrate_stack([*paths[:3], others[3]])
+
+
+def test_frames_without_times_are_refused(tmp_path, codes):
+    paths = [write_image(tmp_path / f"{i}.png", np.roll(codes, i, axis=0)) for i in range(4)]
+    with pytest.raises(CalibrationError, match=r"0.png: names no exposure time; give the times .* --times"):
+        calibrate_stack(paths)
+
+
+def test_as_many_times_as_frames_are_needed(stack):
+    with pytest.raises(CalibrationError, match=r"3 times are given for 8 frames; give one for each"):
+        calibrate_stack(stack(), seconds=[1, 2, 3])
+
+
+def test_equal_exposures_are_refused(stack):
+    with pytest.raises(CalibrationError, match=r"the exposures span 0.0 stops, by EXIF or --times; a stack needs 2 or"):
+        calibrate_stack(stack(), seconds=[1.0] * 8)
+
+
+def test_edited_frames_are_refused_unless_accepted(stack):
+    paths = stack(header={"Software": "Adobe Photoshop Lightroom 6.0"})
+    with pytest.raises(CalibrationError, match=r"saved by Adobe Photoshop Lightroom 6.0, which may have changed"):
+        calibrate_stack(paths)
+    assert calibrate_stack(paths, accept_edited=True).reaches_white
+
+
+@pytest.mark.parametrize(
+    ("stops", "words"), [((0, 0, 0, 0.5, 0, 0, 0, 0), "brighter"), ((0, 0, 0, -0.6, 0, 0, 0, 0), "darker")]
+)
+def test_a_mistimed_frame_is_named(stack, stops, words):
+    with pytest.raises(CalibrationError, match=rf"stack_03.jpg: is 0.[456]\d stop {words} than its exposure time says"):
+        calibrate_stack(stack(mistimed=stops))
+
+
+def test_a_scene_that_moves_is_refused(stack):
+    with pytest.raises(
+        CalibrationError, match=r"the frames do not show the same: .*; the camera or the scene has moved"
+    ):
+        calibrate_stack(stack(shifts=[(41 * i, 59 * i) for i in range(8)]))
+
+
+def test_frames_that_were_rendered_each_on_its_own_are_refused(stack, tmp_path):
+    """Every second frame has another response."""
+    (tmp_path / "other").mkdir()
+    first, second = stack(), stack(response=emor_response(4), folder=tmp_path / "other")
+    mixed = [path if index % 2 else other for index, (path, other) in enumerate(zip(first, second, strict=True))]
+    with pytest.raises(CalibrationError, match=r"no single curve explains the frames|stop (brighter|darker) than its"):
+        calibrate_stack(mixed)
+
+
+def test_a_flat_scene_is_refused(stack, tmp_path, true_response):
+    codes = [np.full((300, 400, 3), code, np.uint8) for code in (20, 40, 70, 110)]
+    paths = [write_image(tmp_path / f"{i}.png", each) for i, each in enumerate(codes)]
+    with pytest.raises(CalibrationError, match=r"of the codes between 16 and 240; take a scene with more range"):
+        calibrate_stack(paths, seconds=[1, 2, 4, 8])

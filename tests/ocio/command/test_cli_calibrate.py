@@ -1,0 +1,160 @@
+"""`crfnet calibrate`: what it writes and what it says."""
+
+import json
+
+import numpy as np
+import pytest
+
+from crfnet_core.metrics import shape_error
+from crfnet_core.response import ResponseCurve
+from ocio.arguments.parts import BAD_INPUT
+from ocio.luts.response import response_of_lut
+from ocio.luts.spi1d import read_spi1d
+from tests.helpers.folders import listed, tree
+from tests.helpers.images import read_image
+from tests.helpers.stacks import StackOptions, light_of, make_stack
+
+FILES = {"eos20d.spi1d", "eos20d.cube", "eos20d.clf", "eos20d.json", "eos20d_sheet.png", "config.ocio"}
+
+
+@pytest.fixture(scope="module")
+def frames(root, true_response, tmp_path_factory):
+    """A stack of 6 frames of a small picture, in PNG."""
+    light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2]
+    options = StackOptions(frames=6, quality=0)
+    header = {"Make": "Canon", "Model": "Canon EOS 20D", "Exif__PhotographicSensitivity": 100}
+    return make_stack(tmp_path_factory.mktemp("frames"), light, true_response, options, **header)
+
+
+@pytest.fixture(scope="module")
+def camera(crfnet, frames, look, tmp_path_factory):
+    """The output folder of a calibration, and what it printed."""
+    folder = tmp_path_factory.mktemp("calibration") / "camera"
+    arguments = ("--out", folder, "--name", "eos20d", "--compare", look / "plate.json")
+    done = crfnet("calibrate", *frames, *arguments)
+    assert (done.code, done.err) == (0, "")
+    return folder, done.out
+
+
+def test_writes_what_it_says(camera):
+    folder, out = camera
+    assert set(listed(folder)) == FILES
+    assert all(name in out for name in FILES)
+
+
+def test_says_in_words_what_was_measured(camera):
+    out = camera[1]
+    assert "6 frames of Canon EOS 20D, ISO 100, f/8, 1/60 s to 0.5 s (5.0 stops)." in out
+    assert "The response is measured: the shape of the linear light to 0.0" in out
+    assert "white is reached." in out
+    assert "their exposures were read as exact powers of two" in out
+    assert "Beside it the other response is off by " in out
+    assert "Warning" not in out
+
+
+def test_the_luts_hold_the_inverse_of_the_response(camera, true_response):
+    lut = read_spi1d(camera[0] / "eos20d.spi1d")
+    assert shape_error(true_response, response_of_lut(lut)) < 0.05
+    assert any("Measured from 6 frames of Canon EOS 20D" in comment for comment in lut.comments)
+    assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
+
+
+def test_the_document_says_all(camera):
+    found = json.loads((camera[0] / "eos20d.json").read_text(encoding="utf-8"))
+    assert found["kind"] == "calibration"
+    assert found["camera"] == {"make": "Canon", "model": "Canon EOS 20D", "firmware": ""}
+    assert 0 < found["shape_uncertainty_stops"] < 0.1
+    assert 0 < found["scale_uncertainty_stops"] < 0.3
+    parts = found["uncertainty_parts"]["shape"]
+    assert found["shape_uncertainty_stops"] == pytest.approx(np.linalg.norm([*parts.values()]), abs=1e-4)
+    assert len(found["response"]["brightness"]) == 1024
+    assert len(found["weights"]) == 11
+    assert [frame["name"] for frame in found["frames"]] == [f"stack_{i:02d}.png" for i in range(6)]
+    assert all(frame["used"] and len(frame["offsets_stops"]) == 3 for frame in found["frames"])
+    assert found["frames"][0]["iso"] == 100
+    assert set(found["comparison"]) == {"estimation_error", "linearization_error", "shape_error", "scale_error"}
+    assert found["files"]["linear"] == []
+
+
+def test_the_config_converts_as_the_lut(camera, frames, oiiotool, tmp_path):
+    """OpenColorIO agrees, and other plates are not caught by a file rule."""
+    folder, converted, looked_up = camera[0], tmp_path / "a.exr", tmp_path / "b.exr"
+    convert = ("--colorconvert", "CRF eos20d", "scene_linear", "-d", "float", "-o", converted)
+    oiiotool("--colorconfig", folder / "config.ocio", frames[3], *convert)
+    oiiotool(frames[3], "--ociofiletransform", folder / "eos20d.spi1d", "-d", "float", "-o", looked_up)
+    np.testing.assert_allclose(read_image(converted), read_image(looked_up), atol=1e-5)
+    config = (folder / "config.ocio").read_text(encoding="utf-8")
+    assert "as crfnet measured it from 6 exposures" in config
+    assert "stack_00" not in config
+
+
+def test_the_picture_is_a_sheet(camera):
+    assert read_image(camera[0] / "eos20d_sheet.png").shape[:2] == (1080, 1800)
+
+
+def test_a_calibration_can_be_compared_with_a_calibration(crfnet, camera, frames, tmp_path):
+    """With itself, by its document and by its LUT: they differ by what they round only."""
+    folder = camera[0]
+    for other, most in ((folder / "eos20d.json", 2e-3), (folder / "eos20d.cube", 5e-3)):
+        done = crfnet(
+            "calibrate", *frames, "--out", tmp_path / other.suffix, "--no-sheet", "--compare", other, "--json"
+        )
+        assert (done.code, done.err) == (0, "")
+        assert json.loads(done.out)["comparison"]["estimation_error"] < most
+    assert "stack_00.spi1d" in listed(tmp_path / ".cube")
+
+
+def test_times_from_a_csv_file_and_a_list(crfnet, frames, tmp_path):
+    times = tmp_path / "times.csv"
+    times.write_text("".join(f"{path.name},{2.0**index}\n" for index, path in enumerate(frames)))
+    listed_times = ",".join(str(2**index) for index in range(6))
+    curves = []
+    for name, given in (("csv", times), ("list", listed_times)):
+        done = crfnet("calibrate", *frames, "--times", given, "--out", tmp_path / name, "--no-sheet", "--json")
+        assert (done.code, done.err) == (0, "")
+        curves.append(json.loads(done.out)["response"]["brightness"])
+    assert curves[0] == curves[1]
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--times", "1,2"), "2 times are given for 6 frames"),
+        (("--times", "fast"), "'fast' is no exposure time"),
+        (("--times", "1,1,1,1,1,1"), "the exposures span 0.0 stops"),
+        (("--name", "a/b"), "'a/b' is no name for a file"),
+        (("--compare", "none.json"), "none.json: cannot be opened"),
+        (("--length", "1"), "a LUT has 2 to 65536 entries"),
+    ],
+)
+def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, message):
+    done = crfnet("calibrate", *frames, "--out", tmp_path / "out", *arguments)
+    assert done.code == BAD_INPUT
+    assert message in done.err
+    assert len(done.err.splitlines()) == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_document_without_a_response_is_refused(crfnet, frames, tmp_path):
+    (tmp_path / "other.json").write_text('{"a": 1}')
+    done = crfnet("calibrate", *frames, "--out", tmp_path / "out", "--compare", tmp_path / "other.json")
+    assert done.code == BAD_INPUT
+    assert "other.json: holds no response; give the JSON that crfnet estimate or calibrate wrote" in done.err
+
+
+def test_what_is_there_stays_there(crfnet, frames, tmp_path):
+    (tmp_path / "eos20d.cube").write_text("mine")
+    done = crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d")
+    assert done.code == BAD_INPUT
+    assert "eos20d.cube exists already; add --overwrite" in done.err
+    assert tree(tmp_path) == {"eos20d.cube": b"mine"}
+
+
+def test_a_response_from_a_lut_is_gamma(tmp_path):
+    """`response_to_compare` on a LUT of gamma 2.2."""
+    from ocio.luts.files import write_lut
+    from ocio.luts.lut1d import inverse_response_lut
+    from ocio.pipeline import response_to_compare
+
+    write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
+    assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01
