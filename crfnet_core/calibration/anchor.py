@@ -1,4 +1,4 @@
-"""Where white is: the irradiance at which the codes reach white, which sets the scale of a response (Eq. 41)."""
+"""Where white is: the irradiance at which the codes reach white, which sets the scale of a response (Eq. 45)."""
 
 from __future__ import annotations
 

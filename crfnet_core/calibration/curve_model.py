@@ -1,4 +1,4 @@
-"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. 39)."""
+"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. 43)."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. 40)."""
+"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. 44)."""
 
 from __future__ import annotations
 

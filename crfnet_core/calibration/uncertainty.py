@@ -1,4 +1,4 @@
-"""How far a measured response may be off: its shape and its scale, both in stops (Eq. 42 and 43 of docs/METHOD.md)."""
+"""How far a measured response may be off: its shape and its scale, both in stops (Eq. 46 and 47 of docs/METHOD.md)."""
 
 from __future__ import annotations
 

@@ -4,7 +4,7 @@ The view transform undoes the plate's conversion: from the scene reference to li
 primaries, then through the response f to code values. A display with the sRGB curve and these primaries shows the codes
 as they are. CG on a linear plate gets the camera's tone curve in this way, and the plate its own code values.
 
-A plate knows no light above its white. The plain view clips it. The other one rolls it off (docs/METHOD.md, Eq. 41).
+A plate knows no light above its white. The plain view clips it. The other one rolls it off (docs/METHOD.md, Eq. 37).
 """
 
 from __future__ import annotations
@@ -107,7 +107,7 @@ def active_views(config: OCIO.Config) -> list[str]:
 
 
 def roll_off() -> OCIO.Transform:
-    """Return the roll-off of highlights, from linear light with the plate's white at 1 to at most 1 (Eq. 41).
+    """Return the roll-off of highlights, from linear light with the plate's white at 1 to at most 1 (Eq. 37).
 
     Up to `KNEE` it is the identity, above it a logarithm that continues with the same value and slope. White of the
     plate comes to 0.865, and 1 is reached at 14.2, or 3.8 stops above it.
