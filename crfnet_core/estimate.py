@@ -24,6 +24,7 @@ from crfnet_core.posterior import (
     independent_share,
     scene_similarities,
 )
+from crfnet_core.recognition import Levels, Recognition, log_factor, recognize, refuse_tagged
 from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
 from crfnet_core.types import Float32Array, Float64Array, Progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
@@ -79,18 +80,22 @@ def estimate_response(
     Raises
     ------
     PhotoError
-        If there is no photograph, one is smaller than a window, or something else is given.
+        If there is no photograph, one is smaller than a window, something else is given, or a file names an encoding
+        with a published curve.
     """
-    sources = [_choose_windows(photo, windows, seed, coverage) for photo in _checked(photos)]
+    sources = [_choose_windows(photo, windows, seed, coverage, use_metadata) for photo in _checked(photos)]
     if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
     bank = bank or ResponseBank.load()
     origins = tuple(source.origin for source in sources if source.origin is not None and use_metadata)
-    prior = (prior or Prior.load()).given(_metadata_factors(origins))
+    levels = Levels.joint([source.levels for source in sources])
+    prior = (prior or Prior.load()).given(_metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
     readings = _readings(sources, network, progress)
     independent = independent_share(scene_similarities([source.thumbnail for source in sources]))
     evidences = [reading.evidence for reading in readings]
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
+    makes = tuple(source.make for source in sources if use_metadata)
+    recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=posterior.mean_weights,
@@ -99,12 +104,13 @@ def estimate_response(
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
         families=posterior.families,
-        verdict=Verdict.of(posterior),
+        verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.of(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(sources, origins),
+        warnings=_warnings(sources, origins, recognition),
         model=network.config.label,
         photos=tuple(source.name for source in sources),
+        recognition=recognition,
     )
 
 
@@ -117,6 +123,8 @@ class _Source:
     windows: tuple[Window, ...]
     samples: Float32Array
     thumbnail: Float64Array
+    levels: Levels
+    make: str
     origin: FileOrigin | None
 
 
@@ -141,15 +149,26 @@ def _checked(photos: Photo | Iterable[Photo]) -> Iterator[Photo]:
         yield photo
 
 
-def _choose_windows(photo: Photo, count: int, seed: int, coverage: int) -> _Source:
+def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_metadata: bool) -> _Source:
     """Return the windows of one photograph; an error names its file."""
+    metadata = photo.metadata
+    if use_metadata:
+        refuse_tagged(photo)
     try:
         windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
     samples = cut_windows(photo.pixels, windows)
-    origin = None if photo.metadata is None else file_origin(photo.metadata)
-    return _Source(photo.path.name, photo.is_gray, windows, samples, _thumbnail(photo.pixels), origin)
+    return _Source(
+        name=photo.path.name,
+        is_gray=photo.is_gray,
+        windows=windows,
+        samples=samples,
+        thumbnail=_thumbnail(photo.pixels),
+        levels=Levels.of(photo.pixels),
+        make="" if metadata is None else metadata.make,
+        origin=None if metadata is None else file_origin(metadata),
+    )
 
 
 def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
@@ -201,10 +220,13 @@ def _window_estimates(
     )
 
 
-def _warnings(sources: Sequence[_Source], origins: Sequence[FileOrigin]) -> tuple[str, ...]:
+def _warnings(
+    sources: Sequence[_Source], origins: Sequence[FileOrigin], recognition: Recognition | None
+) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
-    warnings = [
+    warnings = [recognition.reason] if recognition else []
+    warnings += [
         f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors
     ]
     if not any(window.covers_range for source in sources for window in source.windows):

@@ -20,6 +20,7 @@ from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import Encoding
 from crfnet_core.metrics import brightness_percent
 from crfnet_core.posterior import Family, LikelyKind, Verdict
+from crfnet_core.recognition import Kind, Recognition
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array, same_fields
 from crfnet_core.windows import Window
@@ -89,6 +90,8 @@ class ResponseEstimate:
         Name and hash of the network.
     photos : tuple of str
         File names of the photographs.
+    recognition : Recognition, optional
+        What the photographs are if they are log footage or limited range: see `crfnet_core.recognition`.
     """
 
     curve: ResponseCurve
@@ -104,6 +107,7 @@ class ResponseEstimate:
     warnings: tuple[str, ...]
     model: str
     photos: tuple[str, ...]
+    recognition: Recognition | None = None
 
     def __eq__(self, other: object) -> bool:
         """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
@@ -129,6 +133,7 @@ class ResponseEstimate:
             "shape_uncertainty_stops": self.shape_uncertainty,
             "family": {"words": kind.words, "probability": kind.probability} if kind else None,
             "families": self.families,
+            "recognition": dataclasses.asdict(self.recognition) if self.recognition else None,
             "prior": self.prior,
             "metadata": [dataclasses.asdict(origin) for origin in self.origins],
             "warnings": self.warnings,
@@ -168,6 +173,7 @@ class ResponseEstimate:
                 warnings=tuple(document["warnings"]),
                 model=document["model"],
                 photos=tuple(photo["name"] for photo in document["photographs"]),
+                recognition=_recognition(document.get("recognition")),
             )
         except KeyError as problem:
             raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
@@ -213,6 +219,13 @@ def _origins(documents: list[dict[str, Any]]) -> Iterator[FileOrigin]:
         entries = {field.name: entry[field.name] for field in dataclasses.fields(FileOrigin)}
         kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
         yield FileOrigin(**entries | kinds | {"words": tuple(entry["words"])})
+
+
+def _recognition(entry: dict[str, Any] | None) -> Recognition | None:
+    """Return what the photographs of a document are recognized as."""
+    if entry is None:
+        return None
+    return Recognition(**entry | {"kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
 def _number(entry: float | None) -> float:

@@ -55,6 +55,8 @@ class PlateOptions:
         The space of the linear values: "scene_linear" is linear Rec.709, "plate" leaves the plate's own primaries.
     overwrite : bool
         Whether existing files may be replaced.
+    is_encoded : bool
+        Whether OpenEXR plates that do not say how their values are encoded hold encoded values.
     """
 
     depth: str = DEPTHS[0]
@@ -63,6 +65,7 @@ class PlateOptions:
     primaries: str = PRIMARIES[0]
     output_space: str = OUTPUT_SPACES[0]
     overwrite: bool = False
+    is_encoded: bool = False
 
 
 @dataclass(frozen=True, kw_only=True)

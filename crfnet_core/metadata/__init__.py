@@ -1,6 +1,7 @@
 """What a file says of how its photograph was made: evidence beside the pixels, used where it is there.
 
 file_metadata   what is read: names, sizes, tables, profile
+transfer_tags   log, PQ and HLG, as files name them
 color_tags      primaries and encodings as files tag them
 header_colors   the tags in a header: ICC profile, CICP, EXIF
 icc             the primaries of an ICC profile

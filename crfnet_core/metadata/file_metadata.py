@@ -9,6 +9,7 @@ from typing import Any
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.metadata.jpeg import JpegHeader, Table
+from crfnet_core.metadata.transfer_tags import dpx_transfer, with_named_transfer
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
@@ -45,7 +46,9 @@ class FileMetadata:
     profile : str
         Description of the ICC profile; of DPX its transfer characteristic.
     file_format : str
-        "JPEG", "PNG", "TIFF", "WebP" or "DPX"; "movie" for a frame of one.
+        "JPEG", "HEIC", "DPX" and so on, as `image_io.file_kinds` names them; "movie" for a frame of one.
+    has_gain_map : bool
+        Whether the file holds a gain map, so that its picture is the base of an HDR picture.
     color : ColorTags
         What the file says of its primaries and of its encoding.
     """
@@ -66,6 +69,7 @@ class FileMetadata:
     has_adobe: bool = False
     profile: str = ""
     file_format: str = ""
+    has_gain_map: bool = False
     color: ColorTags = field(default_factory=ColorTags)
 
     @property
@@ -82,13 +86,15 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
     header : OpenImageIO.ImageSpec
         Of the picture that is read.
     file_format : str
-        "JPEG", "PNG", "TIFF", "WebP" or "DPX".
+        "JPEG", "HEIC", "DPX" and so on, as `image_io.file_kinds` names them.
     jpeg : JpegHeader, optional
         The segments of a JPEG file.
     """
     jpeg = jpeg or JpegHeader()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
+    profile = _text(header, "ICCProfile:profile_description")
+    dpx = dpx_transfer(_text(header, "dpx:Transfer"), _text(header, "Software"))
     return FileMetadata(
         width=header.width,
         height=header.height,
@@ -104,9 +110,10 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         subsampling=jpeg.subsampling,
         has_jfif=jpeg.has_jfif,
         has_adobe=jpeg.has_adobe,
-        profile=_text(header, "ICCProfile:profile_description") or _text(header, "dpx:Transfer"),
+        profile=profile or dpx,
         file_format=file_format,
-        color=header_color_tags(header, file_format, jpeg.interop_index),
+        has_gain_map=jpeg.has_gain_map,
+        color=with_named_transfer(header_color_tags(header, file_format, jpeg.interop_index), dpx, profile),
     )
 
 

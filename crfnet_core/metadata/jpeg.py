@@ -25,6 +25,7 @@ _SEGMENT = re.compile(rb"\xff+([^\xff])(..)", re.DOTALL)
 _START_OF_SCAN = 0xDA
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 _QUANTIZATION_TABLES = 0xDB
+_GAIN_MAPS = (b"http://ns.adobe.com/hdr-gain-map/", b"urn:iso:std:iso:ts:21496:-1")
 _SUBSAMPLING = {(1, 1): "4:4:4", (2, 1): "4:2:2", (2, 2): "4:2:0", (1, 2): "4:4:0", (4, 1): "4:1:1"}
 
 
@@ -48,6 +49,8 @@ class JpegHeader:
         Whether it has an Adobe segment, which the programs of Adobe write, and other encoders for CMYK and RGB.
     interop_index : str
         EXIF InteroperabilityIndex, such as "R98"; empty if there is none.
+    has_gain_map : bool
+        Whether a gain map follows the picture, to make an HDR picture of both (Ultra HDR, ISO 21496-1).
     """
 
     scan: int = 0
@@ -58,6 +61,7 @@ class JpegHeader:
     has_jfif: bool = False
     has_adobe: bool = False
     interop_index: str = ""
+    has_gain_map: bool = False
 
 
 def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
@@ -67,6 +71,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
     tables: dict[int, Table] = {}
     names: set[bytes] = set()
     interop_index = ""
+    has_gain_map = False
     for marker, scan, end in _segments(content):
         if marker in _START_OF_FRAME:
             frame = content[scan:end].ljust(6, b"\0")
@@ -78,6 +83,8 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
             names.add(content[scan : scan + 5])
         elif marker == 0xE1 and content[scan : scan + 6] == b"Exif\0\0":
             interop_index = interop_index or interoperability_index(content[scan + 6 : end])
+        elif marker in (0xE1, 0xE2):
+            has_gain_map |= any(mark in content[scan:end] for mark in _GAIN_MAPS)
     return JpegHeader(
         scan=scan,
         sizes=tuple(sizes),
@@ -87,6 +94,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
         has_jfif=b"JFIF\0" in names,
         has_adobe=b"Adobe" in names,
         interop_index=interop_index,
+        has_gain_map=has_gain_map,
     )
 
 

@@ -25,7 +25,7 @@ def add(commands: Commands) -> None:
     """Add `crfnet estimate`."""
     parser = add_command(commands, "estimate", "estimate the response of the camera that took a photograph", EXAMPLES)
     photos = parser.add_argument(
-        "photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, PNG, TIFF, WebP or DPX, or a movie"
+        "photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, HEIC, PNG, TIFF, DPX and others, or a movie"
     )
     photos.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")

@@ -38,5 +38,8 @@ def add(commands: Commands) -> None:
     )
     lut.complete = shtab.FILE  # type: ignore[attr-defined]
     parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
+    parser.add_argument(
+        "--encoded", action="store_true", help="OpenEXR plates that do not say it hold encoded values, not linear ones"
+    )
     add_network(parser)
     add_plate(parser)

@@ -27,4 +27,5 @@ def plate_options(arguments: argparse.Namespace) -> PlateOptions:
         primaries=arguments.primaries,
         output_space=arguments.output_space,
         overwrite=arguments.overwrite,
+        is_encoded=getattr(arguments, "encoded", False),
     )

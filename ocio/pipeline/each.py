@@ -30,7 +30,23 @@ from ocio.staging import staged_files
 MAX_COLOR_SPACES = 1000
 
 #: How the names of photographs end, in a folder that is searched for them.
-PHOTOGRAPH_SUFFIXES = (".jpg", ".jpeg", ".png", ".tif", ".tiff", ".webp", ".dpx")
+PHOTOGRAPH_SUFFIXES = (
+    ".jpg",
+    ".jpeg",
+    ".heic",
+    ".heif",
+    ".png",
+    ".tif",
+    ".tiff",
+    ".webp",
+    ".avif",
+    ".jxl",
+    ".jp2",
+    ".j2k",
+    ".dpx",
+    ".bmp",
+    ".tga",
+)
 
 
 @dataclass(frozen=True)

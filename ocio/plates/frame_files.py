@@ -17,6 +17,9 @@ from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.types import Float32Array
 
+#: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
+UNTAGGED = ("", "unknown", "data")
+
 
 @dataclass(frozen=True, eq=False)
 class EncodedFrame:
@@ -66,21 +69,24 @@ class FrameSource(Protocol):
         """Yield what returns each frame, for ascending positions in `numbers`; a loader may be called in any thread."""
 
 
-def read_frame(path: Path) -> EncodedFrame:
+def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
     """Return the encoded samples of one frame.
 
     Parameters
     ----------
     path : Path
         A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
+    is_encoded : bool
+        Whether an OpenEXR file that does not say how its values are encoded holds encoded values.
 
     Raises
     ------
     PhotoError, PlateError
-        If the file is damaged, too large, of another format, or scene-linear already.
+        If the file is damaged, too large, of another format, scene-linear already, or an OpenEXR file that does not say
+        so while `is_encoded` is not set.
     """
     if path.suffix.lower() == ".exr":
-        return _read_encoded_exr(path)
+        return _read_encoded_exr(path, is_encoded=is_encoded)
     values = read_codes(path)
     alpha = None
     if values.alpha is not None:
@@ -89,7 +95,7 @@ def read_frame(path: Path) -> EncodedFrame:
     return EncodedFrame(samples, values.largest, alpha, values.header, values.metadata.color)
 
 
-def _read_encoded_exr(path: Path) -> EncodedFrame:
+def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
     """Return the encoded values in an OpenEXR file, divided by its alpha."""
     source = oiio.ImageInput.open(str(path))
     problem = oiio.geterror()
@@ -97,7 +103,7 @@ def _read_encoded_exr(path: Path) -> EncodedFrame:
         raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
     try:
         header = source.spec()
-        _check_encoded_exr(path, header)
+        _check_encoded_exr(path, header, is_encoded=is_encoded)
         values = source.read_image(0, 0, 0, header.nchannels, "float")
         problem = source.geterror()
     finally:
@@ -115,8 +121,8 @@ def _read_encoded_exr(path: Path) -> EncodedFrame:
     return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
 
 
-def _check_encoded_exr(path: Path, header: Any) -> None:
-    """Refuse an OpenEXR file that is linear already, too large or deep, or that holds no RGB or gray picture."""
+def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
+    """Refuse an OpenEXR file that is or may be linear, is too large or deep, or holds no RGB or gray picture."""
     space = header.get_string_attribute("colorInteropID")
     if space.startswith("lin_"):
         raise PlateError(f"{path}: is scene-linear already ({space}); give the encoded plate")
@@ -125,3 +131,8 @@ def _check_encoded_exr(path: Path, header: Any) -> None:
     names = set(header.channelnames)
     if header.deep or not (names >= set("RGB") or len(names - {"A"}) == 1):
         raise PlateError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
+    if space in UNTAGGED and not is_encoded:
+        raise PlateError(
+            f"{path}: does not say whether its values are linear, as those of most OpenEXR files are; if they are"
+            " encoded, as a camera or a program wrote them for a display, add --encoded"
+        )

@@ -50,15 +50,18 @@ class FrameSequence:
         The frame number of each; empty for a single file, which has none.
     missing : tuple of int
         Frame numbers asked for, or between the first and the last, for which there is no file.
+    is_encoded : bool
+        Whether OpenEXR files that do not say how their values are encoded hold encoded values.
     """
 
     paths: tuple[Path, ...]
     numbers: tuple[int, ...] = ()
     missing: tuple[int, ...] = ()
+    is_encoded: bool = False
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
         """Yield what reads each frame, for positions in `paths`: see `FrameSource`."""
-        return (partial(read_frame, self.paths[position]) for position in positions)
+        return (partial(read_frame, self.paths[position], is_encoded=self.is_encoded) for position in positions)
 
 
 @dataclass(frozen=True)

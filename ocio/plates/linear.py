@@ -7,7 +7,7 @@ import re
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -24,7 +24,7 @@ from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
 from ocio.plates.first_frame import FirstFrame, SourceFrame, first_frame
 from ocio.plates.frame_files import EncodedFrame, FrameSource
-from ocio.plates.frames import FramePattern, format_frames
+from ocio.plates.frames import FramePattern, FrameSequence, format_frames
 from ocio.plates.light import PlateLight, check_finished
 from ocio.plates.parallel import finished
 from ocio.plates.primaries import check_same_primaries, plate_primaries
@@ -106,9 +106,10 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused. Gray
-    becomes RGB. Alpha is kept: the colour is divided by it where the file stores the product, and multiplied by it
-    after the LUT, as OpenEXR requires. Rows and columns stay as stored, and so does the metadata that remains true.
+    Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused, as is
+    one that says nothing, unless `is_encoded` is set: most of these are linear. Gray becomes RGB. Alpha is kept: the
+    colour is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires.
+    Rows and columns stay as stored, and so does the metadata that remains true.
     The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
     The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
 
@@ -142,6 +143,8 @@ def linearize_plates(
         failed: the message names them.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
+    if options.is_encoded and isinstance(sequence, FrameSequence):
+        sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
     light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)

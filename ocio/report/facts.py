@@ -13,22 +13,37 @@ from crfnet_core.photo import Photo
 
 @dataclass(frozen=True)
 class PhotoFacts:
-    """What the report says of a photograph once its pixels are gone: file name, size in pixels, bits per sample."""
+    """What the report says of a photograph once its pixels are gone.
+
+    Parameters
+    ----------
+    name : str
+        The file's.
+    width, height : int
+        In pixels.
+    bit_depth : int
+        Bits per sample.
+    has_gain_map : bool
+        Whether the file holds a gain map, so that its base picture was read.
+    """
 
     name: str
     width: int
     height: int
     bit_depth: int
+    has_gain_map: bool = False
 
     @classmethod
     def of(cls, photo: Photo) -> PhotoFacts:
         """Return the facts of a photograph."""
         height, width = photo.pixels.shape[:2]
-        return cls(photo.path.name, width, height, photo.bit_depth)
+        has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
+        return cls(photo.path.name, width, height, photo.bit_depth, has_gain_map)
 
     def __str__(self) -> str:
         """Return one line for people."""
-        return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits"
+        base = "; the base picture of an HDR photograph, without its gain map" if self.has_gain_map else ""
+        return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits{base}"
 
 
 def curve_error(estimate: ResponseEstimate) -> str:

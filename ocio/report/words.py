@@ -45,7 +45,7 @@ def verdict_lines(estimate: ResponseEstimate) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
     kind, rests_on = estimate.likely_kind, basis(estimate)
     return [
-        f"The estimate is {_verdict_words(estimate.verdict, kind)}.",
+        f"The estimate is {_verdict_words(estimate, kind)}.",
         _expectation(estimate),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
@@ -152,12 +152,14 @@ def model_lines(document: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _verdict_words(verdict: Verdict, kind: LikelyKind | None) -> str:
+def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
     """Return the verdict with what to do about it, which of some kinds of pictures is something of its own."""
+    if estimate.recognition:
+        return f"not to be trusted: {estimate.recognition.advice}"
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
-    if verdict is Verdict.DO_NOT_TRUST and remedies:
+    if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
         return f"not to be trusted: {remedies[0]}"
-    return VERDICTS[verdict]
+    return VERDICTS[estimate.verdict]
 
 
 def _expectation(estimate: ResponseEstimate) -> str:

@@ -147,3 +147,9 @@ def test_a_model_is_told_by_every_figure(fixed_model):
     assert lines[0] == "fixed: model"
     assert lines[-2:] == ["  accuracy, P0, mean: 1.2", "  accuracy, P0, median: 1.1"]
     assert "  output_names: locations, factors, log_odds" in lines
+
+
+def test_the_base_picture_of_an_hdr_photograph_is_said():
+    facts = report.PhotoFacts("IMG.HEIC", 4032, 3024, 8, has_gain_map=True)
+    assert str(facts) == "IMG.HEIC: 4032 x 3024, 8 bits; the base picture of an HDR photograph, without its gain map"
+    assert str(report.PhotoFacts("a.jpg", 4, 3, 8)) == "a.jpg: 4 x 3, 8 bits"

@@ -4,7 +4,7 @@ import json
 
 import numpy as np
 
-from tests.helpers.images import read_image
+from tests.helpers.images import read_image, write_image
 
 
 def test_a_sequence_with_a_gap(crfnet, look, frames):
@@ -52,3 +52,16 @@ def test_says_what_was_left_alone(crfnet, look, plate, tmp_path):
     *light, written = crfnet(*arguments, "--overwrite").out.splitlines()
     assert written == f"Written: {tmp_path / 'a.exr'}."
     assert [line.partition(":")[0] for line in light] == ["Primaries", "Exposure"]
+
+
+def test_an_untagged_exr_is_linearized_only_if_the_user_says_that_it_is_encoded(crfnet, look, tmp_path):
+    values = np.full((4, 4, 3), 0.5, np.float32)
+    plate = write_image(tmp_path / "plate.exr", values)
+    arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "linear.exr")
+    refused = crfnet(*arguments)
+    assert refused.code == 2
+    assert refused.err.startswith(f"crfnet: error: {plate}: does not say whether its values are linear")
+    assert refused.err.count("\n") == 1
+    assert not (tmp_path / "linear.exr").exists()
+    assert crfnet(*arguments, "--encoded").code == 0
+    assert read_image(tmp_path / "linear.exr").max() < 0.5

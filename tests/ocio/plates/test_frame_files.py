@@ -16,7 +16,7 @@ def write_exr(path, values, names, **attributes):
 
 def test_encoded_exr_keeps_its_values(tmp_path):
     values = np.array([[[-0.5, 0.25, 1.5], [0, 1, 2]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B")))
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B")), is_encoded=True)
     assert frame.samples.dtype == np.float32
     assert frame.alpha is None
     np.testing.assert_array_equal(frame.samples, values)
@@ -24,7 +24,7 @@ def test_encoded_exr_keeps_its_values(tmp_path):
 
 def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
     values = np.array([[[0.25, 0.5, 0, 0.5], [3, 2, 1, 0], [0.1, 0.2, 0.3, 1]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "A")))
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, ("R", "G", "B", "A")), is_encoded=True)
     np.testing.assert_allclose(frame.samples, [[[0.5, 1, 0], [0, 0, 0], [0.1, 0.2, 0.3]]], rtol=1e-6)
     np.testing.assert_array_equal(frame.alpha, np.float32([[0.5, 0, 1]]))
 
@@ -32,7 +32,7 @@ def test_encoded_exr_is_divided_by_its_alpha(tmp_path):
 @pytest.mark.parametrize("channels", [("Y",), ("R",), ("Y", "A")])
 def test_gray_encoded_exr_is_replicated(tmp_path, channels):
     values = np.array([[[0.25, 1.0][: len(channels)]]])
-    frame = read_frame(write_exr(tmp_path / "a.exr", values, channels))
+    frame = read_frame(write_exr(tmp_path / "a.exr", values, channels), is_encoded=True)
     np.testing.assert_array_equal(frame.samples, [[[0.25] * 3]])
 
 
@@ -52,6 +52,19 @@ def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attribut
     assert str(caught.value).startswith(str(path))
 
 
+@pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
+def test_an_exr_that_says_nothing_of_its_encoding_is_refused_unless_told(tmp_path, tag):
+    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), **tag)
+    with pytest.raises(PlateError, match=r"does not say whether its values are linear.*add --encoded"):
+        read_frame(path)
+    np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, [[[0.5, 0.5, 0.5]]])
+
+
+def test_an_exr_that_says_it_is_encoded_needs_no_option(tmp_path):
+    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="srgb_rec709_scene")
+    np.testing.assert_array_equal(read_frame(path).samples, [[[0.5, 0.5, 0.5]]])
+
+
 def test_a_cut_exr_is_refused(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.random.default_rng(0).random((64, 64, 3)), ("R", "G", "B"))
     whole = path.read_bytes()
@@ -66,7 +79,7 @@ def test_a_cut_exr_is_refused(tmp_path):
 
 def test_other_files_are_read_as_photographs(tmp_path):
     (tmp_path / "a.png").write_text("no picture")
-    with pytest.raises(PhotoError, match="is no JPEG, PNG"):
+    with pytest.raises(PhotoError, match="is no JPEG, HEIC"):
         read_frame(tmp_path / "a.png")
 
 

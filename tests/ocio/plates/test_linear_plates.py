@@ -73,7 +73,7 @@ def test_a_gray_plate_becomes_rgb(tmp_path, out):
 def test_every_format_gives_what_oiiotool_gives(tmp_path, out, oiiotool, tolerance, name, codes, options):
     plate = write_image(tmp_path / name, codes, **options)
     write_spi1d(tmp_path / "x.spi1d", LUT)
-    linearize(plate, out / "a.exr", LUT, depth="float")
+    linearize(plate, out / "a.exr", LUT, depth="float", is_encoded=True)
     transform = f"--ociofiletransform:unpremult={int(codes.shape[2] == 4)}"
     oiiotool(plate, transform, tmp_path / "x.spi1d", "-d", "float", "-o", tmp_path / "expected.exr")
     expected = read_exr(tmp_path / "expected.exr")[0]
@@ -115,7 +115,7 @@ def test_associated_alpha_is_divided_out_before_the_lut(tmp_path, out, oiiotool,
 def test_encoded_exr_uses_the_domain_of_the_lut(tmp_path, out):
     lut = Lut1D(np.linspace(-0.25, 2, 10), domain=(-0.125, 1.125))
     values = np.array([[[-1, -0.125, 0], [1, 1.0625, 9], [np.nan, 0.5, 1.125]]], np.float32)
-    linearize(write_image(tmp_path / "a.exr", values), out / "a.exr", lut, depth="float")
+    linearize(write_image(tmp_path / "a.exr", values), out / "a.exr", lut, depth="float", is_encoded=True)
     expected = [[[-0.25, -0.25, -0.025], [1.775, 1.8875, 2], [-0.25, 0.875, 2]]]
     np.testing.assert_allclose(read_exr(out / "a.exr")[0], expected, atol=1e-6)
 
@@ -123,7 +123,7 @@ def test_encoded_exr_uses_the_domain_of_the_lut(tmp_path, out):
 def test_encoded_exr_keeps_its_windows(tmp_path, out):
     gray = np.full((3, 4, 3), 0.5, np.float16)
     plate = write_image(tmp_path / "a.exr", gray, origin=(5, -2), display=(0, 0, 20, 10))
-    linearize(plate, out / "a.exr", LUT)
+    linearize(plate, out / "a.exr", LUT, is_encoded=True)
     found = read_exr(out / "a.exr")[1]
     assert (found.x, found.y, found.width, found.height) == (5, -2, 4, 3)
     assert (found.full_x, found.full_y, found.full_width, found.full_height) == (0, 0, 20, 10)
@@ -158,7 +158,7 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
 def test_metadata_has_the_names_of_openexr(tmp_path, out):
     exif = {"Exif__LensModel": "EF50mm", "Exif__FocalLength": 50.0, "Exif__PhotographicSensitivity": 200}
     camera = {"Make": "Canon", "Model": "EOS 20D", "ExposureTime": 0.02, "FNumber": 2.8}
-    linearize(write_image(tmp_path / "a.jpg", SMALL[..., :3], **exif, **camera), out / "a.exr", LUT)
+    linearize(write_image(tmp_path / "a.jpg", SMALL[..., :3], **exif, **camera), out / "a.exr", LUT, is_encoded=True)
     found = attributes(read_exr(out / "a.exr")[1])
     assert {name: found.get(name) for name in STANDARD_NAMES} == {
         "cameraMake": "Canon",
@@ -179,7 +179,7 @@ def test_time_code_and_rate_are_kept(tmp_path, out):
         FramesPerSecond=(oiio.TypeDesc("rational"), (24000, 1001)),
         PixelAspectRatio=2.0,
     )
-    linearize(plate, out / "a.exr", LUT)
+    linearize(plate, out / "a.exr", LUT, is_encoded=True)
     found, expected = attributes(read_exr(out / "a.exr")[1]), attributes(read_exr(plate)[1])
     assert found["smpte:TimeCode"] == expected["smpte:TimeCode"]
     assert found["FramesPerSecond"] == expected["FramesPerSecond"]

@@ -10,6 +10,7 @@ graphics         screenshots and drawings
 kinds            the list of kinds, each with its reason; windows and whole frames of a kind
 """
 
+from crfnet_core.recognition import LogCurve
 from training.synthesis.unusual.kinds import (
     RECIPES,
     Recipe,
@@ -18,7 +19,7 @@ from training.synthesis.unusual.kinds import (
     unusual_photo,
     unusual_windows,
 )
-from training.synthesis.unusual.log_curves import LogCurve, log_curves
+from training.synthesis.unusual.log_curves import log_curves
 
 __all__ = [
     "RECIPES",

@@ -1,93 +1,29 @@
-"""Curves of log footage, as the makers of cameras publish them: reflectance to code value.
+"""Curves of log footage: those of `crfnet_core.recognition`, one definition for training and for recognizing.
 
-Reflectance is scene-linear light of which 0.18 is a middle gray and 0.9 a white paper; highlights go beyond 1. Code
-values are fractions of the largest code, as the file stores them: black lies well above 0.
+Training draws from the ten that the packaged models have seen; more would change what a seed draws.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import dataclass
+from crfnet_core.recognition import LogCurve
+from crfnet_core.recognition import log_curves as published_curves
 
-import numpy as np
-from numpy.typing import ArrayLike
-
-from crfnet_core.types import Float64Array
-
-LogCurve = Callable[[ArrayLike], Float64Array]
-
-
-@dataclass(frozen=True)
-class LinearToe:
-    """The form that most makers use: c log10(a x + b) + d from the reflectance `cut` on, and e x + f below it."""
-
-    cut: float
-    a: float
-    b: float
-    c: float
-    d: float
-    e: float
-    f: float
-
-    def __call__(self, reflectance: ArrayLike) -> Float64Array:
-        """Return code values, float64, of the shape of `reflectance`; nothing is clipped."""
-        x = np.asarray(reflectance, dtype=np.float64)
-        above = np.maximum(x, self.cut)
-        return np.where(x < self.cut, self.e * x + self.f, self.c * np.log10(self.a * above + self.b) + self.d)
-
-
-#: ARRI, "ALEXA Log C Curve: Usage in VFX" (2012), SUP 3.x, linear scene exposure factor at EI 800.
-ARRI_LOGC3 = LinearToe(0.010591, 5.555556, 0.052272, 0.247190, 0.385537, 5.367655, 0.092809)
-
-#: Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
-SONY_SLOG3 = LinearToe(
-    0.01125, 1 / 0.19, 0.01 / 0.19, 261.5 / 1023, 420 / 1023, (171.2102946929 - 95) / 0.01125 / 1023, 95 / 1023
+#: The curves of the packaged models' training.
+TRAINING_CURVES = (
+    "ARRI LogC3",
+    "Apple Log",
+    "Canon Log 3",
+    "DJI D-Log",
+    "Fujifilm F-Log",
+    "Fujifilm F-Log2",
+    "Nikon N-Log",
+    "Panasonic V-Log",
+    "RED Log3G10",
+    "Sony S-Log3",
 )
-
-#: Canon, "Input Transform Version 202007", Canon Log 3 v1.2. Its x is reflectance / 0.9; here the linear part goes on
-#: below x = -0.014, where the published curve bends once more.
-CANON_LOG3 = LinearToe(0.014 * 0.9, 14.98325 / 0.9, 1, 0.36726845, 0.12240537, 1.9754798 / 0.9, 0.12512219)
-
-#: Panasonic, "VARICAM V-Log/V-Gamut" (2014).
-PANASONIC_VLOG = LinearToe(0.01, 1, 0.00873, 0.241514, 0.598206, 5.6, 0.125)
-
-#: RED Digital Cinema, "White Paper on REDWideGamutRGB and Log3G10" (2017).
-RED_LOG3G10 = LinearToe(-0.01, 155.975327, 1 + 0.01 * 155.975327, 0.224282, 0, 15.1927, 0.01 * 15.1927)
-
-#: DJI, "White Paper on D-Log and D-Gamut" (2017).
-DJI_DLOG = LinearToe(0.0078, 0.9892, 0.0108, 0.256663, 0.584555, 6.025, 0.0929)
-
-#: Fujifilm, "F-Log Data Sheet Ver. 1.1" and "F-Log2 Data Sheet Ver. 1.0".
-FUJIFILM_FLOG = LinearToe(0.00089, 0.555556, 0.009468, 0.344676, 0.790453, 8.735631, 0.092864)
-FUJIFILM_FLOG2 = LinearToe(0.000889, 5.555556, 0.064829, 0.245281, 0.384316, 8.799461, 0.092864)
-
-
-def apple_log(reflectance: ArrayLike) -> Float64Array:
-    """Return code values of Apple Log ("Apple Log Profile White Paper", 2023), whose toe is a parabola from -0.0564."""
-    x = np.maximum(np.asarray(reflectance, dtype=np.float64), -0.05641088)
-    above = np.maximum(x, 0.01)
-    return np.where(
-        x < 0.01, 47.28711236 * (x + 0.05641088) ** 2, 0.08550479 * np.log2(above + 0.00964052) + 0.69336945
-    )
-
-
-def nikon_nlog(reflectance: ArrayLike) -> Float64Array:
-    """Return code values of N-Log (Nikon, "N-Log Specification Document"), a cube root below a reflectance of 0.328."""
-    x = np.maximum(np.asarray(reflectance, dtype=np.float64), -0.0075)
-    return np.where(x < 0.328, 650 * np.cbrt(x + 0.0075), 150 * np.log(np.maximum(x, 0.328)) + 619) / 1023
 
 
 def log_curves() -> dict[str, LogCurve]:
     """Return name -> curve, from reflectance (any shape) to code values in about [0.09, 1], not clipped."""
-    return {
-        "ARRI LogC3": ARRI_LOGC3,
-        "Apple Log": apple_log,
-        "Canon Log 3": CANON_LOG3,
-        "DJI D-Log": DJI_DLOG,
-        "Fujifilm F-Log": FUJIFILM_FLOG,
-        "Fujifilm F-Log2": FUJIFILM_FLOG2,
-        "Nikon N-Log": nikon_nlog,
-        "Panasonic V-Log": PANASONIC_VLOG,
-        "RED Log3G10": RED_LOG3G10,
-        "Sony S-Log3": SONY_SLOG3,
-    }
+    curves = published_curves()
+    return {name: curves[name] for name in TRAINING_CURVES}

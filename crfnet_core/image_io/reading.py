@@ -1,0 +1,114 @@
+"""Read a photograph's code values, and nothing else done to them."""
+
+from __future__ import annotations
+
+import tempfile
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import OpenImageIO as oiio
+from numpy.typing import NDArray
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.image_io import problems
+from crfnet_core.image_io.file_kinds import file_kind
+from crfnet_core.image_io.header_checks import checked_bit_depth
+from crfnet_core.image_io.heif import read_heif
+from crfnet_core.image_io.jpeg_files import base_image, checked_jpeg_header
+from crfnet_core.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.photo import CodeValues, Photo
+
+
+def read_photo(path: str | Path) -> Photo:
+    """Return the photograph in an image file of 8 to 16 bits per sample.
+
+    The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP and TGA. Nothing but the division by
+    the largest code happens to the values: no colour space, profile or gamma is applied, and the rows and columns stay
+    as stored (EXIF orientation is ignored). HEIC and AVIF are turned upright, because there the rotation is a property
+    of the picture. Alpha is dropped, after dividing by it where the file stores associated colour. Gray is replicated.
+    Of several frames or layers the first is read; of an HDR photograph with a gain map (Ultra HDR, HEIC) the base
+    picture: `FileMetadata.has_gain_map` says so.
+
+    Parameters
+    ----------
+    path : str or Path
+        The file; what counts is how it begins, not its suffix (except for those of camera raw and TGA).
+
+    Raises
+    ------
+    PhotoError
+        If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or no
+        encoded photograph: CMYK, scene-linear, camera raw.
+    """
+    values = read_codes(path)
+    return Photo(
+        pixels=values.pixels(),
+        bit_depth=values.bit_depth,
+        is_gray=values.is_gray,
+        path=Path(path),
+        metadata=values.metadata,
+    )
+
+
+def read_codes(path: str | Path) -> CodeValues:
+    """Return the integer samples of the file; accepts, ignores and raises as `read_photo`, which builds on it."""
+    path = Path(path)
+    try:
+        str(path).encode()  # OpenImageIO takes names as UTF-8
+        kind = file_kind(path)
+        return read_heif(path, kind) if kind in ("HEIC", "AVIF") else _read(path, kind)
+    except UnicodeEncodeError as problem:
+        raise PhotoError(f"{str(path)!a}: the name is not UTF-8; rename the file or its folder") from problem
+    except OSError as problem:
+        raise PhotoError(f"{path}: cannot be opened ({problem.strerror}); check its name and permissions") from problem
+
+
+def _read(path: Path, kind: str) -> CodeValues:
+    """Return the integer samples of a file of a known format."""
+    jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
+    hints = oiio.ImageSpec()
+    hints.attribute("oiio:UnassociatedAlpha", 1)  # colour as stored, not multiplied by alpha
+    source = oiio.ImageInput.open(str(path), hints)
+    problem = oiio.geterror()
+    if source is None:
+        raise problems.damaged(path, kind, problem)
+    try:
+        header = source.spec()
+        if kind == "JPEG" and str(header.format) == "half":
+            return _read_base_image(path)
+        bit_depth = checked_bit_depth(path, header)
+        values = source.read_image(0, 0, 0, min(header.nchannels, 4), header.format)
+        problem = source.geterror()
+    finally:
+        source.close()
+    if values is None or problem:
+        raise problems.damaged(path, kind, problem)
+    return _code_values(values, bit_depth, header, metadata_of_header(header, kind, jpeg))
+
+
+def _code_values(values: NDArray[Any], bit_depth: int, header: Any, metadata: FileMetadata) -> CodeValues:
+    """Return OpenImageIO's samples, shape (H, W, 1 to 4), as three channels and alpha on the file's own scale."""
+    if bit_depth in (10, 12):
+        values = values >> (16 - bit_depth)  # OpenImageIO widens the codes to 16 bits and repeats their top bits below
+    has_alpha = 0 < header.alpha_channel < values.shape[2]
+    color = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
+    return CodeValues(
+        codes=color,
+        alpha=values[..., header.alpha_channel] if has_alpha else None,
+        bit_depth=bit_depth,
+        is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),
+        header=header,
+        metadata=metadata,
+    )
+
+
+def _read_base_image(path: Path) -> CodeValues:
+    """Return the standard image of an Ultra HDR JPEG."""
+    base = base_image(path)
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, "base.jpg")
+        copy.write_bytes(base)
+        values = read_codes(copy)
+    return replace(values, metadata=replace(values.metadata, has_gain_map=True))

@@ -1,0 +1,64 @@
+"""Encodings with a published curve that a file calls by name: log of cinema cameras and film scans, PQ and HLG."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import replace
+
+from crfnet_core.metadata.color_tags import ColorTags
+
+#: What follows of transfer characteristics in a DPX header (SMPTE ST 268).
+DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
+
+#: Words of an ICC profile's description, in lower case -> the encoding that it names. What is more special comes first.
+PROFILE_TRANSFERS = (
+    (r"\bs-?log ?3|\bslog3", "Sony S-Log3"),
+    (r"\bs-?log ?2|\bslog2", "Sony S-Log2"),
+    (r"\bs-?log\b", "Sony S-Log"),
+    (r"\blog ?c ?4", "ARRI LogC4"),
+    (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"),
+    (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
+    (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
+    (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
+    (r"\bv-?log", "Panasonic V-Log"),
+    (r"log3g10", "RED Log3G10"),
+    (r"\bd-?log\b", "DJI D-Log"),
+    (r"\bapple ?log", "Apple Log"),
+    (r"\bf-?log ?2", "Fujifilm F-Log2"),
+    (r"\bf-?log\b", "Fujifilm F-Log"),
+    (r"\bn-?log", "Nikon N-Log"),
+    (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
+    (r"\bcineon|\bprinting density", "Cineon log"),
+    (r"\blogarithmic", "log"),
+    (r"\bpq\b|\bst ?2084", "PQ"),
+    (r"\bhlg\b|\bhybrid log", "HLG"),
+)
+
+#: libavcodec writes "Linear" into every DPX, whatever the frame is: there the tag says nothing.
+_LIBAVCODEC = "Lavc"
+
+
+def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
+    """Return colour tags with the encoding that DPX's header or the name of an ICC profile says, unless they have one.
+
+    Parameters
+    ----------
+    color : ColorTags
+        What ICC profile, CICP and EXIF say by their numbers.
+    dpx : str
+        The transfer characteristic of a DPX file.
+    profile : str
+        Description of the ICC profile.
+    """
+    if color.transfer:
+        return color
+    if dpx in DPX_TRANSFERS:
+        return replace(color, transfer=DPX_TRANSFERS[dpx], source=color.source or f'dpx:Transfer "{dpx}"')
+    text = profile.casefold()
+    name = next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")
+    return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
+
+
+def dpx_transfer(value: str, software: str) -> str:
+    """Return the transfer characteristic of a DPX file; empty where the program that wrote it always says "Linear"."""
+    return "" if value == "Linear" and software.startswith(_LIBAVCODEC) else value

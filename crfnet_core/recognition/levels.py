@@ -1,0 +1,71 @@
+"""The levels of a picture: where its darkest, its middle and its brightest samples lie."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from crfnet_core.types import Float32Array, Float64Array
+
+#: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. So few samples below
+#: black are dead pixels; a lens puts no more above white than reflections.
+BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
+
+#: Bins of the histogram: the codes of 10 bits.
+BINS = 1024
+
+#: Rows and columns are skipped until no more samples than these are left; nothing is averaged.
+MOST_SAMPLES = 3_000_000
+
+
+@dataclass(frozen=True, eq=False)
+class Levels:
+    """The distribution of all channels' brightness together.
+
+    Parameters
+    ----------
+    histogram : ndarray, float64, shape (1024,)
+        The number of samples at each code of 10 bits.
+    """
+
+    histogram: Float64Array
+
+    @classmethod
+    def of(cls, pixels: Float32Array) -> Levels:
+        """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
+        step = max(1, int(np.ceil(np.sqrt(pixels.size / MOST_SAMPLES))))
+        codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.int64)
+        return cls(np.bincount(codes.ravel(), minlength=BINS).astype(np.float64))
+
+    @classmethod
+    def joint(cls, levels: Sequence[Levels]) -> Levels:
+        """Return the levels of several pictures of one camera together; each counts the same."""
+        return cls(np.sum([each.histogram / each.histogram.sum() for each in levels], axis=0))
+
+    def quantile(self, fraction: float) -> float:
+        """Return the brightness in [0, 1] of which at most this fraction of the samples lies below."""
+        cumulative = np.cumsum(self.histogram)
+        position = int(np.searchsorted(cumulative, fraction * cumulative[-1], side="right"))
+        return min(position, BINS - 1) / (BINS - 1)
+
+    def share(self, low: float, high: float) -> float:
+        """Return the fraction of the samples from one brightness to another, both included."""
+        first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
+        return float(self.histogram[max(first, 0) : last + 1].sum() / self.histogram.sum())
+
+    @property
+    def black(self) -> float:
+        """The brightness of the darkest samples."""
+        return self.quantile(BLACK)
+
+    @property
+    def middle(self) -> float:
+        """The median brightness."""
+        return self.quantile(MIDDLE)
+
+    @property
+    def white(self) -> float:
+        """The brightness of the brightest samples."""
+        return self.quantile(WHITE)

@@ -1,0 +1,36 @@
+"""The limited range of video, stored as if it were full: black at code 16 of 255 and white at 235."""
+
+from __future__ import annotations
+
+from crfnet_core.recognition.levels import Levels
+
+#: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness.
+LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255
+
+#: How far around them samples count as theirs: three codes.
+MARGIN = 3 / 255
+
+#: The largest share of samples outside, the least share at either end, and how dense one end is beside its neighbours.
+MOST_OUTSIDE, LEAST_AT_END, PILE = 0.002, 1e-4, 1.0
+
+_BAND = 2 * MARGIN + 1 / 255
+
+
+def is_limited_range(levels: Levels) -> bool:
+    """Return whether a picture has the histogram of limited range: Eq. 39 of docs/METHOD.md.
+
+    Hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile up, as
+    clipped highlights and shadows do. A picture without clipping, or whose JPEG compression has blurred the ends, is
+    not recognized.
+    """
+    below, above = levels.share(0, LIMITED_BLACK - _BAND / 2), levels.share(LIMITED_WHITE + _BAND / 2, 1)
+    dark, bright = _end(levels, LIMITED_BLACK), _end(levels, LIMITED_WHITE)
+    inside_dark = levels.share(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
+    inside_bright = levels.share(LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
+    is_inside, is_reached = max(below, above) <= MOST_OUTSIDE, min(dark, bright) >= LEAST_AT_END
+    return is_inside and is_reached and (dark > PILE * inside_dark or bright > PILE * inside_bright)
+
+
+def _end(levels: Levels, end: float) -> float:
+    """Return the share of the samples at one end."""
+    return levels.share(end - MARGIN, end + MARGIN)

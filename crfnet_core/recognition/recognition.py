@@ -1,0 +1,86 @@
+"""What a picture is if it is no photograph as a camera renders it: its kind, in words, with what to do."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import StrEnum
+
+from crfnet_core.recognition.levels import Levels
+from crfnet_core.recognition.limited_range import is_limited_range
+from crfnet_core.recognition.log_curves import COLOR_SPACES
+from crfnet_core.recognition.log_footage import nearest_curves
+
+#: Probability of log footage above which it counts as recognized.
+RECOGNIZED = 0.5
+
+
+class Kind(StrEnum):
+    """What is recognized."""
+
+    LOG_FOOTAGE = "log footage"
+    LIMITED_RANGE = "limited range"
+
+
+@dataclass(frozen=True)
+class Recognition:
+    """What a picture is, by its pixels.
+
+    Parameters
+    ----------
+    kind : Kind
+        What it is.
+    reason : str
+        What was measured, in words.
+    advice : str
+        What to do.
+    curves : tuple of str
+        Of log footage the published curves whose levels fit, the nearest first.
+    color_space : str
+        The name of the first of them in ACES configs; empty if it has none.
+    """
+
+    kind: Kind
+    reason: str
+    advice: str
+    curves: tuple[str, ...] = ()
+    color_space: str = ""
+
+
+def recognize(levels: Levels, *, log_probability: float, makes: tuple[str, ...] = ()) -> Recognition | None:
+    """Return what a picture is, if it is limited range or log footage; else None.
+
+    Parameters
+    ----------
+    levels : Levels
+        Of all photographs of an estimate together.
+    log_probability : float
+        The probability of log footage, in which the levels have been counted: see `log_factor`.
+    makes : tuple of str
+        The makers that the files name.
+    """
+    if is_limited_range(levels):
+        return _LIMITED_RANGE
+    return _log_footage(levels, makes) if log_probability > RECOGNIZED else None
+
+
+def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
+    """Return that a picture is log footage, with the curves that fit."""
+    curves = nearest_curves(levels, makes)
+    spaces = " or ".join(f'"{COLOR_SPACES[name]}"' for name in curves if name in COLOR_SPACES)
+    return Recognition(
+        kind=Kind.LOG_FOOTAGE,
+        reason=f"log footage: black lies at code {255 * levels.black:.0f} of 255; its levels fit the curves"
+        f" {', '.join(curves)}, in this order",
+        advice="give it the colour space of the log curve that the camera was set to"
+        + (f", in ACES configs {spaces}" if spaces else ""),
+        curves=curves,
+        color_space=COLOR_SPACES.get(curves[0], ""),
+    )
+
+
+_LIMITED_RANGE = Recognition(
+    kind=Kind.LIMITED_RANGE,
+    reason="limited range stored as full: the codes end at 16 and 235 of 255, which are black and white of video",
+    advice="expand the range first, when frames are extracted with ffmpeg -i MOVIE -vf"
+    " scale=in_range=limited:out_range=full FRAME.%04d.png",
+)

@@ -1,0 +1,210 @@
+"""HEIC and AVIF: exact codes, range, orientation, metadata, gain maps, damage."""
+
+import struct
+import sys
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.image_io import read_codes, read_photo
+from crfnet_core.image_io.heif_boxes import HeifProperties, heif_properties
+from crfnet_core.metadata.color_tags import DISPLAY_P3
+from tests.helpers.colored_ramp import colored_ramp
+
+#: The largest difference in codes: lossless RGB is exact; a matrix rounds twice, and limited range has fewer codes.
+FILES = {"rgb8.heic": 0, "rgb10.heic": 0, "full8.heic": 1, "limited8.heic": 2, "limited10.heic": 2}
+
+
+@pytest.fixture
+def heif(root):
+    """The folder of test files; make_heif.py there says how they were made."""
+    return root / "tests" / "data" / "heif"
+
+
+@pytest.mark.parametrize("name", FILES)
+def test_heic_keeps_its_codes(heif, name):
+    values = read_codes(heif / name)
+    bits = 10 if "10" in name else 8
+    assert values.bit_depth == bits
+    assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
+    difference = np.abs(values.codes.astype(int) - colored_ramp(bits))
+    assert difference.max() <= FILES[name]
+
+
+def test_ten_bits_reach_the_photograph(heif):
+    photo = read_photo(heif / "rgb10.heic")
+    assert (photo.bit_depth, photo.is_gray) == (10, False)
+    np.testing.assert_array_equal(photo.pixels, (colored_ramp(10) / 1023).astype(np.float32))
+
+
+@pytest.mark.parametrize(("name", "cicp"), [("rgb8", (12, 13, 0, 1)), ("limited10", (12, 13, 9, 0))])
+def test_cicp_is_in_the_header(heif, name, cicp):
+    assert tuple(read_codes(heif / f"{name}.heic").header.getattribute("CICP")) == cicp
+
+
+def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
+    values = read_codes(heif / "phone.heic")
+    np.testing.assert_array_equal(values.codes, np.rot90(colored_ramp(8), -1))
+    assert values.header.get_int_attribute("Orientation") == 1
+    assert (values.header.width, values.header.height) == (48, 64)
+
+
+def test_exif_and_icc_have_the_names_that_a_jpeg_gives_them(heif):
+    values = read_codes(heif / "phone.heic")
+    assert (values.metadata.make, values.metadata.model) == ("Apple", "iPhone 15")
+    assert values.metadata.file_format == "HEIC"
+    assert values.metadata.profile == "sRGB built-in"
+    profile = bytes(values.header.getattribute("ICCProfile"))
+    assert profile[36:40] == b"acsp"
+    assert len(profile) == struct.unpack(">I", profile[:4])[0]
+
+
+@pytest.mark.parametrize(("code", "name"), [(16, "PQ"), (18, "HLG"), (8, "linear"), (13, "")])
+def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
+    content = (heif / "rgb10.heic").read_bytes()
+    assert content.count(b"nclx\x00\x0c\x00\x0d") == 1
+    (tmp_path / "a.heic").write_bytes(
+        content.replace(b"nclx\x00\x0c\x00\x0d", b"nclx\x00\x0c" + struct.pack(">H", code))
+    )
+    color = read_codes(tmp_path / "a.heic").metadata.color
+    assert (color.transfer, color.source) == (name, "CICP")
+    assert color.primaries == DISPLAY_P3
+
+
+def with_gain_map(content, mark):
+    """Return a HEIC with one more box in front of its first, which says that there is a gain map."""
+    if mark == b"tmap":
+        size = struct.unpack(">I", content[:4])[0]
+        moved = size + 4
+        return _shifted(struct.pack(">I", moved) + content[4:size] + mark + content[size:], 4)
+    at = content.index(b"ipco") - 4
+    box = struct.pack(">I", 12 + len(mark) + 1) + b"auxC" + bytes(4) + mark + b"\0"
+    content = content[:at] + _grown(content[at:], b"ipco", len(box), box)
+    for name in (b"iprp", b"meta"):
+        at = content.index(name) - 4
+        content = (
+            content[:at]
+            + struct.pack(">I", struct.unpack(">I", content[at : at + 4])[0] + len(box))
+            + content[at + 4 :]
+        )
+    return _shifted(content, len(box))
+
+
+def _grown(content, name, by, box):
+    """Return a file's end that begins with a box, with another box at the end of this one."""
+    size = struct.unpack(">I", content[:4])[0]
+    assert content[4:8] == name
+    return struct.pack(">I", size + by) + content[4:size] + box + content[size:]
+
+
+def _shifted(content, by):
+    """Return the file with the offsets of its items moved: one extent each, `iloc` of version 0 or 1, of 4 bytes."""
+    at = content.index(b"iloc")
+    version, sizes = content[at + 4], struct.unpack(">H", content[at + 8 : at + 10])[0]
+    assert (version, sizes >> 8) in ((0, 0x44), (1, 0x44))
+    base, fields = sizes >> 4 & 15, bytearray(content)
+    count, position = struct.unpack(">H", content[at + 10 : at + 12])[0], at + 12
+    for _ in range(count):
+        is_in_file = version == 0 or struct.unpack(">H", content[position + 2 : position + 4])[0] & 15 == 0
+        extent = position + (4 if version == 0 else 6) + base + 2
+        if is_in_file:
+            struct.pack_into(">I", fields, extent, struct.unpack(">I", content[extent : extent + 4])[0] + by)
+        position = extent + 8
+    return bytes(fields)
+
+
+@pytest.mark.parametrize("mark", [b"tmap", b"urn:com:apple:photo:2020:aux:hdrgainmap"])
+def test_a_gain_map_is_said_and_the_base_picture_read(heif, tmp_path, mark):
+    content = (heif / "rgb8.heic").read_bytes()
+    assert not read_photo(heif / "rgb8.heic").metadata.has_gain_map
+    (tmp_path / "a.heic").write_bytes(with_gain_map(content, mark))
+    values = read_codes(tmp_path / "a.heic")
+    assert values.metadata.has_gain_map
+    np.testing.assert_array_equal(values.codes, colored_ramp(8))
+
+
+@pytest.mark.parametrize("limits", ["full", "limited"])
+def test_avif_of_8_bits_is_read_by_pillow(tmp_path, limits):
+    image = pytest.importorskip("PIL.Image")
+    codes = colored_ramp(8)
+    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", range=limits)
+    values = read_codes(tmp_path / "a.avif")
+    assert (values.bit_depth, values.metadata.file_format) == (8, "AVIF")
+    assert np.abs(values.codes.astype(int) - codes).max() <= 3
+    assert values.header.getattribute("CICP")[3] == (limits == "full")
+
+
+def test_avif_is_turned_upright(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    codes, tags = colored_ramp(8), image.Exif()
+    tags[0x0112], tags[0x010F] = 6, "Maker"
+    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", exif=tags.tobytes())
+    values = read_codes(tmp_path / "a.avif")
+    assert np.abs(values.codes.astype(int) - np.rot90(codes, -1)).max() <= 3
+    assert (values.metadata.make, values.header.get_int_attribute("Orientation")) == ("Maker", 1)
+
+
+def test_avif_of_10_bits_keeps_them(heif):
+    pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
+    values = read_codes(heif / "limited10.avif")
+    assert values.bit_depth == 10
+    assert np.abs(values.codes.astype(int) - colored_ramp(10)).max() <= 2
+
+
+def test_avif_of_10_bits_says_what_to_install(heif, monkeypatch):
+    monkeypatch.setitem(sys.modules, "av", None)
+    with pytest.raises(PhotoError, match="AVIF of 10 bits needs PyAV: pip install 'av'"):
+        read_photo(heif / "limited10.avif")
+
+
+def test_heic_says_what_to_install(heif, monkeypatch):
+    monkeypatch.setitem(sys.modules, "pi_heif", None)
+    with pytest.raises(PhotoError, match="HEIC needs the package pi_heif; pip install 'pi-heif' 'pillow'"):
+        read_photo(heif / "rgb8.heic")
+
+
+@pytest.mark.parametrize("name", ["rgb8.heic", "limited10.avif"])
+@pytest.mark.parametrize("fraction", [0.02, 0.2, 0.6, 0.95])
+def test_cut_files_are_refused(heif, tmp_path, name, fraction):
+    if name.endswith("avif"):
+        pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
+    content = (heif / name).read_bytes()
+    path = tmp_path / name
+    path.write_bytes(content[: int(len(content) * fraction)])
+    with pytest.raises(PhotoError, match="damaged or cut short") as caught:
+        read_photo(path)
+    assert "\n" not in str(caught.value)
+
+
+def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_path):
+    rng, content = np.random.default_rng(0), np.frombuffer((heif / "phone.heic").read_bytes(), np.uint8)
+    path, refusals = tmp_path / "a.heic", []
+    for _ in range(60):
+        damaged = content.copy()
+        damaged[rng.integers(8, len(content), 6)] = rng.integers(0, 256, 6)
+        path.write_bytes(damaged.tobytes())
+        try:
+            read_codes(path)
+        except PhotoError as problem:
+            refusals.append(str(problem))
+    assert 0 < len(refusals) < 60
+    assert not any("\n" in message for message in refusals)
+
+
+def test_a_huge_size_is_refused_before_decoding(heif, tmp_path):
+    content = (heif / "rgb8.heic").read_bytes()
+    assert content.count(struct.pack(">II", 64, 64)) == 1, "x265 fills the height of 48 up to 64"
+    (tmp_path / "a.heic").write_bytes(content.replace(struct.pack(">II", 64, 64), struct.pack(">II", 50000, 50000)))
+    with pytest.raises(PhotoError, match="claims 50000 x 50000 pixels"):
+        read_photo(tmp_path / "a.heic")
+
+
+def test_boxes_of_a_file(heif):
+    assert heif_properties((heif / "limited10.heic").read_bytes()) == HeifProperties(64, 64, 10, (12, 13, 9, 0), False)
+    assert heif_properties((heif / "limited10.avif").read_bytes()) == HeifProperties(64, 48, 10, (12, 13, 1, 0), False)
+
+
+@pytest.mark.parametrize("content", [b"", b"abc", bytes(64), b"\0\0\0\x08meta", b"\xff" * 80])
+def test_boxes_that_are_none_say_nothing(content):
+    assert heif_properties(content) == HeifProperties()

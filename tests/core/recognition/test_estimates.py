@@ -1,0 +1,80 @@
+"""What is no photograph gets no answer that looks like one: each of these was "usable" before."""
+
+from pathlib import Path
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from crfnet_core import Photo, ResponseNetwork, estimate_response, read_photo
+from crfnet_core.errors import PhotoError
+from crfnet_core.posterior import Family, Verdict
+from crfnet_core.recognition import Kind
+from tests.helpers.footage import log_picture, ordinary_picture, quantized
+from tests.helpers.images import write_image
+
+
+@pytest.fixture(scope="module")
+def network():
+    return ResponseNetwork.load()
+
+
+def estimated(pixels, network, name="picture.png"):
+    photo = Photo(pixels=pixels, bit_depth=8, is_gray=False, path=Path(name))
+    return estimate_response(photo, network=network, windows=4)
+
+
+@pytest.mark.parametrize("name", ["ARRI LogC3", "Canon Log", "Panasonic V-Log", "Sony S-Log3"])
+def test_log_footage_is_not_to_be_trusted(network, name):
+    found = estimated(log_picture(name), network)
+    assert found.verdict is Verdict.DO_NOT_TRUST
+    assert found.recognition.kind is Kind.LOG_FOOTAGE
+    assert found.families[Family.LOG] > 0.5
+    assert found.warnings[0] == found.recognition.reason
+
+
+def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
+    pixels = read_photo(plate).pixels
+    limited = quantized((16 + 219 * np.clip(pixels.astype(float) * 1.05 - 0.02, 0, 1)) / 255)
+    found = estimated(limited, network)
+    assert (found.verdict, found.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.LIMITED_RANGE)
+
+
+def test_ordinary_pictures_are_left_alone(network, plate):
+    for pixels in (read_photo(plate).pixels, ordinary_picture()):
+        found = estimated(pixels, network)
+        assert found.recognition is None
+        assert found.families[Family.LOG] < 0.5
+
+
+@pytest.mark.parametrize(
+    ("name", "attributes", "says"),
+    [
+        (
+            "a.dpx",
+            {"dpx__Transfer": "Printing density"},
+            'encoded as Cineon log: so says its metadata (dpx:Transfer "Printing',
+        ),
+        ("a.dpx", {"dpx__Transfer": "Logarithmic"}, 'encoded as log: so says its metadata (dpx:Transfer "Logarithmic"'),
+        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "encoded as PQ: so says its metadata (CICP)"),
+        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "encoded as HLG: so says its metadata (CICP)"),
+    ],
+)
+def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored(
+    tmp_path, fixed_model, name, attributes, says
+):
+    codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
+    photo, network = read_photo(write_image(tmp_path / name, codes, **attributes)), ResponseNetwork.load(fixed_model)
+    with pytest.raises(PhotoError) as caught:
+        estimate_response(photo, network=network)
+    assert says in str(caught.value)
+    assert "\n" not in str(caught.value)
+    assert estimate_response(photo, network=network, use_metadata=False).photos == (name,)
+
+
+def test_the_linear_that_ffmpeg_writes_into_every_dpx_is_not_believed(tmp_path):
+    codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
+    tags = {"dpx__Transfer": "Linear"}
+    ffmpeg = read_photo(write_image(tmp_path / "a.dpx", codes, Software="Lavc61.3.100", **tags))
+    other = read_photo(write_image(tmp_path / "b.dpx", codes, Software="Nuke", **tags))
+    assert (ffmpeg.metadata.profile, other.metadata.profile) == ("", "Linear")

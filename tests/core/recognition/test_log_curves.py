@@ -1,0 +1,81 @@
+"""The published curves, against the makers' tables, colour-science and OpenColorIO's own."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.recognition import COLOR_SPACES, log_curves
+
+#: Published codes of 10 bits (black, 18 % gray, 90 % white), from the makers' tables.
+PUBLISHED = {
+    "ARRI LogC3": (95, 400, 572),
+    "Canon Log": (128, 351, 614),
+    "Canon Log 2": (95, 408, 575),
+    "Canon Log 3": (128, 351, 577),
+    "DJI D-Log": (95, 408, 586),
+    "Fujifilm F-Log": (95, 470, 705),
+    "Fujifilm F-Log2": (95, 400, 570),
+    "Nikon N-Log": (127, 372, 603),
+    "Panasonic V-Log": (128, 433, 602),
+    "Sony S-Log2": (90, 347, 582),
+    "Sony S-Log3": (95, 420, 598),
+}
+
+#: The names of the curves in colour-science, which has no Blackmagic Film.
+COLOUR_SCIENCE = {
+    "ARRI LogC3": "ARRI LogC3",
+    "ARRI LogC4": "ARRI LogC4",
+    "Apple Log": "Apple Log Profile",
+    "Canon Log": "Canon Log",
+    "Canon Log 2": "Canon Log 2",
+    "Canon Log 3": "Canon Log 3",
+    "DJI D-Log": "D-Log",
+    "Fujifilm F-Log": "F-Log",
+    "Fujifilm F-Log2": "F-Log2",
+    "Nikon N-Log": "N-Log",
+    "Panasonic V-Log": "V-Log",
+    "RED Log3G10": "Log3G10",
+    "Sony S-Log2": "S-Log2",
+    "Sony S-Log3": "S-Log3",
+}
+
+REFLECTANCE = np.concatenate([[0, 0.001, 0.005, 0.012, 0.18, 0.327, 0.329, 0.9, 1], np.geomspace(2, 50, 9)])
+
+
+@pytest.mark.parametrize("name", PUBLISHED)
+def test_black_gray_and_white_have_their_published_codes(name):
+    assert np.rint(log_curves()[name]([0, 0.18, 0.9]) * 1023).tolist() == pytest.approx(PUBLISHED[name], abs=1)
+
+
+def test_log3g10_puts_gray_at_a_third_and_ten_stops_more_at_the_end():
+    np.testing.assert_allclose(log_curves()["RED Log3G10"]([0.18, 0.18 * 2**10]), [1 / 3, 1], atol=1e-4)
+
+
+@pytest.mark.parametrize("name", COLOUR_SCIENCE)
+def test_the_curve_is_that_of_colour_science(name):
+    colour = pytest.importorskip("colour", reason="colour-science comes with the test extra")
+    expected = colour.log_encoding(REFLECTANCE, function=COLOUR_SCIENCE[name])
+    np.testing.assert_allclose(log_curves()[name](REFLECTANCE), expected, atol=2e-5)
+
+
+def test_every_curve_has_an_independent_judge():
+    assert set(log_curves()) - set(COLOUR_SCIENCE) == {"Blackmagic Film Gen 5"}
+
+
+@pytest.mark.parametrize("name", COLOR_SPACES)
+def test_the_named_color_space_of_the_aces_config_undoes_the_curve(name):
+    """OpenColorIO turns codes of gray back into reflectance: its matrices keep gray, or scale it by the white point."""
+    ocio = pytest.importorskip("PyOpenColorIO")
+    config = ocio.Config.CreateFromFile("ocio://studio-config-latest")
+    to_linear = config.getProcessor(COLOR_SPACES[name], "ACES2065-1").getDefaultCPUProcessor()
+    reflectance = np.array([0.02, 0.18, 0.9, 4.0])
+    codes = log_curves()[name](reflectance)
+    found = np.array([to_linear.applyRGB([code] * 3)[1] for code in codes])
+    np.testing.assert_allclose(found / found[1], reflectance / 0.18, rtol=2e-3)
+    assert found[1] == pytest.approx(0.18, rel=0.02)
+
+
+@pytest.mark.parametrize("name", log_curves())
+def test_the_curve_rises_from_a_lifted_black(name):
+    codes = log_curves()[name](np.linspace(-0.005, 60, 20_000))
+    assert (np.diff(codes) > 0).all()
+    assert 0.08 < log_curves()[name](0.0) < 0.16
