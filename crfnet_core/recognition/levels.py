@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array
 
-#: Fractions of the samples below which black, the middle and white lie: Eq. 37 of docs/METHOD.md. So few samples below
+#: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. So few samples below
 #: black are dead pixels; a lens puts no more above white than reflections.
 BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 

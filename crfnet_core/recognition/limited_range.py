@@ -17,7 +17,7 @@ _BAND = 2 * MARGIN + 1 / 255
 
 
 def is_limited_range(levels: Levels) -> bool:
-    """Return whether a picture has the histogram of limited range: Eq. 38 of docs/METHOD.md.
+    """Return whether a picture has the histogram of limited range: Eq. 39 of docs/METHOD.md.
 
     Hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile up, as
     clipped highlights and shadows do. A picture without clipping, or whose JPEG compression has blurred the ends, is

@@ -28,7 +28,7 @@ MOST_NAMED = 4
 
 
 def log_factor(levels: Levels) -> float:
-    """Return the likelihood of the levels of log footage, relative to that of ordinary photographs: Eq. 39.
+    """Return the likelihood of the levels of log footage, relative to that of ordinary photographs: Eq. 40.
 
     1 if black is not lifted: footage whose legal range was stretched when it was decoded has such a black, too.
     """
@@ -38,7 +38,7 @@ def log_factor(levels: Levels) -> float:
 
 
 def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the names of up to four published curves that explain the levels best, the best first: Eq. 40.
+    """Return the names of up to four published curves that explain the levels best, the best first: Eq. 41.
 
     Only where black and the middle lie is compared, so curves of nearly the same black and gray cannot be told apart.
 

@@ -76,6 +76,7 @@ def test_what_the_api_gives_is_what_the_command_writes(plate, fixed_model, writt
     file = copy.deepcopy(written[0])
     for photo in file["photographs"]:
         assert {photo.pop(name) for name in ("width", "height", "bit_depth")} == {672, 378, 8}
+        assert photo.pop("has_gain_map") is False
     for name in ("primaries", "exposure", "output_space", "color_space", "files"):
         del file[name]
     assert api == file

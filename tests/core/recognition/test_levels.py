@@ -1,4 +1,4 @@
-"""Levels: Eq. 37."""
+"""Levels: Eq. 38."""
 
 import numpy as np
 import pytest
