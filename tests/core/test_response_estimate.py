@@ -15,6 +15,7 @@ from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metadata.devices import Device
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Posterior, ResponseBank, Verdict
+from crfnet_core.recognition import Kind, Recognition
 from crfnet_core.response import ResponseCurve
 from crfnet_core.response_estimate import SCHEMA_VERSION, ResponseEstimate
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
@@ -47,6 +48,7 @@ CHANGES = {
     "warnings": (),
     "model": "other",
     "photos": ("a.jpg",),
+    "recognition": Recognition(Kind.LIMITED_RANGE, "reason", "advice"),
 }
 
 

@@ -58,7 +58,18 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
             "family",
             "families",
         ),
-        *("prior", "metadata", "warnings", "model", "weights", "windows", "response", "color_space", "files"),
+        *(
+            "prior",
+            "metadata",
+            "recognition",
+            "warnings",
+            "model",
+            "weights",
+            "windows",
+            "response",
+            "color_space",
+            "files",
+        ),
         *("primaries", "exposure", "output_space"),
     }
     assert found["photographs"] == [{"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8}]
