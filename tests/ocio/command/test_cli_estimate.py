@@ -72,7 +72,9 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
         ),
         *("primaries", "exposure", "output_space"),
     }
-    assert found["photographs"] == [{"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8}]
+    assert found["photographs"] == [
+        {"name": "plate.jpg", "width": 672, "height": 378, "bit_depth": 8, "has_gain_map": False}
+    ]
     assert len(found["response"]["brightness"]) == 1024
     assert len(found["windows"]) == 10
     assert found["files"]["sheet"] is None

@@ -159,9 +159,8 @@ def test_an_estimate_of_a_movie(crfnet, fixed_model, movie, tmp_path):
     assert set(listed(tmp_path / "look")) == names
     found = json.loads((tmp_path / "look" / "clip.json").read_text())
     assert found["movies"][0].startswith("clip.mp4: H.264")
-    assert found["photographs"] == [
-        {"name": "clip.mp4 frame 1", "width": 320, "height": 240, "bit_depth": 8, "has_gain_map": False}
-    ]
+    first = {"name": "clip.mp4 frame 1", "width": 320, "height": 240, "bit_depth": 8, "has_gain_map": False}
+    assert found["photographs"][0] == first
     assert read_exr(tmp_path / "look" / "clip_linear.exr")[0].shape == (240, 320, 3)
 
 
