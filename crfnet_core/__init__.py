@@ -4,7 +4,9 @@ estimate             the method on one screen: photographs in, response and unce
 response_estimate    what comes out, and the same as a document for JSON
 calibration          the response measured from an exposure stack instead
 photo, image_io      a photograph's code values, of a file or an array, and the one reader of image files
-metadata             what a file says of how its photograph was made
+metadata             what a file says of how its photograph was made, and of its primaries
+colorimetry          from chromaticities to matrices
+recognition          log footage, limited range and tags: what is no photograph of a camera
 windows              the windows of a photograph that are analysed
 statistics           what is counted in a window
 network              the trained network: its folder, its inputs and predictions, pooling, uncertainty
