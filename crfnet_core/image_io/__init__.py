@@ -13,7 +13,16 @@ problems         the errors of files that cannot be decoded
 from crfnet_core.image_io.camera_raw import RAW_SUFFIXES
 from crfnet_core.image_io.file_kinds import LINEAR_SIGNATURES, SIGNATURES
 from crfnet_core.image_io.header_checks import MAX_PIXELS
-from crfnet_core.image_io.problems import first_line
+from crfnet_core.image_io.problems import first_line, oiio_message
 from crfnet_core.image_io.reading import read_codes, read_photo
 
-__all__ = ["LINEAR_SIGNATURES", "MAX_PIXELS", "RAW_SUFFIXES", "SIGNATURES", "first_line", "read_codes", "read_photo"]
+__all__ = [
+    "LINEAR_SIGNATURES",
+    "MAX_PIXELS",
+    "RAW_SUFFIXES",
+    "SIGNATURES",
+    "first_line",
+    "oiio_message",
+    "read_codes",
+    "read_photo",
+]

@@ -200,7 +200,7 @@ def _segment_attributes(picture: _Picture) -> list[Any]:
         carrier = Path(folder, "carrier.jpg")
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
-        oiio.geterror()
+        problems.oiio_message()
         attributes = list(source.spec().extra_attribs) if source else []
         if source:
             source.close()

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
+
+import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
 
@@ -10,6 +13,18 @@ from crfnet_core.errors import PhotoError
 def damaged(path: Path, kind: str, problem: str) -> PhotoError:
     """Return the error of a file that cannot be decoded, with the first line of the decoder's message."""
     return PhotoError(f"{path}: this {kind} file is damaged or cut short ({first_line(problem)}); copy it again")
+
+
+def oiio_message(source: Any = oiio) -> str:
+    """Return OpenImageIO's last message, of an open file or else of the library, without control characters.
+
+    Messages may quote bytes of a damaged file that are no text, at which the Python binding raises.
+    """
+    try:
+        problem = str(source.geterror())
+    except UnicodeDecodeError as failure:
+        problem = failure.object.decode(errors="replace")
+    return "".join(character if character.isprintable() or character == "\n" else "?" for character in problem)
 
 
 def first_line(problem: str) -> str:

@@ -71,7 +71,7 @@ def _read(path: Path, kind: str) -> CodeValues:
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # colour as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
-    problem = oiio.geterror()
+    problem = problems.oiio_message()
     if source is None:
         raise problems.damaged(path, kind, problem)
     try:
@@ -80,7 +80,7 @@ def _read(path: Path, kind: str) -> CodeValues:
             return _read_base_image(path)
         bit_depth = checked_bit_depth(path, header)
         values = source.read_image(0, 0, 0, min(header.nchannels, 4), header.format)
-        problem = source.geterror()
+        problem = problems.oiio_message(source)
     finally:
         source.close()
     if values is None or problem:

@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
-from crfnet_core.image_io import first_line
+from crfnet_core.image_io import first_line, oiio_message
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
 KEPT_METADATA = (
@@ -113,11 +113,11 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
         If OpenImageIO cannot write it, for example because the disk is full.
     """
     output = oiio.ImageOutput.create(str(path))
-    problem = oiio.geterror()
+    problem = oiio_message()
     if output is None:
         raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the OpenImageIO installation")
     is_written = output.open(str(path), header) and output.write_image(pixels)
     is_closed = output.close()
-    problem = output.geterror()
+    problem = oiio_message(output)
     if problem or not (is_written and is_closed):
         raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the disk")

@@ -12,7 +12,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
-from crfnet_core.image_io import MAX_PIXELS, first_line, read_codes
+from crfnet_core.image_io import MAX_PIXELS, first_line, oiio_message, read_codes
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.types import Float32Array
@@ -98,14 +98,14 @@ def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
 def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
     """Return the encoded values in an OpenEXR file, divided by its alpha."""
     source = oiio.ImageInput.open(str(path))
-    problem = oiio.geterror()
+    problem = oiio_message()
     if source is None:
         raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
     try:
         header = source.spec()
         _check_encoded_exr(path, header, is_encoded=is_encoded)
         values = source.read_image(0, 0, 0, header.nchannels, "float")
-        problem = source.geterror()
+        problem = oiio_message(source)
     finally:
         source.close()
     if values is None or problem:

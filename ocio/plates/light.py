@@ -10,6 +10,7 @@ from typing import Any
 import OpenImageIO as oiio
 
 from crfnet_core.errors import PlateError
+from crfnet_core.image_io import oiio_message
 from crfnet_core.metadata.color_tags import ColorTags
 from ocio.luts.exposure import anchored_exposure
 from ocio.luts.rgb_lut import AnyLut
@@ -109,7 +110,7 @@ def _attributes(path: Path) -> dict[str, Any]:
     """Return what the header of an OpenEXR file holds, by name; nothing if it cannot be read."""
     source = oiio.ImageInput.open(str(path))
     if source is None:
-        oiio.geterror()
+        oiio_message()
         return {}
     try:
         return {attribute.name: attribute.value for attribute in source.spec().extra_attribs}

@@ -11,6 +11,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, CRFNetError, LutError
+from crfnet_core.image_io import oiio_message
 from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 from ocio.configs.files import load_config, plate_exposure
 from ocio.configs.plate_color_space import PlateColorSpace
@@ -141,7 +142,7 @@ def _interop_id(path: Path) -> str:
     """Return the colour space that an image's header states, by its name in the Color Interop Forum's list."""
     image = oiio.ImageInput.open(str(path))
     if image is None:
-        oiio.geterror()
+        oiio_message()
         return ""
     name = image.spec().get_string_attribute("colorInteropID")
     image.close()

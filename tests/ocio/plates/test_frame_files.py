@@ -87,3 +87,12 @@ def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):
     pixels = np.full((4, 4, 3), 0.5, np.float32)
     path = write_image(tmp_path / "a.exr", pixels, colorInteropID="srgb_p3d65_scene")
     assert read_frame(path).color == ColorTags(DISPLAY_P3, source="colorInteropID")
+
+
+def test_a_damaged_exr_with_bytes_that_are_no_text_is_refused_in_one_printable_line(tmp_path):
+    path = write_exr(tmp_path / "a.exr", np.zeros((4, 4, 3)), ("R", "G", "B"))
+    path.write_bytes(path.read_bytes().replace(b"channels\0chlist\0", b"channels\0chl\xa7\x1bt\0", 1))
+    with pytest.raises(PlateError) as caught:
+        read_frame(path, is_encoded=True)
+    assert str(caught.value).startswith(f"{path}: cannot be read (")
+    assert str(caught.value).isprintable()
