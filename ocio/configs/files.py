@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import os
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
 from pathlib import Path
 
 import numpy as np
@@ -20,6 +22,10 @@ TOLERANCE = 1e-5
 
 #: Brightnesses at which a config and its LUT are compared.
 CHECKED_VALUES = 4096
+
+
+#: Variables by which OpenColorIO shows a part of every config only.
+HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES")
 
 
 def load_config(path: str | Path) -> OCIO.Config:
@@ -74,7 +80,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
     """
     OCIO.ClearAllCaches()
     try:
-        with atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
+        with _whole_configs(), atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
             temporary.write_text(config.serialize(), encoding="utf-8", newline="\n")
             loaded = OCIO.Config.CreateFromFile(str(temporary))
             loaded.validate()
@@ -82,6 +88,16 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
                 _check_conversion(loaded, name, lut)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError(f"{path}: not written, OpenColorIO refuses it ({one_line(problem)})") from problem
+
+
+@contextmanager
+def _whole_configs() -> Iterator[None]:
+    """Lift the variables by which a studio hides displays, views and spaces: configs without these are not valid."""
+    hidden = {name: os.environ.pop(name) for name in HIDING_VARIABLES if name in os.environ}
+    try:
+        yield
+    finally:
+        os.environ.update(hidden)
 
 
 def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:

@@ -7,11 +7,13 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 import pytest
 
+from crfnet_core.errors import ConfigError
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
 from ocio.commands import printing
 from ocio.luts.spi1d import read_spi1d
+from ocio.pipeline import folders
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 
@@ -209,6 +211,15 @@ def test_a_photograph_is_never_replaced(crfnet, plate, fixed_model, tmp_path):
     assert done.code == BAD_INPUT
     assert "is one of the photographs" in done.err
     assert tree(tmp_path) == before
+
+
+def test_a_refused_config_leaves_nothing(estimate, plate, tmp_path, monkeypatch):
+    def refuse(*arguments, **options):
+        raise ConfigError("refused")
+
+    monkeypatch.setattr(folders, "write_config", refuse)
+    assert estimate(plate).code == BAD_INPUT
+    assert not (tmp_path / "out").exists()
 
 
 def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
