@@ -18,6 +18,9 @@ from ocio.defaults import CONFIG_NAME
 from ocio.luts.files import WRITERS
 from ocio.options import OutputOptions
 
+#: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
+LONGEST_STEM = 200
+
 
 @dataclass(frozen=True)
 class OutputFiles:
@@ -137,8 +140,12 @@ class OutputFiles:
 
 
 def plain_stem(photo: Path) -> str:
-    """Return a file's name without its suffix, and with `_` for characters that configs and patterns interpret."""
-    return re.sub(r"[$%#*?]", "_", photo.stem)
+    """Return a file's name without its suffix, with `_` for what configs, patterns or other systems interpret.
+
+    It is cut to `LONGEST_STEM` bytes, so that every file named after it can be written.
+    """
+    stem = re.sub(r"[$%#*?\\:]", "_", photo.stem)
+    return stem.encode(errors="surrogateescape")[:LONGEST_STEM].decode(errors="ignore")
 
 
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:

@@ -175,7 +175,18 @@ def test_each_photograph_makes_its_own(estimate, plate, tmp_path):
 
 @pytest.mark.parametrize(
     "name",
-    ["two words.jpg", "été 写真.jpg", "a$b%20#1.jpg", "-x.jpg", "no.dots.in.jpg", "q'u\"o.jpg", "[1,  2].jpg"],
+    [
+        "a\\b.jpg",
+        "a:b.jpg",
+        f"{'写' * 80}.jpg",
+        "two words.jpg",
+        "été 写真.jpg",
+        "a$b%20#1.jpg",
+        "-x.jpg",
+        "no.dots.in.jpg",
+        "q'u\"o.jpg",
+        "[1,  2].jpg",
+    ],
 )
 def test_any_file_name_works(estimate, plate, tmp_path, name):
     photo = shutil.copy(plate, tmp_path / name)
