@@ -10,11 +10,11 @@ from typing import Any
 
 
 def start_interruptible(command: Sequence[str | Path], **options: Any) -> subprocess.Popen[Any]:
-    """Start `command` with the default handler of SIGINT; POSIX only.
+    """Start `command` with the default handlers of the signals that end a run; POSIX only.
 
-    A process inherits an ignored SIGINT from the one that started it, and a shell ignores SIGINT in the jobs that it
-    runs in the background, as in ``nohup make test &``. Python then installs no handler of its own, and a test that
-    sends SIGINT would wait for ever.
+    A process inherits ignored signals from the one that started it: a shell ignores SIGINT in the jobs that it runs in
+    the background, and nohup ignores SIGHUP, as in ``nohup make test &``. The command then leaves them ignored, and a
+    test that sends one would wait for ever.
 
     Parameters
     ----------
@@ -23,9 +23,10 @@ def start_interruptible(command: Sequence[str | Path], **options: Any) -> subpro
     **options
         Passed to `subprocess.Popen`.
     """
-    return subprocess.Popen(command, preexec_fn=_restore_interrupt, **options)
+    return subprocess.Popen(command, preexec_fn=_restore_signals, **options)
 
 
-def _restore_interrupt() -> None:
-    """Let SIGINT do in this process what it does by default."""
-    signal.signal(signal.SIGINT, signal.SIG_DFL)
+def _restore_signals() -> None:
+    """Let the signals do in this process what they do by default."""
+    for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+        signal.signal(number, signal.SIG_DFL)
