@@ -44,11 +44,11 @@ def frames_of(plate: Plate) -> FrameSequence:
     return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
 
 
-def primaries_of(plate: Plate, sequence: FrameSequence) -> Primaries:
+def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
     """Return the primaries that a plate is encoded in, as `bake_plates` takes them.
 
     They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
-    primaries can express, and for what Blender decodes.
+    primaries can express, and for what Blender decodes. For `is_encoded` see `encoding_check.is_said_encoded`.
 
     Raises
     ------
@@ -59,7 +59,7 @@ def primaries_of(plate: Plate, sequence: FrameSequence) -> Primaries:
         return REC709
     with frame_reader(plate) as read:
         (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1]), None).paths
-        return plate_primaries(read_frame(path).color).primaries or REC709
+        return plate_primaries(read_frame(path, is_encoded=is_encoded).color).primaries or REC709
 
 
 def sample(sequence: FrameSequence) -> FrameSequence:

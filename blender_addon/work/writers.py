@@ -19,6 +19,7 @@ from ocio.pipeline import all_or_none, bake_plates, export_luts
 from ocio.plates.frames import FramePattern, FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
+from .encoding_check import is_said_encoded
 from .errors import AddonError
 from .frame_files import FrameReader, counted_from, frame_reader
 from .job import ApplyMode, Job, Plate
@@ -96,7 +97,9 @@ def write(
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
     """Write the linear plate, or all its frames; a cancelled or failed job leaves no new file."""
     targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
-    options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite)
+    options = PlateOptions(
+        depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
+    )
     with frame_reader(job.plate) as read:
         if job.plate.decoder is None:
             bake_plates(read(sequence, progress), targets, lut, options, progress=progress)

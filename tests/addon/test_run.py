@@ -16,6 +16,7 @@ from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Verdict
 from tests.helpers.color_profiles import matrix_profile, write_tagged
+from tests.helpers.footage import limited_range_picture
 from tests.helpers.images import write_image
 
 
@@ -181,6 +182,16 @@ def test_what_is_not_to_be_trusted_is_applied_at_the_users_word_only(make_job, u
     assert not (tmp_path / "out").exists()
     insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
     assert (insisted.is_withheld, insisted.is_applied) == (False, True)
+
+
+def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(make_job, tmp_path):
+    job = make_job(write_image(tmp_path / "limited.png", limited_range_picture()), mode=ApplyMode.NODES)
+    completed = run(job)
+    assert completed.estimate.recognition.kind == "limited range"
+    assert completed.is_withheld
+    assert completed.lines[0].startswith("The estimate is not to be trusted: expand the range first")
+    insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
+    assert insisted.is_applied
 
 
 def test_several_photographs_are_estimated_together(make_job, plate_file, codes, tmp_path, estimate):
