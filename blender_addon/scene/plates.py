@@ -17,6 +17,9 @@ from .packed_images import DECODED_SUFFIXES, name_and_content
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
 
+#: Suffixes of photographs that the estimator reads and Blender does not, or only some versions of it.
+HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
+
 #: What the panel of each editor asks for while there is no plate.
 OPEN_A_PLATE = {
     "IMAGE_EDITOR": "Open a photograph, sequence or movie first",
@@ -156,6 +159,16 @@ def obstacle(datablock: Datablock) -> str:
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
     return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
+
+
+def is_shown(datablock: Datablock) -> bool:
+    """Return whether Blender shows an image or clip: HEIC it does not, and AVIF only some versions do."""
+    return not is_heif(datablock) or all(datablock.size)
+
+
+def is_heif(datablock: Datablock) -> bool:
+    """Return whether an image is a HEIC or AVIF file."""
+    return datablock.filepath.lower().endswith(HEIF_SUFFIXES)
 
 
 #: Why images of some sources have no response to estimate.

@@ -170,7 +170,8 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     Raises
     ------
     AddonError
-        If the color space of the plate or a photograph is logarithmic or linear and the job does not force the estimate.
+        If the colour space of the plate or a photograph is logarithmic or linear and the job does not force the
+        estimate.
     CRFNetError
         If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
         not force the estimate.

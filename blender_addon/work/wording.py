@@ -26,7 +26,7 @@ _BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
 #: What messages say of the command's options and of Python's packages, and what there is in Blender instead.
 _IN_BLENDER = {
     "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
-    "add --encoded": "choose for it a color space in Blender that is not linear, or tick Estimate Anyway under Advanced",
+    "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
     ", or say with --primaries which all have": "",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
     "pip install 'av', or save it": "save it",

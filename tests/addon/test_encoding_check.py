@@ -138,7 +138,5 @@ def test_an_exr_of_which_nothing_is_said_is_refused_with_what_to_do_in_blender(m
     with pytest.raises(PlateError) as problem:
         run(loaded(make_job, untagged, color_space="lin_rec709_scene"))
     told = american(str(problem.value))
-    assert told.endswith(
-        "choose for it a color space in Blender that is not linear, or tick Estimate Anyway under Advanced"
-    )
+    assert told.endswith("choose for it a color space that is not linear, or tick Estimate Anyway under Advanced")
     assert "--" not in told

@@ -82,7 +82,7 @@ def test_an_exr_plate_is_baked_once_it_is_called_encoded(addon, tmp_path, codes)
     path = write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32))
     image = bpy.data.images.load(str(path))
     lut = {"image": image.name, "filepath": str(tmp_path / "camera.cube")}
-    with pytest.raises(RuntimeError, match="choose for it a color space in Blender that is not linear"):
+    with pytest.raises(RuntimeError, match="choose for it a color space that is not linear"):
         bpy.ops.crf.load_lut(**lut)
     image.colorspace_settings.name = "Non-Color"
     assert bpy.ops.crf.load_lut(**lut) == {"FINISHED"}
