@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
 from ocio.plates.frame_files import read_frame
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.frames import FramePattern, FrameSequence, find_frames, pattern_frames, sample_frames
 from ocio.plates.primaries import plate_primaries
 
 from .decoding import running_decoder
@@ -38,6 +38,8 @@ def frames_of(plate: Plate) -> FrameSequence:
     if plate.content is not None:
         return FrameSequence((plate.file,))
     count = 0 if plate.decoder is None else plate.decoder.frame_count
+    if plate.numbered is not None:
+        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=plate.file)
     if not count:
         return find_frames(plate.file)
     numbers = tuple(range(1, count + 1))

@@ -80,8 +80,9 @@ class Plate:
         The file; of a sequence, its pattern with a placeholder for the frame number, like ``shot.%04d.png``.
     pattern : str
         The file names with ``*`` for the frame number, like ``shot.*.png``.
-    is_sequence : bool
-        Whether `file` is the pattern of a sequence.
+    numbered : tuple of (str, int, str), or None
+        Of a sequence the file name before the frame number, the digits of the number, and the name after it. A name may
+        hold placeholders of its own, so `file` is not to be read as a pattern again.
     color_space : str
         The colour space that Blender takes the file for.
     folder : Path or None
@@ -100,13 +101,18 @@ class Plate:
     uid: int
     file: Path
     pattern: str
-    is_sequence: bool
+    numbered: tuple[str, int, str] | None
     color_space: str
     folder: Path | None
     has_metadata: bool = True
     file_state: str = ""
     content: bytes | Uint8Array | None = field(default=None, repr=False, compare=False)
     decoder: BlenderDecoder | None = None
+
+    @property
+    def is_sequence(self) -> bool:
+        """Whether `file` is the pattern of a sequence."""
+        return self.numbered is not None
 
     @property
     def has_frames(self) -> bool:
@@ -134,18 +140,19 @@ class Plate:
         the name of its image or clip.
         """
         number = _FRAME_NUMBER.fullmatch(path.stem) if is_sequence else None
-        name, pattern, file = path.stem, path.name, path
+        name, pattern, file, numbered = path.stem, path.name, path, None
         if number is not None:
             before, digits, after = number.groups()
             name = (before.rstrip("._- ") + after) or Path(datablock_name).stem
             pattern = f"{before}*{after}{path.suffix}"
             file = path.with_name(f"{before}%0{len(digits)}d{after}{path.suffix}")
+            numbered = (before, len(digits), after + path.suffix)
         return cls(
             name=name,
             uid=uid,
             file=file,
             pattern=pattern,
-            is_sequence=number is not None,
+            numbered=numbered,
             color_space=color_space,
             folder=folder,
             has_metadata=has_metadata,

@@ -74,7 +74,7 @@ def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
 
 
 def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, sequence_file):
-    scans, luts = calls(frame_files, "find_frames"), calls(run_module, "response_lut")
+    scans, luts = calls(frame_files, "pattern_frames"), calls(run_module, "response_lut")
     completed = run(make_job(sequence_file, is_sequence=True))
     assert (len(scans), len(luts)) == (1, 1)
     assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
