@@ -37,12 +37,11 @@ def frames_of(plate: Plate) -> FrameSequence:
     """
     if plate.content is not None:
         return FrameSequence((plate.file,))
-    count = 0 if plate.decoder is None else plate.decoder.frame_count
     if plate.numbered is not None:
         return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=plate.file)
-    if not count:
+    if plate.decoder is None:
         return find_frames(plate.file)
-    numbers = tuple(range(1, count + 1))
+    numbers = tuple(range(1, plate.decoder.frame_count + 1))
     return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
 
 

@@ -49,20 +49,20 @@ class Anchor(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class BlenderDecoder:
-    """Another Blender, which decodes the frames of a plate that the estimator does not read itself.
+    """Another Blender, which decodes the frames of a movie.
 
     Parameters
     ----------
     command : tuple of str
         The command that starts it; the arguments of `scene.decode_frames` follow.
     frame_count : int
-        The number of frames of a movie, which are numbered from 1; 0 for image files.
+        The number of frames, which are numbered from 1; at least 1.
     is_deinterlaced : bool
         Whether the fields of a movie are to be deinterlaced, as its image in Blender is.
     """
 
     command: tuple[str, ...]
-    frame_count: int = 0
+    frame_count: int
     is_deinterlaced: bool = False
 
 
@@ -94,7 +94,7 @@ class Plate:
     content : bytes, ndarray of uint8 with shape (H, W, 3 or 4), or None
         The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
     decoder : BlenderDecoder or None
-        What decodes the file, or the frames of a sequence or movie, if the estimator does not read it itself.
+        What decodes the frames of a movie; None for image files.
     """
 
     name: str
@@ -117,7 +117,7 @@ class Plate:
     @property
     def has_frames(self) -> bool:
         """Whether the plate is a sequence or a movie."""
-        return self.is_sequence or (self.decoder is not None and self.decoder.frame_count > 0)
+        return self.is_sequence or self.decoder is not None
 
     @classmethod
     def of_file(
