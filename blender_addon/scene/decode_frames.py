@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""A script for another Blender, which `work.decoding` starts: write frames of movies and images as PNG files.
+"""A script for another Blender, which `work.decoding` starts: write frames of movies as PNG files.
 
 Every line of the standard input is a request in JSON, with `file`, `frame` and `target`. The pixels are not colour
 managed: the image is Non-Color and the view is Raw, so the PNG file holds the decoder's code values, of 8 bits, or of
@@ -71,8 +71,7 @@ def _decode(scene: bpy.types.Scene, node: bpy.types.Node, file: str, frame: int,
     image.colorspace_settings.name = "Non-Color"
     image.use_deinterlace = "--deinterlace" in sys.argv
     node.image = image
-    if image.source == "MOVIE":
-        node.frame_duration, node.frame_start, node.frame_offset = max(1, image.frame_duration), 1, 0
+    node.frame_duration, node.frame_start, node.frame_offset = max(1, image.frame_duration), 1, 0
     if not all(image.size):
         return "it is damaged, or of an unknown format"
     render = scene.render
@@ -84,8 +83,6 @@ def _decode(scene: bpy.types.Scene, node: bpy.types.Node, file: str, frame: int,
     unfinished = target.with_suffix(".part")
     bpy.data.images["Render Result"].save_render(str(unfinished), scene=scene)
     unfinished.replace(target)
-    if image.source != "MOVIE":
-        bpy.data.images.remove(image)
     return ""
 
 

@@ -15,10 +15,6 @@ if TYPE_CHECKING:
     from crfnet_core.types import Uint8Array
 
 
-#: Suffixes of encoded images that Blender reads and the estimator does not: BMP, Targa, JPEG 2000.
-DECODED_SUFFIXES = (".bmp", ".dib", ".tga", ".icb", ".vda", ".vst", ".jp2", ".j2c", ".j2k")
-
-
 def name_and_content(image: bpy.types.Image) -> tuple[Path, bytes | Uint8Array]:
     """Return a file name for a packed or painted image, and what the file has to hold.
 
@@ -28,21 +24,17 @@ def name_and_content(image: bpy.types.Image) -> tuple[Path, bytes | Uint8Array]:
         The name of the packed file, or that of the image with the suffix .png.
     content : bytes or ndarray, uint8, shape (H, W, 3 or 4)
         The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
-        whatever its colour space. A packed file that the estimator does not read is given as code values, too.
+        whatever its colour space.
 
     Raises
     ------
     AddonError
-        If the image has no pixels, or they are no code values.
+        If the image has no pixels.
     """
     name = Path(f"{Path(bpy.path.clean_name(image.name)).stem}.png")
     if image.packed_file:
-        name = Path(Path(image.filepath.replace("\\", "/")).name or name)
-        if name.suffix.lower() not in DECODED_SUFFIXES:
-            return name, image.packed_file.data
-    if image.is_float:
-        raise AddonError(f"{image.name}: more than 8 bits are not read from a packed file of this format: unpack it")
-    return name.with_suffix(".png"), _code_values(image)
+        return Path(Path(image.filepath.replace("\\", "/")).name or name), image.packed_file.data
+    return name, _code_values(image)
 
 
 def _code_values(image: bpy.types.Image) -> Uint8Array:

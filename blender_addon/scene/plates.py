@@ -12,10 +12,13 @@ import bpy
 from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import BlenderDecoder, Plate
-from .packed_images import DECODED_SUFFIXES, name_and_content
+from .packed_images import name_and_content
 
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
+
+#: Suffixes of photographs that the estimator reads and Blender does not, or only some versions of it.
+HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
 
 #: What the panel of each editor asks for while there is no plate.
 OPEN_A_PLATE = {
@@ -158,6 +161,16 @@ def obstacle(datablock: Datablock) -> str:
     return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
 
 
+def is_shown(datablock: Datablock) -> bool:
+    """Return whether Blender shows an image or clip: HEIC it does not, and AVIF only some versions do."""
+    return not is_heif(datablock) or all(datablock.size)
+
+
+def is_heif(datablock: Datablock) -> bool:
+    """Return whether an image is a HEIC or AVIF file."""
+    return datablock.filepath.lower().endswith(HEIF_SUFFIXES)
+
+
 #: Why images of some sources have no response to estimate.
 _OBSTACLES = {
     "VIEWER": "Renders have no camera response: open a photograph",
@@ -202,7 +215,7 @@ def plate_of(datablock: Datablock) -> Plate:
         raise AddonError(
             f"{datablock.filepath or datablock.name}: there is no such file; find it with File, External Data"
         )
-    decoder = _decoder(datablock, path)
+    decoder = _decoder(datablock)
     return _plate(datablock, path, folder=path.parent, has_metadata=decoder is None, decoder=decoder)
 
 
@@ -245,14 +258,13 @@ def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
     )
 
 
-def _decoder(datablock: Datablock, path: Path) -> BlenderDecoder | None:
-    """Return what decodes a movie, or an image that the estimator does not read; None for all others."""
-    is_movie = datablock.source == "MOVIE"
-    if not is_movie and path.suffix.lower() not in DECODED_SUFFIXES:
+def _decoder(datablock: Datablock) -> BlenderDecoder | None:
+    """Return what decodes a movie; None for images, which the estimator reads itself."""
+    if datablock.source != "MOVIE":
         return None
     return BlenderDecoder(
         command=_blender_command(),
-        frame_count=max(1, datablock.frame_duration) if is_movie else 0,
+        frame_count=max(1, datablock.frame_duration),
         is_deinterlaced=getattr(datablock, "use_deinterlace", False),
     )
 

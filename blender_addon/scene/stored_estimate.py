@@ -98,6 +98,12 @@ def lines(datablock: Datablock) -> list[str]:
     return datablock[KEY]["lines"].split("\n")
 
 
+def recognized_as(datablock: Datablock) -> str:
+    """Return what the photographs are, if they are "log footage" or "limited range"; else an empty text."""
+    found = json.loads(datablock[KEY].get("recognition", "null"))
+    return found["kind"] if found else ""
+
+
 def warnings(datablock: Datablock) -> list[str]:
     """Return the warnings of the stored estimate."""
     return datablock[KEY]["warnings"].splitlines()

@@ -91,6 +91,8 @@ def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
     word, icon, advice = VERDICTS[verdict]
     if verdict == stored_estimate.DO_NOT_TRUST:  # the first line is "The estimate is not to be trusted: ..."
         advice = capitalized(stored_estimate.lines(datablock)[0].partition(": ")[2])
+        if kind := stored_estimate.recognized_as(datablock):
+            word = f"{word}: {kind}"
     return word, icon, advice
 
 

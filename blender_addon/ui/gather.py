@@ -51,6 +51,7 @@ def gather_job(
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
     if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
         raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
+    _check_is_shown(datablock, ApplyMode(chosen["apply"]))
     if chosen["apply"] == ApplyMode.NODES:
         node_group.check_config()
     plate = plates.plate_of(datablock)
@@ -75,6 +76,15 @@ def gather_job(
             path=color_management.running_config(), is_demanded=bool(color_management.environment_config())
         ),
     )
+
+
+def _check_is_shown(datablock: plates.Datablock, mode: ApplyMode) -> None:
+    """Raise an AddonError if Blender would have to show a plate that it cannot read."""
+    if mode in (ApplyMode.NODES, ApplyMode.COLORSPACE) and not plates.is_shown(datablock):
+        raise AddonError(
+            f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
+            " photograph as JPEG or PNG"
+        )
 
 
 def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | None:

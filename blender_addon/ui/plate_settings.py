@@ -74,7 +74,8 @@ class PlateChoices:
     )
     force: bpy.props.BoolProperty(
         name="Estimate Anyway",
-        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear",
+        description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear, and"
+        " take OpenEXR files for encoded that do not say what they hold",
     )
     prior: bpy.props.EnumProperty(
         name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS

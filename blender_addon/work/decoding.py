@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Let another Blender decode movies, and images that the estimator does not read, to PNG files of their code values.
+"""Let another Blender decode movies to PNG files of their code values.
 
 It is the decoder that shows the plate in this Blender, so the code values are the same. It runs in a process of its
 own, without a window and without the user's settings, so the open file is not touched and the window does not freeze.
@@ -25,11 +25,10 @@ _TICK = 0.05
 
 
 class FrameDecoder:
-    """A running Blender that decodes the frames of one plate; see `running_decoder`."""
+    """A running Blender that decodes the frames of one movie; see `running_decoder`."""
 
-    def __init__(self, plate: Plate, decoder: BlenderDecoder, process: subprocess.Popen[str], folder: Path) -> None:
-        self._plate, self._decoder = plate, decoder
-        self._process, self._folder = process, folder
+    def __init__(self, plate: Plate, process: subprocess.Popen[str], folder: Path) -> None:
+        self._plate, self._process, self._folder = plate, process, folder
 
     def read(self, sequence: FrameSequence, progress: Progress | None = None) -> FrameSequence:
         """Return frames as PNG files, which the next call removes.
@@ -37,8 +36,7 @@ class FrameDecoder:
         Parameters
         ----------
         sequence : FrameSequence
-            The files to decode; of a movie, the numbers of the frames count, and the names of the new files are those
-            of `sequence.paths`.
+            The frames to decode by their numbers; the names of the new files are those of `sequence.paths`.
         progress : callable or None
             Called with (done, total) while a frame is awaited, too; what it raises ends the wait.
 
@@ -50,33 +48,30 @@ class FrameDecoder:
         for path in self._folder.glob("*.png"):
             path.unlink()
         decoded = []
-        for done, path in enumerate(sequence.paths):
-            number = sequence.numbers[done] if sequence.numbers else 1
+        for done, (path, number) in enumerate(zip(sequence.paths, sequence.numbers, strict=True)):
             target = self._folder / f"{path.stem}.png"
-            self._ask(path, number, target)
+            self._ask(number, target)
             while not target.exists():
                 if progress is not None:
                     progress(done, len(sequence.paths))
-                self._check(path, number, target)
+                self._check(number, target)
             decoded.append(target)
         return FrameSequence(tuple(decoded), sequence.numbers, sequence.missing)
 
-    def _ask(self, path: Path, number: int, target: Path) -> None:
+    def _ask(self, number: int, target: Path) -> None:
         """Ask for one frame; a Blender that has ended is noticed by `_check`."""
-        is_movie = self._decoder.frame_count > 0
-        source = self._plate.file if is_movie else path
-        request = {"file": str(source), "frame": number if is_movie else 1, "target": str(target)}
+        request = {"file": str(self._plate.file), "frame": number, "target": str(target)}
         assert self._process.stdin is not None
         with suppress(OSError):
             self._process.stdin.write(json.dumps(request) + "\n")
             self._process.stdin.flush()
 
-    def _check(self, path: Path, number: int, target: Path) -> None:
+    def _check(self, number: int, target: Path) -> None:
         """Wait a moment, and raise an AddonError if Blender has ended without the frame."""
         with suppress(subprocess.TimeoutExpired):
             self._process.wait(_TICK)
         if self._process.poll() is not None and not target.exists():
-            name = f"{self._plate.file.name}, frame {number}" if self._decoder.frame_count else path.name
+            name = f"{self._plate.file.name}, frame {number}"
             raise AddonError(f"{name}: Blender cannot decode it ({self._reason()}); save it as JPEG, PNG or TIFF")
 
     def _reason(self) -> str:
@@ -92,7 +87,7 @@ def running_decoder(plate: Plate, decoder: BlenderDecoder, folder: Path) -> Iter
     Parameters
     ----------
     plate : Plate
-        A movie, or images of a format that Blender reads.
+        A movie.
     decoder : BlenderDecoder
         The command that starts Blender.
     folder : Path
@@ -124,7 +119,7 @@ def running_decoder(plate: Plate, decoder: BlenderDecoder, folder: Path) -> Iter
                 " JPEG, PNG or TIFF"
             ) from None
         try:
-            yield FrameDecoder(plate, decoder, process, folder)
+            yield FrameDecoder(plate, process, folder)
         finally:
             process.kill()
             process.wait()

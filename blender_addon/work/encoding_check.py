@@ -1,27 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuse plates that are logarithmic or linear: their encoding is known, so there is no response to estimate."""
+"""Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate.
+
+What the metadata of their files says is the estimator's to judge: `crfnet_core.recognition.tag_refusal`.
+"""
 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterable
 from pathlib import Path
 
-import OpenImageIO as oiio
-
 from crfnet_core.errors import ConfigError
+from crfnet_core.image_io import read_codes
+from crfnet_core.recognition import tag_refusal
 from ocio.configs.files import load_config
 
 from .errors import AddonError
-from .job import Plate
-
-#: Metadata that names the encoding of a file, under OpenImageIO's names.
-_METADATA = ("colorInteropID", "oiio:ColorSpace", "dpx:Transfer")
-
-#: Values of DPX's Transfer that mean logarithmic or linear.
-_DPX_LOG_OR_LINEAR = ("Linear", "Logarithmic", "Printing density", "Z (linear)")
-
-#: What OpenImageIO reports of files without such metadata.
-_UNSPECIFIC = ("", "srgb", "srgb_rec709_scene", "rec709")
+from .job import Job, Plate
 
 #: OpenColorIO's encodings of logarithmic and linear colour spaces.
 _LOG_OR_LINEAR_ENCODINGS = ("log", "scene-linear", "display-linear")
@@ -31,7 +26,7 @@ _LOG_OR_LINEAR_NAME = re.compile(r"linear|^lin_|aces|adx\d|\blog|log\w?\d?\b", r
 
 
 def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
-    """Refuse a plate if its colour space or the metadata of its file says that it is logarithmic or linear.
+    """Refuse a plate if its colour space says that it is logarithmic or linear.
 
     Parameters
     ----------
@@ -47,13 +42,39 @@ def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     AddonError
         If the plate is logarithmic or linear.
     """
-    remedy = (
-        "there is no response to estimate: choose its color space in Blender, or tick Estimate Anyway under Advanced"
-    )
     if not _is_guess(plate, file) and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
-        raise AddonError(f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so {remedy}")
-    if claim := _claim(file):
-        raise AddonError(f"{file.name}: calls itself {claim}, so {remedy}")
+        raise AddonError(
+            f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so there is no response to"
+            " estimate: choose its color space in Blender, or tick Estimate Anyway under Advanced"
+        )
+
+
+def is_said_encoded(job: Job) -> bool:
+    """Return whether the user has said that the plate of a job holds encoded values; see `holds_encoded_values`."""
+    return holds_encoded_values(job.plate, job.config.path, is_forced=job.estimation.is_forced)
+
+
+def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
+    """Return whether OpenEXR files of a plate that do not say what they hold are taken for encoded.
+
+    They are if the user has given them a colour space that is not linear, which Blender takes them for at first, or
+    has ticked Estimate Anyway.
+
+    Parameters
+    ----------
+    plate : Plate
+        The plate.
+    config : str
+        The OpenColorIO config that defines its colour space.
+    is_forced : bool
+        Whether Estimate Anyway is ticked.
+    """
+    return is_forced or not is_log_or_linear(plate.color_space, _encoding(plate.color_space, config))
+
+
+def is_tagged(files: Iterable[Path]) -> bool:
+    """Return whether the estimator refuses one of the files for its metadata; a CRFNetError if one cannot be read."""
+    return any(tag_refusal(read_codes(file).metadata.color) for file in files)
 
 
 def is_log_or_linear(color_space: str, encoding: str = "") -> bool:
@@ -75,24 +96,3 @@ def _encoding(color_space: str, config: str) -> str:
     except ConfigError:
         return ""
     return "" if found is None or found.isData() else found.getEncoding() or ""
-
-
-def _claim(file: Path) -> str:
-    """Return the logarithmic or linear encoding that a file's metadata names; empty if none, or if it is unreadable."""
-    source = oiio.ImageInput.open(str(file))
-    if source is None:
-        oiio.geterror()  # else OpenImageIO prints it when the process ends
-        return ""
-    header = source.spec()
-    source.close()
-    if header.format.basetype not in (oiio.UINT8, oiio.UINT16):
-        return ""
-    claims = ((name, header.get_string_attribute(name)) for name in _METADATA)
-    return next((value for name, value in claims if _is_log_or_linear_claim(name, value)), "")
-
-
-def _is_log_or_linear_claim(name: str, value: str) -> bool:
-    """Return whether an entry of the metadata means logarithmic or linear."""
-    if name == "dpx:Transfer":
-        return value in _DPX_LOG_OR_LINEAR
-    return value.lower() not in _UNSPECIFIC and is_log_or_linear(value)

@@ -2,9 +2,10 @@
 """An estimate as the entries that a .blend file keeps, and back.
 
 The entries are texts, numbers and flat lists of numbers in double precision, because a custom property holds nothing
-else; several texts are one, with a line each; families and what the metadata says are texts in JSON. Files saved with
-these names must stay readable: a change of them needs a new `scene.stored_estimate.LAYOUT`. Layout 1 knew neither the
-expected shape error nor families, prior and metadata.
+else; several texts are one, with a line each; families, what the metadata says and what the photographs are recognized
+as are texts in JSON. Files saved with these names must stay readable: a change of them needs a new
+`scene.stored_estimate.LAYOUT`. Layout 1 knew neither the expected shape error nor families, prior and metadata; the
+first files of layout 2 have no recognition.
 """
 
 from __future__ import annotations
@@ -22,6 +23,7 @@ from crfnet_core.metadata import FileOrigin
 from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import Encoding
 from crfnet_core.posterior import Family, Verdict
+from crfnet_core.recognition import Kind, Recognition
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -36,6 +38,7 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "families": json.dumps(dict(estimate.families)),
         "prior": estimate.prior,
         "metadata": json.dumps([dataclasses.asdict(origin) for origin in estimate.origins], ensure_ascii=False),
+        "recognition": json.dumps(estimate.recognition and dataclasses.asdict(estimate.recognition)),
         "warnings": "\n".join(estimate.warnings),
         "weights": estimate.weights.tolist(),
         "brightness": estimate.curve.brightness.tolist(),
@@ -103,6 +106,7 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         warnings=_lines(entries["warnings"]),
         model=entries["model"],
         photos=_lines(entries["photos"]),
+        recognition=_recognition(json.loads(entries.get("recognition", "null"))),
     )
 
 
@@ -128,6 +132,13 @@ def _origins(entries: Mapping[str, Any]) -> Iterator[FileOrigin]:
     for origin in json.loads(entries.get("metadata", "[]")):
         kinds = {"device": Device(origin["device"]), "encoding": Encoding(origin["encoding"])}
         yield FileOrigin(**{**origin, **kinds, "words": tuple(origin["words"])})
+
+
+def _recognition(entry: dict[str, Any] | None) -> Recognition | None:
+    """Return what the photographs are recognized as; None for ordinary ones."""
+    if entry is None:
+        return None
+    return Recognition(**{**entry, "kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
 def _lines(text: str) -> tuple[str, ...]:

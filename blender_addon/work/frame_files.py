@@ -16,7 +16,7 @@ import OpenImageIO as oiio
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
 from ocio.plates.frame_files import read_frame
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.frames import FramePattern, FrameSequence, find_frames, pattern_frames, sample_frames
 from ocio.plates.primaries import plate_primaries
 
 from .decoding import running_decoder
@@ -37,18 +37,19 @@ def frames_of(plate: Plate) -> FrameSequence:
     """
     if plate.content is not None:
         return FrameSequence((plate.file,))
-    count = 0 if plate.decoder is None else plate.decoder.frame_count
-    if not count:
+    if plate.numbered is not None:
+        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=plate.file)
+    if plate.decoder is None:
         return find_frames(plate.file)
-    numbers = tuple(range(1, count + 1))
+    numbers = tuple(range(1, plate.decoder.frame_count + 1))
     return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
 
 
-def primaries_of(plate: Plate, sequence: FrameSequence) -> Primaries:
+def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
     """Return the primaries that a plate is encoded in, as `bake_plates` takes them.
 
     They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
-    primaries can express, and for what Blender decodes.
+    primaries can express, and for what Blender decodes. For `is_encoded` see `encoding_check.is_said_encoded`.
 
     Raises
     ------
@@ -59,7 +60,7 @@ def primaries_of(plate: Plate, sequence: FrameSequence) -> Primaries:
         return REC709
     with frame_reader(plate) as read:
         (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1]), None).paths
-        return plate_primaries(read_frame(path).color).primaries or REC709
+        return plate_primaries(read_frame(path, is_encoded=is_encoded).color).primaries or REC709
 
 
 def sample(sequence: FrameSequence) -> FrameSequence:

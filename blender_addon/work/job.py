@@ -49,20 +49,20 @@ class Anchor(StrEnum):
 
 @dataclass(frozen=True, kw_only=True)
 class BlenderDecoder:
-    """Another Blender, which decodes the frames of a plate that the estimator does not read itself.
+    """Another Blender, which decodes the frames of a movie.
 
     Parameters
     ----------
     command : tuple of str
         The command that starts it; the arguments of `scene.decode_frames` follow.
     frame_count : int
-        The number of frames of a movie, which are numbered from 1; 0 for image files.
+        The number of frames, which are numbered from 1; at least 1.
     is_deinterlaced : bool
         Whether the fields of a movie are to be deinterlaced, as its image in Blender is.
     """
 
     command: tuple[str, ...]
-    frame_count: int = 0
+    frame_count: int
     is_deinterlaced: bool = False
 
 
@@ -80,8 +80,9 @@ class Plate:
         The file; of a sequence, its pattern with a placeholder for the frame number, like ``shot.%04d.png``.
     pattern : str
         The file names with ``*`` for the frame number, like ``shot.*.png``.
-    is_sequence : bool
-        Whether `file` is the pattern of a sequence.
+    numbered : tuple of (str, int, str), or None
+        Of a sequence the file name before the frame number, the digits of the number, and the name after it. A name may
+        hold placeholders of its own, so `file` is not to be read as a pattern again.
     color_space : str
         The colour space that Blender takes the file for.
     folder : Path or None
@@ -93,14 +94,14 @@ class Plate:
     content : bytes, ndarray of uint8 with shape (H, W, 3 or 4), or None
         The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
     decoder : BlenderDecoder or None
-        What decodes the file, or the frames of a sequence or movie, if the estimator does not read it itself.
+        What decodes the frames of a movie; None for image files.
     """
 
     name: str
     uid: int
     file: Path
     pattern: str
-    is_sequence: bool
+    numbered: tuple[str, int, str] | None
     color_space: str
     folder: Path | None
     has_metadata: bool = True
@@ -109,9 +110,14 @@ class Plate:
     decoder: BlenderDecoder | None = None
 
     @property
+    def is_sequence(self) -> bool:
+        """Whether `file` is the pattern of a sequence."""
+        return self.numbered is not None
+
+    @property
     def has_frames(self) -> bool:
         """Whether the plate is a sequence or a movie."""
-        return self.is_sequence or (self.decoder is not None and self.decoder.frame_count > 0)
+        return self.is_sequence or self.decoder is not None
 
     @classmethod
     def of_file(
@@ -134,18 +140,19 @@ class Plate:
         the name of its image or clip.
         """
         number = _FRAME_NUMBER.fullmatch(path.stem) if is_sequence else None
-        name, pattern, file = path.stem, path.name, path
+        name, pattern, file, numbered = path.stem, path.name, path, None
         if number is not None:
             before, digits, after = number.groups()
             name = (before.rstrip("._- ") + after) or Path(datablock_name).stem
             pattern = f"{before}*{after}{path.suffix}"
             file = path.with_name(f"{before}%0{len(digits)}d{after}{path.suffix}")
+            numbered = (before, len(digits), after + path.suffix)
         return cls(
             name=name,
             uid=uid,
             file=file,
             pattern=pattern,
-            is_sequence=number is not None,
+            numbered=numbered,
             color_space=color_space,
             folder=folder,
             has_metadata=has_metadata,

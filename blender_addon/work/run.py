@@ -25,7 +25,7 @@ from ocio.plates.frames import FrameSequence
 from ocio.report import verdict_lines
 
 from . import writers
-from .encoding_check import check_is_encoded
+from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
 from .errors import AddonError, CancelledError
 from .frame_files import frames_of, primaries_of, sampled_files
 from .job import Anchor, ApplyMode, Job
@@ -129,7 +129,7 @@ def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
     if job.estimation.primaries is not None:
         return job.estimation.primaries
     try:
-        return primaries_of(job.plate, sequence())
+        return primaries_of(job.plate, sequence(), is_encoded=is_said_encoded(job))
     except CRFNetError:
         if job.estimation.stored is None:
             raise
@@ -170,9 +170,11 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     Raises
     ------
     AddonError
-        If the plate or a photograph is logarithmic or linear and the job does not force the estimate.
+        If the colour space of the plate or a photograph is logarithmic or linear and the job does not force the
+        estimate.
     CRFNetError
-        If a file, the model or the prior cannot be read.
+        If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
+        not force the estimate.
     """
     if progress is not None:
         progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
@@ -184,12 +186,13 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         if not job.estimation.is_forced:
             for plate, frames in zip(plates, files, strict=True):
                 check_is_encoded(plate, frames.paths[0], job.config.path)
+        paths = [path for frames in files for path in frames.paths]
         prior, network = load_prior(options), _load_network(options)
-        has_metadata = all(plate.has_metadata for plate in plates)
-        options = replace(options, use_metadata=options.use_metadata and has_metadata)
+        has_metadata = options.use_metadata and all(plate.has_metadata for plate in plates)
+        is_overruled = has_metadata and job.estimation.is_forced and is_tagged(paths)
+        options = replace(options, use_metadata=has_metadata and not is_overruled)
         if len(plates) == 1:
             return estimate_frames(files[0], network, prior, options, progress=estimating)
-        paths = [path for frames in files for path in frames.paths]
         return estimate_photographs(paths, network, prior, options, progress=estimating).estimate
 
 

@@ -23,6 +23,15 @@ _AMERICAN = {
 
 _BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
 
+#: What messages say of the command's options and of Python's packages, and what there is in Blender instead.
+_IN_BLENDER = {
+    "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
+    "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
+    ", or say with --primaries which all have": "",
+    "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
+    "pip install 'av', or save it": "save it",
+}
+
 #: What shows that a word is part of a path, a file name or a quoted name.
 _NAME = re.compile(r"[/\\\"']|\.\w")
 
@@ -54,7 +63,12 @@ def loaded_line(model: str) -> str:
 
 
 def american(text: str) -> str:
-    """Return a message in American spelling; words that belong to a file or a quoted name stay as they are."""
+    """Return a message in American spelling, with Blender's settings in the place of the command's options.
+
+    Words that belong to a file or a quoted name stay as they are.
+    """
+    for of_command, in_blender in _IN_BLENDER.items():
+        text = text.replace(of_command, in_blender)
     return " ".join(word if _NAME.search(word) else _BRITISH.sub(_spelled, word) for word in text.split(" "))
 
 

@@ -16,9 +16,10 @@ from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import all_or_none, bake_plates, export_luts
-from ocio.plates.frames import FramePattern, FrameSequence
+from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
+from .encoding_check import is_said_encoded
 from .errors import AddonError
 from .frame_files import FrameReader, counted_from, frame_reader
 from .job import ApplyMode, Job, Plate
@@ -96,7 +97,9 @@ def write(
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
     """Write the linear plate, or all its frames; a cancelled or failed job leaves no new file."""
     targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
-    options = PlateOptions(depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite)
+    options = PlateOptions(
+        depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
+    )
     with frame_reader(job.plate) as read:
         if job.plate.decoder is None:
             bake_plates(read(sequence, progress), targets, lut, options, progress=progress)
@@ -167,8 +170,8 @@ def baked_name(plate: Plate) -> str:
     stem = plain_stem(Path(plate.name + ".exr"))
     if not plate.has_frames:
         return f"{stem}_linear.exr"
-    pattern = FramePattern.parse(plate.file) if plate.is_sequence else None
-    return f"{stem}_linear.%0{4 if pattern is None else pattern.width}d.exr"
+    digits = 4 if plate.numbered is None else plate.numbered[1]
+    return f"{stem}_linear.%0{digits}d.exr"
 
 
 def _photo(plate: Plate) -> Path:

@@ -125,11 +125,12 @@ def _exif_tags(header: Any, interop_index: str) -> ColorTags:
 
 
 def _interop_tags(header: Any) -> ColorTags:
-    """Return what the Color Interop Forum's name of the encoding says."""
+    """Return what the Color Interop Forum's name of the encoding says: "lin_ap1_scene" is linear."""
     name = _attribute(header, "colorInteropID")
     parts = name.split("_") if isinstance(name, str) else []
     primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
-    return ColorTags(primaries, source="colorInteropID") if primaries else ColorTags()
+    transfer = "linear" if parts[:1] == ["lin"] else ""
+    return ColorTags(primaries, transfer, "colorInteropID") if primaries or transfer else ColorTags()
 
 
 def _chromaticity_tags(header: Any) -> ColorTags:

@@ -152,13 +152,22 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
         raise PlateError(f"{path}: {_no_sequence(path)}")
     if parsed.frames and frames is not None:
         raise PlateError(f"{path}: names the frames {parsed.frames} itself; give them once")
-    files = parsed.files()
-    chosen = frames if frames is not None else parsed.frames or None
-    wanted = _span(files, path) if chosen is None else parse_frames(chosen)
+    return pattern_frames(parsed, frames if frames is not None else parsed.frames or None, name=path)
+
+
+def pattern_frames(
+    pattern: FramePattern, frames: str | Iterable[int] | None = None, *, name: str | Path
+) -> FrameSequence:
+    """Return the files of a pattern, for a caller that knows the parts of the name; see `find_frames`.
+
+    Messages call it `name`. The frames that the pattern names itself do not count.
+    """
+    files = pattern.files()
+    wanted = _span(files, Path(name)) if frames is None else parse_frames(frames)
     numbers = tuple(number for number in wanted if number in files)
     if not numbers:
         there = f"there are {format_frames(sorted(files))}" if files else "there is no frame of this name"
-        raise PlateError(f"{path}: {there}; check the name and the frames")
+        raise PlateError(f"{name}: {there}; check the name and the frames")
     missing = tuple(number for number in wanted if number not in files)
     return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
 

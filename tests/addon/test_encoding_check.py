@@ -2,11 +2,22 @@
 
 import dataclasses
 
+import numpy as np
 import pytest
 
 from blender_addon.work.encoding_check import check_is_encoded, is_log_or_linear
 from blender_addon.work.errors import AddonError
-from tests.helpers.images import write_image
+from blender_addon.work.estimate_record import loaded_estimate
+from blender_addon.work.job import ApplyMode
+from blender_addon.work.run import run
+from blender_addon.work.wording import american
+from crfnet_core.errors import PhotoError, PlateError
+from crfnet_core.metadata.color_tags import REC2020
+from crfnet_core.response import ResponseCurve
+from tests.helpers.images import read_image, write_image
+
+#: A response that is loaded from a LUT file.
+CURVE = ResponseCurve.gamma(2.2)
 
 
 @pytest.mark.parametrize(
@@ -60,17 +71,72 @@ def test_without_a_readable_config_the_name_decides(check, tmp_path):
         check("ACEScg", config=tmp_path / "none.ocio")
 
 
-@pytest.mark.parametrize("transfer", ["Logarithmic", "Linear", "Printing density"])
-def test_a_dpx_that_calls_itself_log_or_linear_is_refused(check, tmp_path, codes, transfer):
-    path = write_image(tmp_path / "scan.dpx", codes, dpx__Transfer=transfer)
-    with pytest.raises(AddonError, match=r"scan\.dpx: calls itself"):
-        check("sRGB", path)
-
-
 def test_blenders_guess_that_every_dpx_is_linear_does_not_count(check, tmp_path, codes):
     check("Linear Rec.709", write_image(tmp_path / "video.dpx", codes))
 
 
-def test_a_file_that_cannot_be_read_is_not_judged(check, plate_file):
-    plate_file.write_bytes(b"no picture")
-    check("sRGB")
+@pytest.fixture
+def tagged(tmp_path, codes):
+    """A file that the estimator refuses for its metadata."""
+    return write_image(tmp_path / "scan.dpx", codes, dpx__Transfer="Logarithmic")
+
+
+def test_a_file_that_calls_itself_log_is_refused_with_what_to_do_in_blender(make_job, tagged):
+    with pytest.raises(PhotoError) as problem:
+        run(make_job(tagged, mode=ApplyMode.ESTIMATE))
+    told = american(str(problem.value))
+    assert told.startswith(f"{tagged}: is encoded as log: so says its metadata")
+    assert told.endswith("if the tag is wrong, tick Estimate Anyway under Advanced")
+
+
+def test_estimate_anyway_overrules_the_tag(make_job, tagged, estimate):
+    found = run(make_job(tagged, mode=ApplyMode.ESTIMATE, is_forced=True)).estimate
+    assert found.origins == ()
+    assert found.weights.shape == (11,)
+
+
+def test_estimate_anyway_leaves_the_metadata_of_other_files_alone(make_job):
+    assert len(run(make_job(mode=ApplyMode.ESTIMATE, is_forced=True)).estimate.origins) == 1
+
+
+def test_who_ignores_metadata_ignores_its_tags(make_job, tagged):
+    assert run(make_job(tagged, mode=ApplyMode.ESTIMATE, use_metadata=False)).estimate.origins == ()
+
+
+def test_a_png_that_calls_itself_linear_is_refused(make_job, tmp_path, codes):
+    path = write_image(tmp_path / "render.png", codes, colorInteropID="lin_ap1_scene")
+    with pytest.raises(PhotoError, match="is linear already"):
+        run(make_job(path, mode=ApplyMode.ESTIMATE))
+
+
+@pytest.fixture
+def untagged(tmp_path, codes):
+    """An OpenEXR file that does not say what its values are."""
+    return write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32))
+
+
+def loaded(make_job, path, **choices):
+    """The job of a plate with a response from a LUT file."""
+    return make_job(path, stored=loaded_estimate(CURVE, "loaded from camera.cube"), **choices)
+
+
+@pytest.mark.parametrize(
+    "said", [{"color_space": "sRGB"}, {"color_space": "lin_rec709_scene", "is_forced": True}], ids=["space", "anyway"]
+)
+def test_an_exr_that_the_user_calls_encoded_is_baked(make_job, untagged, codes, said):
+    baked = run(loaded(make_job, untagged, **said))
+    assert np.abs(read_image(baked.files.files[0]) - CURVE.inverse(codes / 255)).max() < 1e-5
+
+
+def test_the_primaries_of_such_an_exr_are_those_of_its_tags(make_job, tmp_path, codes):
+    corners = (0.708, 0.292, 0.17, 0.797, 0.131, 0.046, 0.3127, 0.329)
+    path = write_image(tmp_path / "wide.exr", (codes / 255).astype(np.float32), chromaticities=("float[8]", corners))
+    assert run(loaded(make_job, path)).primaries == REC2020
+
+
+def test_an_exr_of_which_nothing_is_said_is_refused_with_what_to_do_in_blender(make_job, untagged):
+    with pytest.raises(PlateError) as problem:
+        run(loaded(make_job, untagged, color_space="lin_rec709_scene"))
+    told = american(str(problem.value))
+    assert told.endswith("choose for it a color space that is not linear, or tick Estimate Anyway under Advanced")
+    assert "--" not in told

@@ -10,6 +10,7 @@ from blender_addon.work.estimate_record import entries_of, estimate_of
 from crfnet_core.errors import CurveError
 from crfnet_core.metadata.devices import Device
 from crfnet_core.posterior import Family, Verdict
+from crfnet_core.recognition import Kind, Recognition
 from ocio.pipeline import response_lut
 from ocio.report import verdict_lines
 
@@ -23,6 +24,7 @@ SAVED = {
     "families": str,
     "prior": str,
     "metadata": str,
+    "recognition": str,
     "warnings": str,
     "weights": list,
     "brightness": list,
@@ -36,7 +38,7 @@ SAVED = {
 }
 
 #: Entries that layout 1 lacked; it had "spread" instead.
-NEW = ("shape_uncertainty", "families", "prior", "metadata")
+NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition")
 
 
 @pytest.fixture(scope="module")
@@ -68,6 +70,21 @@ def test_what_the_metadata_says_may_hold_any_character(found):
     odd = dataclasses.replace(found.origins[0], editor='a "写真" \\ editor', words=("saved by 写真", "scaled"))
     again = estimate_of(entries_of(dataclasses.replace(found, origins=(odd,))))
     assert again.origins == (odd,)
+
+
+@pytest.mark.parametrize("curves", [(), ("Sony S-Log3", "ARRI LogC3")])
+def test_what_the_photographs_are_recognized_as_comes_back(found, curves):
+    kind = Kind.LOG_FOOTAGE if curves else Kind.LIMITED_RANGE
+    recognition = Recognition(kind, "codes end at 16", 'give it "写真"', curves=curves, color_space="")
+    again = estimate_of(entries_of(dataclasses.replace(found, recognition=recognition)))
+    assert again.recognition == recognition
+    assert again.recognition.kind is kind
+
+
+def test_an_estimate_saved_before_recognition_has_none(found):
+    entries = entries_of(found)
+    del entries["recognition"]
+    assert estimate_of(entries).recognition is None
 
 
 @pytest.mark.parametrize("verdict", ["good", "usable", "do not trust"])

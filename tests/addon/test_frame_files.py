@@ -1,7 +1,6 @@
 """The frames of a plate as files, with a program in the place of the other Blender."""
 
 import dataclasses
-import shutil
 import sys
 import tempfile
 
@@ -160,19 +159,6 @@ def test_waiting_for_a_frame_can_be_cancelled(movie_job, temporary):
 def test_a_blender_that_cannot_be_started_is_one_sentence(movie_job, tmp_path):
     with pytest.raises(AddonError, match=r"^clip: no second Blender can be started to decode it"):
         run(movie_job(command=(str(tmp_path / "none"),)))
-
-
-def test_images_of_other_formats_are_decoded_one_by_one(make_job, sequence_file, temporary):
-    for path in sequence_file.parent.glob("*.png"):
-        shutil.copy(path, path.with_suffix(".bmp"))
-    (sequence_file.parent / "decoder.py").write_text(DECODER)
-    plate = make_job(sequence_file.with_suffix(".bmp"), is_sequence=True).plate
-    command = (sys.executable, str(sequence_file.parent / "decoder.py"))
-    plate = dataclasses.replace(plate, decoder=BlenderDecoder(command=command))
-    with frame_reader(plate) as read:
-        found = read(sample(frames_of(plate)), None)
-        assert found.numbers == (1, 2, 3, 5, 6, 7, 8, 9)
-        np.testing.assert_array_equal(read_image(found.paths[-1]), read_image(sequence_file.with_name("shot.0009.png")))
 
 
 def test_files_of_several_plates_are_there_together(movie_job, make_job, temporary, codes):

@@ -42,6 +42,18 @@ for module in pkgutil.iter_modules(blender_addon.work.__path__, "blender_addon.w
 print(*sys.modules)
 """
 
+#: What only the command needs, or only some photographs: the zips of the add-on may lack it.
+OPTIONAL = ("PIL", "av", "distributed", "fileseq", "matplotlib", "pi_heif", "shtab", "tqdm")
+
+BLOCKED = f"""
+import sys
+class Absent:
+    def find_spec(self, name, path=None, target=None):
+        if name.partition(".")[0] in {OPTIONAL}:
+            raise ModuleNotFoundError(name + " is blocked", name=name)
+sys.meta_path.insert(0, Absent())
+"""
+
 IMPORT_LIGHT = f"""
 import importlib, sys
 for name in {LIGHT}:
@@ -92,6 +104,12 @@ def test_work_imports_neither_blender_nor_another_room(root):
     loaded = loaded_by(IMPORT_WORK, root)
     assert not [name for name in loaded if name.startswith(("blender_addon.ui", "blender_addon.scene"))]
     assert "blender_addon.lazy_import" not in loaded
+
+
+def test_work_does_without_what_only_the_command_needs(root):
+    loaded = loaded_by(BLOCKED + IMPORT_WORK, root)
+    assert "blender_addon.work.run" in loaded
+    assert not {name.partition(".")[0] for name in loaded} & set(OPTIONAL)
 
 
 def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):

@@ -16,6 +16,7 @@ from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Verdict
 from tests.helpers.color_profiles import matrix_profile, write_tagged
+from tests.helpers.footage import limited_range_picture
 from tests.helpers.images import write_image
 
 
@@ -73,7 +74,7 @@ def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
 
 
 def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, sequence_file):
-    scans, luts = calls(frame_files, "find_frames"), calls(run_module, "response_lut")
+    scans, luts = calls(frame_files, "pattern_frames"), calls(run_module, "response_lut")
     completed = run(make_job(sequence_file, is_sequence=True))
     assert (len(scans), len(luts)) == (1, 1)
     assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
@@ -181,6 +182,16 @@ def test_what_is_not_to_be_trusted_is_applied_at_the_users_word_only(make_job, u
     assert not (tmp_path / "out").exists()
     insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
     assert (insisted.is_withheld, insisted.is_applied) == (False, True)
+
+
+def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(make_job, tmp_path):
+    job = make_job(write_image(tmp_path / "limited.png", limited_range_picture()), mode=ApplyMode.NODES)
+    completed = run(job)
+    assert completed.estimate.recognition.kind == "limited range"
+    assert completed.is_withheld
+    assert completed.lines[0].startswith("The estimate is not to be trusted: expand the range first")
+    insisted = run(dataclasses.replace(job, output=dataclasses.replace(job.output, despite_verdict=True)))
+    assert insisted.is_applied
 
 
 def test_several_photographs_are_estimated_together(make_job, plate_file, codes, tmp_path, estimate):

@@ -8,13 +8,14 @@ import pytest
 
 from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
+from blender_addon.work.frame_files import frames_of
 from blender_addon.work.job import ApplyMode
 from crfnet_core.errors import ConfigError, CRFNetError
 from crfnet_core.response import ResponseCurve
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.plates.frames import find_frames
-from tests.helpers.images import read_image
+from tests.helpers.images import read_image, write_image
 
 CURVE = ResponseCurve.gamma(2.2)
 LUT = inverse_response_lut(CURVE)
@@ -47,6 +48,19 @@ def test_baked_frames_keep_their_numbers(make_job, sequence_file, tmp_path):
     assert baked.is_sequence
     assert [path.name for path in baked.files] == [f"shot_linear.{n:04d}.exr" for n in (1, 2, 3, 5, 6, 7, 8, 9)]
     assert all(path.is_file() for path in baked.files)
+
+
+@pytest.mark.parametrize("before", ["shot.1-2.", "shot.1-2x", "take#_", "a%02d_", "b$F4.", "[1-2]@@."])
+def test_the_name_before_the_frame_number_may_look_like_a_placeholder(make_job, tmp_path, codes, before):
+    """Blender knows which number is that of the frame, so its name is not read as a pattern."""
+    files = [write_image(tmp_path / f"{before}{number:04d}.png", np.roll(codes, number, 0)) for number in (1, 2, 4)]
+    write_image(tmp_path / "shot.1-20007.png", codes)
+    job = make_job(files[0], is_sequence=True)
+    baked = writers.write(job, LUT, 0.0, lambda: frames_of(job.plate))
+    assert frames_of(job.plate).paths == tuple(files)
+    assert frames_of(job.plate).numbers == (1, 2, 4)
+    assert [path.name[-9:] for path in baked.files] == [".0001.exr", ".0002.exr", ".0004.exr"]
+    assert np.abs(read_image(baked.files[2]) - CURVE.inverse(np.roll(codes, 4, 0) / 255)).max() < 1e-5
 
 
 @pytest.mark.parametrize("steps", [0, 1, 5])

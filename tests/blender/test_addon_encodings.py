@@ -3,7 +3,8 @@
 import numpy as np
 import pytest
 
-from tests.helpers.images import write_image
+from crfnet_core.response import ResponseCurve
+from tests.helpers.images import read_image, write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
@@ -31,8 +32,9 @@ def test_other_color_spaces_are_not(image, color_space):
 def test_log_metadata_is_warned_of(addon, tmp_path, codes):
     path = write_image(tmp_path / "scan.dpx", codes, dpx__Transfer="Logarithmic")
     image = bpy.data.images.load(str(path))
-    with pytest.raises(RuntimeError, match=r"calls itself (KodakLog|Logarithmic)"):
+    with pytest.raises(RuntimeError, match=r"is encoded as log: .* tick Estimate Anyway under Advanced"):
         bpy.ops.crf.estimate_response(image=image.name)
+    assert bpy.ops.crf.estimate_response(image=image.name, force=True) == {"FINISHED"}
 
 
 def test_a_dpx_that_is_neither(addon, tmp_path, codes, estimate):
@@ -51,3 +53,38 @@ def test_linear_files_are_refused(addon, tmp_path):
     image = bpy.data.images.load(str(path))
     with pytest.raises(RuntimeError, match="linear"):
         bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, tmp_path, in_editor):
+    from tests.blender.test_addon_panel import drawn_in, labels, operators
+    from tests.helpers.footage import limited_range_picture
+
+    image = bpy.data.images.load(str(write_image(tmp_path / "limited.png", limited_range_picture())))
+    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
+    assert not [tree for tree in bpy.data.node_groups if tree.name.startswith("Camera Response")]
+    image.camera_response_settings.apply = "NODES"
+    drawn = drawn_in(image, in_editor)
+    assert next(entry for entry in drawn if entry[0] == "label") == ("label", "Do not trust: limited range", "ERROR")
+    words = " ".join(labels(drawn))
+    assert "Expand the range first" in words
+    assert ("crf.apply_response", "Apply Anyway") in operators(drawn)
+    with pytest.raises(RuntimeError, match="Apply Anyway"):
+        bpy.ops.crf.apply_response(image=image.name)
+    assert bpy.ops.crf.apply_response(image=image.name, anyway=True, apply="NODES") == {"FINISHED"}
+
+
+def test_an_exr_plate_is_baked_once_it_is_called_encoded(addon, tmp_path, codes):
+    from ocio.luts.files import write_lut
+    from ocio.luts.lut1d import inverse_response_lut
+
+    curve = ResponseCurve.gamma(2.2)
+    write_lut(tmp_path / "camera.cube", inverse_response_lut(curve))
+    path = write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32))
+    image = bpy.data.images.load(str(path))
+    lut = {"image": image.name, "filepath": str(tmp_path / "camera.cube")}
+    with pytest.raises(RuntimeError, match="choose for it a color space that is not linear"):
+        bpy.ops.crf.load_lut(**lut)
+    image.colorspace_settings.name = "Non-Color"
+    assert bpy.ops.crf.load_lut(**lut) == {"FINISHED"}
+    assert bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float") == {"FINISHED"}
+    assert np.abs(read_image(tmp_path / "plate_linear.exr") - curve.inverse(codes / 255)).max() < 1e-5

@@ -18,6 +18,7 @@ import pytest
 from blender_addon import build
 from crfnet_core import ResponseNetwork, estimate_response, read_photo
 from ocio.luts.spi1d import read_spi1d
+from tests.helpers.colored_ramp import colored_ramp
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 
@@ -43,7 +44,7 @@ print("FOUND " + json.dumps([addon.module for addon in bpy.context.preferences.a
 ESTIMATE = """
 import json, sys
 import bpy
-module, plate, folder = sys.argv[-3:]
+module, plate, folder, heic = sys.argv[-4:]
 bpy.ops.preferences.addon_enable(module=module)
 image = bpy.data.images.load(plate)
 image.camera_response_settings.apply = "EXPORT"
@@ -52,12 +53,17 @@ print(bpy.ops.crf.estimate_response(image=image.name))
 import crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO
 packages = (crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO)
 estimate = crfnet_core.estimate_response(crfnet_core.read_photo(plate), network=crfnet_core.ResponseNetwork.load())
+stray = sorted({"shtab", "tqdm", "matplotlib", "google", "flatbuffers", "PIL", "pi_heif"} & set(sys.modules))
+codes = crfnet_core.image_io.read_codes(heic).codes
+import pi_heif, PIL
+packages += (pi_heif, PIL)
 found = {
     "files": {package.__name__: package.__file__ for package in packages},
     "onnxruntime": onnxruntime.__version__,
     "operator": [list(image["camera_response"]["weights"]), image["camera_response"]["model"]],
     "api": [list(estimate.weights), estimate.model],
-    "stray": sorted({"shtab", "tqdm", "matplotlib", "google", "flatbuffers"} & set(sys.modules)),
+    "stray": stray,
+    "heic": codes.tolist(),
 }
 print("FOUND " + json.dumps(found))
 """
@@ -140,9 +146,10 @@ def addons(package, bare_python, user):
 
 
 @pytest.fixture(scope="module")
-def found(addons, bare_python, user, plate, look):
+def found(addons, bare_python, user, plate, look, root):
     """What the next session found out."""
-    return run_blender(bare_python, user, ESTIMATE, MODULE, plate, look)
+    heic = root / "tests" / "data" / "heif" / "rgb8.heic"
+    return run_blender(bare_python, user, ESTIMATE, MODULE, plate, look, heic)
 
 
 def test_the_same_sources_give_the_same_bytes(root, package, tmp_path):
@@ -187,12 +194,16 @@ def test_it_is_installed_and_enabled(addons):
 
 def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
     site_packages = user / "extensions" / ".local" / "lib"
-    for name in ("crfnet_core", "ocio", "onnxruntime"):
+    for name in ("crfnet_core", "ocio", "onnxruntime", "pi_heif", "PIL"):
         assert site_packages in Path(found["files"][name]).parents, found["files"][name]
     for name in ("OpenImageIO", "PyOpenColorIO"):
         assert "bpy" in Path(found["files"][name]).parts, found["files"][name]
     assert any(f"/onnxruntime-{found['onnxruntime']}-cp" in name for name in zipfile.ZipFile(package).namelist())
     assert found["stray"] == []
+
+
+def test_its_wheels_read_heic(found):
+    np.testing.assert_array_equal(found["heic"], colored_ramp(8))
 
 
 def test_the_operators_estimate_is_that_of_the_api(found, tolerance):

@@ -45,3 +45,8 @@ def log_picture(name: str, *, seed: int = 0, bits: int = 8) -> Float32Array:
 def ordinary_picture(*, seed: int = 0) -> Float32Array:
     """Return the scene as a display-referred picture, black at 0 and clipped at white."""
     return quantized(srgb_encode(np.clip(scene_light(seed=seed) * 2.5 - 0.03, 0, 1)))
+
+
+def limited_range_picture(*, seed: int = 0) -> NDArray[np.uint8]:
+    """Return the codes of an ordinary picture, black at 16 and white at 235 as in video, uint8 (480, 480, 3)."""
+    return np.rint(16 + 219 * ordinary_picture(seed=seed).astype(np.float64)).astype(np.uint8)

@@ -15,7 +15,7 @@ import bpy
 import numpy as np
 
 from ... import lazy_import
-from ...scene.plates import COMPARED_PLATE, compared_plate
+from ...scene.plates import COMPARED_PLATE, compared_plate, is_heif
 from ...work.errors import AddonError
 
 if TYPE_CHECKING:
@@ -89,6 +89,8 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
         If its file cannot be read.
     """
     width, height = image.size
+    if is_heif(image) and not image.packed_file:  # where Blender has a decoder, its codes are others by a few
+        return _codes_of_file(image, user)
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
     if image.is_float and image.source == "MOVIE":
@@ -96,12 +98,18 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
             f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
         )
     if image.is_float and not image.packed_file:  # its pixels are linear light by the color space, not code values
-        read_photo = lazy_import.load("crfnet_core.image_io").read_photo
-        return read_photo(Path(image.filepath_from_user(image_user=user))).pixels[::-1]
+        return _codes_of_file(image, user)
     flat = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(flat)
     pixels = flat.reshape(height, width, image.channels)
     return pixels if image.channels >= 3 else pixels[..., :1].repeat(3, axis=2)
+
+
+def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
+    """Return the code values in the file of an image, as `code_values` does."""
+    read_photo = lazy_import.load("crfnet_core.image_io").read_photo
+    path = image.filepath_from_user(image_user=user)
+    return read_photo(Path(bpy.path.abspath(path, library=image.library))).pixels[::-1]
 
 
 def linear_pixels(

@@ -2,17 +2,20 @@
 """Load the inverse of a plate's response from a LUT file, in place of an estimate."""
 
 from pathlib import Path
-from typing import ClassVar
+from typing import TYPE_CHECKING, ClassVar
 
 import bpy
 
 from ... import lazy_import
-from ...scene import plates, stored_estimate
+from ...scene import color_management, plates, stored_estimate
 from ...work.errors import expected_errors
 from ...work.wording import LOADED, loaded_line
 from .. import running
 from ..image_editor import comparison
 from ..operator_base import ChosenPlate, failed
+
+if TYPE_CHECKING:
+    from crfnet_core.metadata.color_tags import Primaries
 
 
 class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
@@ -48,8 +51,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         """Store the response on the plate."""
         try:
             plate = self.chosen_plate(context)
-            files, frame_files = plates.plate_of(plate), lazy_import.load(".work.frame_files")
-            primaries = frame_files.primaries_of(files, frame_files.frames_of(files))
+            primaries = self._primaries(plate)
             path = Path(bpy.path.abspath(self.filepath))
             lut = lazy_import.load("ocio.luts.files").read_lut(path)
             curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)
@@ -64,6 +66,14 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         running.redraw_editors(context.window_manager)
         self.report({"INFO"}, f"{plate.name}: the response is {model}; nothing else was changed")
         return {"FINISHED"}
+
+    def _primaries(self, datablock: plates.Datablock) -> "Primaries":
+        """Return the primaries that the plate is encoded in."""
+        plate, frame_files = plates.plate_of(datablock), lazy_import.load(".work.frame_files")
+        is_encoded = lazy_import.load(".work.encoding_check").holds_encoded_values(
+            plate, color_management.running_config(), is_forced=datablock.camera_response_settings.force
+        )
+        return frame_files.primaries_of(plate, frame_files.frames_of(plate), is_encoded=is_encoded)
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_OT_load_lut,))
