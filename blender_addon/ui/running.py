@@ -93,8 +93,11 @@ class Run:
         redraw_editors(self._manager)
 
     def _set_status(self, text: str | None) -> None:
-        """Set the text of the status bar in the workspace of the start, which may have been removed meanwhile."""
-        with suppress(ReferenceError):
+        """Set the text of the status bar in the workspace of the start, which may have been removed meanwhile.
+
+        Blender goes by the workspace of the context, not by the one that the method belongs to.
+        """
+        with suppress(ReferenceError), bpy.context.temp_override(workspace=self._workspace):
             self._workspace.status_text_set(text)
 
 
