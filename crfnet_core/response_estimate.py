@@ -20,7 +20,7 @@ from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import Encoding
 from crfnet_core.metrics import brightness_percent
 from crfnet_core.posterior import Family, LikelyKind, Verdict
-from crfnet_core.recognition import Kind, Recognition
+from crfnet_core.recognition import Recognition
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array, same_fields
 from crfnet_core.windows import Window
@@ -173,7 +173,7 @@ class ResponseEstimate:
                 warnings=tuple(document["warnings"]),
                 model=document["model"],
                 photos=tuple(photo["name"] for photo in document["photographs"]),
-                recognition=_recognition(document.get("recognition")),
+                recognition=Recognition.from_dict(document.get("recognition")),
             )
         except KeyError as problem:
             raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
@@ -219,13 +219,6 @@ def _origins(documents: list[dict[str, Any]]) -> Iterator[FileOrigin]:
         entries = {field.name: entry[field.name] for field in dataclasses.fields(FileOrigin)}
         kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
         yield FileOrigin(**entries | kinds | {"words": tuple(entry["words"])})
-
-
-def _recognition(entry: dict[str, Any] | None) -> Recognition | None:
-    """Return what the photographs of a document are recognized as."""
-    if entry is None:
-        return None
-    return Recognition(**entry | {"kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
 def _number(entry: float | None) -> float:

@@ -23,7 +23,7 @@ from crfnet_core.metadata import FileOrigin
 from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import Encoding
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.recognition import Kind, Recognition
+from crfnet_core.recognition import Recognition
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -106,7 +106,7 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         warnings=_lines(entries["warnings"]),
         model=entries["model"],
         photos=_lines(entries["photos"]),
-        recognition=_recognition(json.loads(entries.get("recognition", "null"))),
+        recognition=Recognition.from_dict(json.loads(entries.get("recognition", "null"))),
     )
 
 
@@ -132,13 +132,6 @@ def _origins(entries: Mapping[str, Any]) -> Iterator[FileOrigin]:
     for origin in json.loads(entries.get("metadata", "[]")):
         kinds = {"device": Device(origin["device"]), "encoding": Encoding(origin["encoding"])}
         yield FileOrigin(**{**origin, **kinds, "words": tuple(origin["words"])})
-
-
-def _recognition(entry: dict[str, Any] | None) -> Recognition | None:
-    """Return what the photographs are recognized as; None for ordinary ones."""
-    if entry is None:
-        return None
-    return Recognition(**{**entry, "kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
 def _lines(text: str) -> tuple[str, ...]:

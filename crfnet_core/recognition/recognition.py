@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from enum import StrEnum
+from typing import Any
 
 from crfnet_core.recognition.levels import Levels
 from crfnet_core.recognition.limited_range import is_limited_range
@@ -44,6 +46,13 @@ class Recognition:
     advice: str
     curves: tuple[str, ...] = ()
     color_space: str = ""
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
+        """Return what `dataclasses.asdict` made of a recognition, also after JSON; None for an ordinary picture."""
+        if entry is None:
+            return None
+        return cls(**{**entry, "kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
 def recognize(levels: Levels, *, log_probability: float, makes: tuple[str, ...] = ()) -> Recognition | None:
