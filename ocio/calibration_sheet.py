@@ -13,6 +13,7 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from crfnet_core.calibration import Calibration
+from crfnet_core.posterior import Verdict
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from ocio.report import calibration_lines
@@ -20,13 +21,13 @@ from ocio.sheet import (
     BOTTOM,
     CURVE,
     DOT,
-    GRID,
     HEIGHT,
     INK,
     LONGEST_LINE,
     QUIET,
     SIZE,
     VERDICT_INK,
+    plain,
     sheet_figure,
     shortened,
 )
@@ -40,7 +41,7 @@ FRAMES = "viridis"
 #: Largest residual that is drawn, in 8-bit codes.
 LARGEST_RESIDUAL = 8
 
-_WARNING = list(VERDICT_INK.values())[1]
+_WARNING = VERDICT_INK[Verdict.USABLE]
 
 
 def draw_calibration(path: Path, calibration: Calibration, *, overwrite: bool = False) -> None:
@@ -96,7 +97,7 @@ def _draw_curve(axes: Axes, calibration: Calibration) -> None:
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
     axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
     axes.legend(loc="lower right", frameon=False, fontsize=10)
-    _plain(axes)
+    plain(axes)
 
 
 def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
@@ -108,7 +109,7 @@ def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> 
     axes.set(xlim=(DARKEST, 0.5), ylim=(0, 1.02), ylabel="Brightness")
     axes.set_title("Points of every frame, dark to bright", loc="left", size=9, color=QUIET, pad=5)
     axes.tick_params(labelbottom=False)
-    _plain(axes)
+    plain(axes)
 
 
 def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
@@ -119,7 +120,7 @@ def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) 
     axes.axhline(0, color=INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL))
     axes.set(xlabel="Irradiance in stops, white = 0", ylabel="Residual (codes)")
-    _plain(axes)
+    plain(axes)
 
 
 def _frame_colors(calibration: Calibration) -> Float64Array:
@@ -127,11 +128,3 @@ def _frame_colors(calibration: Calibration) -> Float64Array:
     stops = np.array([frame.stops for frame in calibration.frames])
     place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
     return np.asarray(colormaps[FRAMES](0.9 * place))
-
-
-def _plain(axes: Axes) -> None:
-    """Draw a grid, and no frame above and on the right."""
-    axes.grid(color=GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=0)
-    axes.spines[["top", "right"]].set_visible(False)

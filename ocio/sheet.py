@@ -139,10 +139,7 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     axes.set(
         xlim=(0, 1), ylim=(0, 1), aspect="equal", xlabel="Irradiance (scene-linear, relative)", ylabel="Brightness"
     )
-    axes.grid(color=GRID, linewidth=0.8)
-    axes.set_axisbelow(True)
-    axes.tick_params(length=0)
-    axes.spines[["top", "right"]].set_visible(False)
+    plain(axes)
     handles, labels = axes.get_legend_handles_labels()
     order = [2, 0, 1]
     axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower right", frameon=False, fontsize=10)
@@ -189,6 +186,14 @@ def _show(axes: Axes, pixels: Float32Array, stride: int, title: str) -> None:
     axes.imshow(codes, extent=(0, width * stride, height * stride, 0), interpolation="antialiased")
     axes.set_title(title, loc="left", size=9, color=QUIET, pad=5)
     axes.set_axis_off()
+
+
+def plain(axes: Axes) -> None:
+    """Draw a grid, and no frame above and on the right."""
+    axes.grid(color=GRID, linewidth=0.8)
+    axes.set_axisbelow(True)
+    axes.tick_params(length=0)
+    axes.spines[["top", "right"]].set_visible(False)
 
 
 def shortened(text: str, longest: int) -> str:
