@@ -77,7 +77,7 @@ class Run:
         if text == self._shown or since < self._pause:
             return
         self._shown, self._shown_at, self._pause = text, time.monotonic(), None
-        self._set_status(text)
+        set_status(self._workspace, text)
         self._manager.progress_update(self.task.percent)
         redraw_editors(self._manager, regions=("UI",))
 
@@ -89,16 +89,8 @@ class Run:
         _current = None
         self._manager.event_timer_remove(self._timer)
         self._manager.progress_end()
-        self._set_status(None)
+        set_status(self._workspace, None)
         redraw_editors(self._manager)
-
-    def _set_status(self, text: str | None) -> None:
-        """Set the text of the status bar in the workspace of the start, which may have been removed meanwhile.
-
-        Blender goes by the workspace of the context, not by the one that the method belongs to.
-        """
-        with suppress(ReferenceError), bpy.context.temp_override(workspace=self._workspace):
-            self._workspace.status_text_set(text)
 
 
 def current() -> Run | None:
@@ -120,6 +112,15 @@ def stop() -> None:
     if _current is not None:
         _current.task.cancel()
         _current.end()
+
+
+def set_status(workspace: bpy.types.WorkSpace, text: str | None) -> None:
+    """Set the text of the status bar in a workspace, which may have been left or removed meanwhile.
+
+    Blender goes by the workspace of the context, not by the one that the method belongs to.
+    """
+    with suppress(ReferenceError), bpy.context.temp_override(workspace=workspace):
+        workspace.status_text_set(text)
 
 
 def redraw_editors(manager: bpy.types.WindowManager, *, regions: tuple[str, ...] = ()) -> None:

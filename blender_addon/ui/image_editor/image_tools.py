@@ -11,6 +11,7 @@ from ... import lazy_import
 from ...scene import plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
 from ..operator_base import failed
+from ..running import set_status
 from . import comparison
 
 if TYPE_CHECKING:
@@ -76,7 +77,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
         comparison.end(context.space_data)
         self._workspace = context.workspace
         context.window.cursor_modal_set("EYEDROPPER")
-        context.workspace.status_text_set(PICK_HINT)
+        set_status(self._workspace, PICK_HINT)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -100,7 +101,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the mouse pointer and the status bar back."""
         context.window.cursor_modal_restore()
-        self._workspace.status_text_set(None)
+        set_status(self._workspace, None)
 
     def _pick(self, space: bpy.types.SpaceImageEditor, place: tuple[float, float]) -> float:
         """Set the anchor of the plate to the brightness at a place, from (0, 0) bottom left to (1, 1); return it."""
