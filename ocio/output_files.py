@@ -144,8 +144,12 @@ def plain_stem(photo: Path) -> str:
 
     It is cut to `LONGEST_STEM` bytes, so that every file named after it can be written.
     """
-    stem = re.sub(r"[$%#*?\\:]", "_", photo.stem)
-    return stem.encode(errors="surrogateescape")[:LONGEST_STEM].decode(errors="ignore")
+    return _plain(photo.stem).encode(errors="surrogateescape")[:LONGEST_STEM].decode(errors="ignore")
+
+
+def _plain(name: str) -> str:
+    """Return a name with `_` for what configs, patterns or other systems interpret."""
+    return re.sub(r"[$%#*?\\:]", "_", name)
 
 
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:
@@ -159,7 +163,7 @@ def distinct_names(name: str, hint: str = "") -> Iterator[str]:
         What tells it from others of the name, such as its folder. Without a hint, numbers from 2 do.
     """
     yield name
-    hint = re.sub(r"[$%#*?]", "_", hint)
+    hint = _plain(hint)
     if hint:
         yield f"{name} ({hint})"
     for number in itertools.count(2):
