@@ -1,4 +1,4 @@
-"""Names for the arrays that pass between modules and for callbacks, and when two dataclasses of arrays are equal."""
+"""Names for the arrays that pass between modules and for callbacks; when two dataclasses of arrays are equal."""
 
 from __future__ import annotations
 
@@ -31,6 +31,12 @@ IndexArray = NDArray[np.intp]
 
 #: Called with (done, total) after every step. If it raises, the work stops.
 Progress = Callable[[int, int], None]
+
+
+def show_progress(progress: Progress | None, done: int, total: int) -> None:
+    """Call a progress callback, if there is one."""
+    if progress is not None:
+        progress(done, total)
 
 
 def same_fields(one: DataclassInstance, other: DataclassInstance) -> bool:

@@ -47,8 +47,6 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
     """Estimate one response of each photograph; those that fail are named at the end."""
     photographs = pipeline.find_photographs(arguments.photos)
     tasks = pipeline.plan_each(arguments.out, photographs, options, plate_options(arguments), outputs)
-    pipeline.load_prior(options)
-    pipeline.load_network(options)
     with progress_bar("photographs") as progress:
         records = pipeline.estimate_each(
             arguments.out, tasks, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress

@@ -13,7 +13,7 @@ from typing import Any
 from crfnet_core.errors import CRFNetError, PlateError, one_line
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
-from crfnet_core.types import Progress
+from crfnet_core.types import Progress, show_progress
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
 from ocio.luts.files import read_lut
@@ -178,14 +178,15 @@ def estimate_each(
     first = tasks[0]
     if not (out / MANIFEST).exists() and not first.plates.overwrite:
         _check_absent([task.files.config for task in tasks])
+    _network_and_prior(first.options)  # a bad model or prior is refused before anything is written
     with output_folder(out):
         manifest = Manifest(out / MANIFEST, _settings(first), overwrite=first.plates.overwrite)
         todo = [task for task in tasks if not _is_done(task, manifest)]
         before = len(tasks) - len(todo)
-        _show(progress, before, len(tasks))
+        show_progress(progress, before, len(tasks))
         for done, record in enumerate(_records(todo, workers or cores(), scheduler), before + 1):
             manifest.add(record)
-            _show(progress, done, len(tasks))
+            show_progress(progress, done, len(tasks))
         names = [str(task.photo) for task in tasks]
         manifest.rewrite(dict.fromkeys([*names, *manifest.records]))
         _write_configs(out, manifest)
@@ -270,9 +271,3 @@ def _write_configs(out: Path, manifest: Manifest) -> None:
         ]
         check = {files[0].color_space: read_lut(files[0].spi1d).channels[0]}  # they all are made alike
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
-
-
-def _show(progress: Progress | None, done: int, total: int) -> None:
-    """Call the progress callback, if there is one."""
-    if progress is not None:
-        progress(done, total)

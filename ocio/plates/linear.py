@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import CRFNetError, PlateError
 from crfnet_core.files import atomic_write, check_target
 from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.types import Progress
+from crfnet_core.types import Progress, show_progress
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
@@ -28,12 +28,10 @@ from ocio.plates.frames import FramePattern, FrameSequence, format_frames
 from ocio.plates.light import PlateLight, check_finished
 from ocio.plates.parallel import finished
 from ocio.plates.primaries import check_same_primaries, plate_primaries
+from ocio.staging import STALE_SECONDS
 
 #: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8
-
-#: Age in seconds from which a temporary file counts as left behind by a killed run.
-STALE_SECONDS = 600
 
 #: Rows linearised at a time, which keeps the memory for intermediate values small.
 _ROWS = 64
@@ -159,14 +157,14 @@ def linearize_plates(
         SourceFrame.of(sequence, position, load) for position, load in zip(pending.values(), loaders, strict=True)
     )
     jobs = ((target, partial(conversion.write, plate, target)) for target, plate in zip(pending, plates, strict=True))
-    _report(progress, len(skipped), len(targets))
+    show_progress(progress, len(skipped), len(targets))
     with closing(finished(jobs, _worker_count(workers))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
             try:
                 future.result()
             except CRFNetError as problem:
                 failures[target] = problem
-            _report(progress, done, len(targets))
+            show_progress(progress, done, len(targets))
     if failures:
         raise PlateError(_failure(failures, targets, sequence))
     return PlateReport(tuple(pending), skipped, sequence.missing, light)
@@ -264,12 +262,6 @@ def _remove_leftovers(targets: Iterable[Path]) -> None:
                 with suppress(OSError):
                     if time.time() - path.stat().st_mtime > STALE_SECONDS:
                         path.unlink()
-
-
-def _report(progress: Progress | None, done: int, total: int) -> None:
-    """Call the progress callback, if there is one."""
-    if progress is not None:
-        progress(done, total)
 
 
 def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> str:

@@ -16,7 +16,7 @@ from crfnet_core.files import atomic_write
 from crfnet_core.image_io import read_photo
 from ocio.luts.lut1d import Lut1D
 from ocio.plates import linear
-from ocio.plates.linear import STALE_SECONDS
+from ocio.staging import STALE_SECONDS
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
