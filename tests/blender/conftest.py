@@ -41,6 +41,14 @@ def addon(fixed_model):
 
 
 @pytest.fixture
+def image(addon, plate_file):
+    """The bundled plate as an image, with its estimate."""
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name)
+    return image
+
+
+@pytest.fixture
 def in_editor():
     """Turn an area of the window into an editor for the length of a block; gives its space."""
 

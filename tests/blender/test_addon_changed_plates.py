@@ -17,13 +17,6 @@ TWICE = "Linearized twice"
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name)
-    return image
-
-
-@pytest.fixture
 def tree(addon):
     from blender_addon.scene.compositor import compositor_tree
 

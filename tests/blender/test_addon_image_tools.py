@@ -10,13 +10,6 @@ from tests.helpers.images import write_image
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name)
-    return image
-
-
 def pixels_of(image):
     """The pixels of a float image, the top row first."""
     width, height = image.size

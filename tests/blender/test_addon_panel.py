@@ -8,13 +8,6 @@ from tests.helpers.images import write_image
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name)
-    return image
-
-
 class Layout:
     """Stands for a layout; records what is drawn and set, and knows what a real layout can draw."""
 

@@ -12,13 +12,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name)
-    return image
-
-
-@pytest.fixture
 def windows(addon):
     from blender_addon.ui.image_editor import analyzed_windows
 
