@@ -95,7 +95,7 @@ def estimate_response(
     evidences = [reading.evidence for reading in readings]
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
     makes = tuple(source.make for source in sources if use_metadata)
-    recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes)
+    recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=posterior.mean_weights,

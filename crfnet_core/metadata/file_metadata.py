@@ -14,6 +14,10 @@ from crfnet_core.metadata.transfer_tags import dpx_transfer, with_named_transfer
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
 
+#: Entry of a header that a renderer writes -> the renderer. Blender writes it into the PNG and the JPEG files of a
+#: render, unless the scene's metadata says otherwise.
+RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
+
 
 @dataclass(frozen=True)
 class FileMetadata:
@@ -31,6 +35,8 @@ class FileMetadata:
         The program that wrote the file last, or the camera's firmware: EXIF Software.
     history : tuple of str
         Programs in the XMP history (stEvt:softwareAgent), the first first.
+    renderer : str
+        The program that rendered the picture, which no camera took.
     year : int, optional
         Of EXIF DateTimeOriginal, by the camera's clock.
     iso : int, optional
@@ -59,6 +65,7 @@ class FileMetadata:
     model: str = ""
     software: str = ""
     history: tuple[str, ...] = ()
+    renderer: str = ""
     year: int | None = None
     iso: int | None = None
     exif_size: tuple[int, int] | None = None
@@ -102,6 +109,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         model=_text(header, "Model"),
         software=_text(header, "Software"),
         history=tuple(part.strip() for part in history.split(";") if part.strip()),
+        renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
         year=_year(_text(header, "Exif:DateTimeOriginal") or _text(header, "exif:DateTimeOriginal")),
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,

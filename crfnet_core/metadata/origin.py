@@ -34,6 +34,10 @@ NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 #: From this quality on the tables of the IJG library are nearly all ones, as those of many cameras are.
 INDISTINCT_QUALITY = 98
 
+#: Highest JPEG quality of the copies that messengers and web sites send, as far as they are told from others: pages of
+#: photographers have 90 and more.
+SENT_QUALITY = 85
+
 _DEVICES = {
     Device.PHONE: "a phone",
     Device.COMPACT: "a compact camera",
@@ -89,6 +93,8 @@ class FileOrigin:
         What the file says of its code values.
     words : tuple of str
         The same in plain words, one sentence part each, for people.
+    renderer : str
+        The program that rendered the picture, which no camera took; empty if none is known.
     """
 
     device: Device
@@ -100,6 +106,13 @@ class FileOrigin:
     picture_shape: str
     encoding: Encoding
     words: tuple[str, ...]
+    renderer: str = ""
+
+    @property
+    def is_sent_copy(self) -> bool:
+        """Whether messengers and web sites send such files: no camera named, scaled, and strongly compressed."""
+        is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
+        return is_compressed and self.is_scaled is True and not self.camera
 
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
@@ -121,11 +134,12 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
         picture_shape=picture_shape(metadata.width, metadata.height),
         encoding=encoding,
         words=(
-            _taken_words(camera, device),
+            f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
             *_saved_words(editor, is_scaled, is_resaved, quality),
             *_scaled_words(metadata, is_scaled),
             *_encoding_words(metadata, encoding),
         ),
+        renderer=metadata.renderer,
     )
 
 

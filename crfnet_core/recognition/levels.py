@@ -13,7 +13,10 @@ from crfnet_core.types import Float32Array, Float64Array
 #: black are dead pixels; a lens puts no more above white than reflections.
 BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 
-#: Bins of the histogram: the codes of 10 bits.
+#: Luma of red, green and blue, as JPEG and most video encoders compute it (ITU-R BT.601).
+LUMA = np.array([0.299, 0.587, 0.114], np.float32)
+
+#: Bins of the histograms: the codes of 10 bits.
 BINS = 1024
 
 #: Rows and columns are skipped until no more samples than these are left; nothing is averaged.
@@ -22,33 +25,41 @@ MOST_SAMPLES = 3_000_000
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """The distribution of all channels' brightness together.
+    """The distributions of all channels' brightness together, and of luma.
 
     Parameters
     ----------
     histogram : ndarray, float64, shape (1024,)
-        The number of samples at each code of 10 bits.
+        The number of samples of all channels at each code of 10 bits.
+    luma : ndarray, float64, shape (1024,)
+        The number of pixels whose luma is at each code of 10 bits.
     """
 
     histogram: Float64Array
+    luma: Float64Array
 
     @classmethod
     def of(cls, pixels: Float32Array) -> Levels:
         """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
         step = max(1, int(np.ceil(np.sqrt(pixels.size / MOST_SAMPLES))))
-        codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.int64)
-        return cls(np.bincount(codes.ravel(), minlength=BINS).astype(np.float64))
+        samples = pixels[::step, ::step]
+        return cls(_histogram(samples), _histogram(samples @ LUMA))
 
     @classmethod
     def joint(cls, levels: Sequence[Levels]) -> Levels:
         """Return the levels of several pictures of one camera together; each counts the same."""
-        return cls(np.sum([each.histogram / each.histogram.sum() for each in levels], axis=0))
+        return cls(
+            np.sum([each.histogram / each.histogram.sum() for each in levels], axis=0),
+            np.sum([each.luma / each.luma.sum() for each in levels], axis=0),
+        )
 
     def quantile(self, fraction: float) -> float:
         """Return the brightness in [0, 1] of which at most this fraction of the samples lies below."""
-        cumulative = np.cumsum(self.histogram)
-        position = int(np.searchsorted(cumulative, fraction * cumulative[-1], side="right"))
-        return min(position, BINS - 1) / (BINS - 1)
+        return _quantile(self.histogram, fraction)
+
+    def luma_quantile(self, fraction: float) -> float:
+        """Return the luma in [0, 1] of which at most this fraction of the pixels lies below."""
+        return _quantile(self.luma, fraction)
 
     def share(self, low: float, high: float) -> float:
         """Return the fraction of the samples from one brightness to another, both included."""
@@ -69,3 +80,16 @@ class Levels:
     def white(self) -> float:
         """The brightness of the brightest samples."""
         return self.quantile(WHITE)
+
+
+def _histogram(samples: Float32Array) -> Float64Array:
+    """Return the number of samples at each code of 10 bits, shape (1024,)."""
+    codes = np.rint(samples * np.float32(BINS - 1)).astype(np.int64)
+    return np.bincount(codes.ravel(), minlength=BINS).astype(np.float64)
+
+
+def _quantile(histogram: Float64Array, fraction: float) -> float:
+    """Return the code in [0, 1] of which at most this fraction lies below."""
+    cumulative = np.cumsum(histogram)
+    position = int(np.searchsorted(cumulative, fraction * cumulative[-1], side="right"))
+    return min(position, BINS - 1) / (BINS - 1)

@@ -13,16 +13,30 @@ MARGIN = 3 / 255
 #: The largest share of samples outside, the least share at either end, and how dense one end is beside its neighbours.
 MOST_OUTSIDE, LEAST_AT_END, PILE = 0.002, 1e-4, 1.0
 
+#: The share of pixels whose luma lies beyond black and white, and between which codes these two lie after compression.
+BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
+
 _BAND = 2 * MARGIN + 1 / 255
 
 
 def is_limited_range(levels: Levels) -> bool:
     """Return whether a picture has the histogram of limited range: Eq. 39 of docs/METHOD.md.
 
-    Hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile up, as
-    clipped highlights and shadows do. A picture without clipping, or whose JPEG compression has blurred the ends, is
-    not recognized.
+    Either hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile
+    up, as clipped highlights and shadows do; or black and white of luma lie where limited range has them. Of 92 real
+    photographs 12 have such a black and 3 such a white, none both.
     """
+    return _has_piles(levels) or _has_ends(levels)
+
+
+def _has_ends(levels: Levels) -> bool:
+    """Return whether black and white lie near 16 and 235. JPEG compression blurs piles, and least of all in luma."""
+    black, white = levels.luma_quantile(BEYOND), levels.luma_quantile(1 - BEYOND)
+    return BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
+
+
+def _has_piles(levels: Levels) -> bool:
+    """Return whether the samples end at the codes 16 and 235, and pile up at one of them."""
     below, above = levels.share(0, LIMITED_BLACK - _BAND / 2), levels.share(LIMITED_WHITE + _BAND / 2, 1)
     dark, bright = _end(levels, LIMITED_BLACK), _end(levels, LIMITED_WHITE)
     inside_dark = levels.share(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from crfnet_core.metadata import FileOrigin
 from crfnet_core.recognition.levels import Levels
 from crfnet_core.recognition.limited_range import is_limited_range
 from crfnet_core.recognition.log_curves import COLOR_SPACES
@@ -21,11 +22,13 @@ class Kind(StrEnum):
 
     LOG_FOOTAGE = "log footage"
     LIMITED_RANGE = "limited range"
+    RENDERING = "rendering"
+    SENT_COPY = "sent copy"
 
 
 @dataclass(frozen=True)
 class Recognition:
-    """What a picture is, by its pixels.
+    """What a picture is, by its pixels or its metadata.
 
     Parameters
     ----------
@@ -55,8 +58,14 @@ class Recognition:
         return cls(**{**entry, "kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
 
 
-def recognize(levels: Levels, *, log_probability: float, makes: tuple[str, ...] = ()) -> Recognition | None:
-    """Return what a picture is, if it is limited range or log footage; else None.
+def recognize(
+    levels: Levels,
+    *,
+    log_probability: float,
+    makes: tuple[str, ...] = (),
+    origins: Sequence[FileOrigin] = (),
+) -> Recognition | None:
+    """Return what the pictures of an estimate are, if they are no photographs as a camera renders them; else None.
 
     Parameters
     ----------
@@ -66,10 +75,32 @@ def recognize(levels: Levels, *, log_probability: float, makes: tuple[str, ...] 
         The probability of log footage, in which the levels have been counted: see `log_factor`.
     makes : tuple of str
         The makers that the files name.
+    origins : sequence of FileOrigin
+        What the metadata says of each picture.
     """
     if is_limited_range(levels):
         return _LIMITED_RANGE
-    return _log_footage(levels, makes) if log_probability > RECOGNIZED else None
+    if log_probability > RECOGNIZED:
+        return _log_footage(levels, makes)
+    return next(filter(None, map(_by_origin, origins)), None)
+
+
+def _by_origin(origin: FileOrigin) -> Recognition | None:
+    """Return what the metadata says that a picture is, if it is a rendering or a sent copy."""
+    if origin.renderer:
+        return Recognition(
+            kind=Kind.RENDERING,
+            reason=f"a rendering by {origin.renderer}, as its metadata says: no camera made it",
+            advice="render a linear EXR, or undo the view transform with the renderer's OpenColorIO config",
+        )
+    if origin.is_sent_copy:
+        return Recognition(
+            kind=Kind.SENT_COPY,
+            reason="a copy as messengers and web sites send it: no camera named, scaled, and compressed as JPEG of"
+            f" quality {origin.jpeg_quality}; both change what the estimate reads",
+            advice="ask for the file that the camera wrote",
+        )
+    return None
 
 
 def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:

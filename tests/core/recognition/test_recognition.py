@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.recognition import (
     Kind,
     Levels,
@@ -15,7 +18,21 @@ from crfnet_core.recognition import (
     tag_refusal,
 )
 from crfnet_core.recognition.log_footage import BLACK_FACTOR, HIGH_WHITE_FACTOR, LOW_WHITE_FACTOR
-from tests.helpers.footage import log_picture, ordinary_picture, quantized
+from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
+from tests.helpers.images import write_image
+
+#: Levels that nothing is recognized by.
+BLACK_LEVELS = Levels.of(np.zeros((4, 4, 3), np.float32))
+
+#: What the metadata of a messenger's copy says.
+SENT = {
+    "width": 1600,
+    "height": 1200,
+    "file_format": "JPEG",
+    "has_jfif": True,
+    "luma_table": scaled_table(ANNEX_K_LUMA, 75),
+    "chroma_table": scaled_table(ANNEX_K_CHROMA, 75),
+}
 
 
 @pytest.mark.parametrize("name", log_curves())
@@ -83,11 +100,47 @@ def test_one_end_or_other_ends_are_no_limited_range(low, high):
     assert not is_limited_range(Levels.of(picture))
 
 
-def test_ends_without_a_pile_are_no_limited_range():
-    """A picture whose samples thin out towards the codes 16 and 235 may have any range."""
-    codes = np.random.default_rng(0).normal(125, 36, 600_000)
-    inside = codes[(codes > 14) & (codes < 237)][:480_000].reshape(400, 400, 3)
-    assert not is_limited_range(Levels.of(quantized(inside / 255)))
+@pytest.mark.parametrize(("low", "high", "found"), [(15, 236, True), (25, 236, False), (15, 225, False)])
+def test_without_a_pile_both_ends_have_to_lie_at_those_of_limited_range(low, high, found):
+    codes = np.random.default_rng(0).normal(125, 45, 200_000)
+    inside = codes[(codes > low) & (codes < high)][:160_000].reshape(400, 400, 1)
+    assert is_limited_range(Levels.of(quantized(np.repeat(inside, 3, axis=2) / 255))) is found
+
+
+@pytest.mark.parametrize("quality", [85, 95])
+def test_limited_range_is_recognized_after_compression(tmp_path, quality):
+    compressed = write_image(tmp_path / "a.jpg", limited_range_picture(), Compression=f"jpeg:{quality}")
+    assert is_limited_range(Levels.of(read_photo(compressed).pixels))
+
+
+def origin_of(**fields):
+    """Return what the metadata of a JPEG picture of 1600 x 1200 pixels, quality 75, without a camera's name says."""
+    return file_origin(FileMetadata(**SENT | fields))
+
+
+def test_a_rendering_is_recognized_by_its_metadata():
+    found = recognize(BLACK_LEVELS, log_probability=0.0, origins=[origin_of(renderer="Blender")])
+    assert found.kind is Kind.RENDERING
+    assert "Blender" in found.reason
+
+
+@pytest.mark.parametrize(
+    ("fields", "found"),
+    [
+        ({}, True),
+        ({"width": 1280, "height": 960}, True),
+        ({"width": 4000, "height": 3000}, False),
+        ({"make": "Canon", "model": "Canon EOS 6D"}, False),
+        ({"luma_table": scaled_table(ANNEX_K_LUMA, 90), "chroma_table": scaled_table(ANNEX_K_CHROMA, 90)}, False),
+        ({"luma_table": (), "chroma_table": (), "file_format": "PNG"}, False),
+    ],
+)
+def test_a_messengers_copy_is_recognized_by_its_metadata(fields, found):
+    recognition = recognize(BLACK_LEVELS, log_probability=0.0, origins=[origin_of(**fields)])
+    assert (recognition is not None and recognition.kind is Kind.SENT_COPY) is found
+    if found:
+        assert "quality 75" in recognition.reason
+        assert recognition.advice == "ask for the file that the camera wrote"
 
 
 @pytest.mark.parametrize(

@@ -12,6 +12,7 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 from crfnet_core.metadata import FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.unusual import (
+    WRITTEN,
     accepted_by_kind,
     accepted_overall,
     measure_unusual,
@@ -61,7 +62,9 @@ def test_good_and_usable_are_accepted():
     assert accepted_overall({}).share == 0
 
 
-def test_p6_asks_once_as_of_files_that_name_no_camera(scene, fixed_model, tmp_path, monkeypatch):
+def test_p6_asks_once_as_of_files_that_name_no_camera_and_again_without_what_programs_write(
+    scene, fixed_model, tmp_path, monkeypatch
+):
     asked = []
 
     def estimate(photo, *, network, **options):
@@ -69,23 +72,33 @@ def test_p6_asks_once_as_of_files_that_name_no_camera(scene, fixed_model, tmp_pa
         return SimpleNamespace(verdict=Verdict.GOOD if "solarised" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
-    kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.PALETTE), [File(scene, "a"), File(scene, "b")]
+    kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.MESSENGER), [File(scene, "a"), File(scene, "b")]
     file = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     measure_unusual(scenes, {"m": fixed_model}, {"m": file}, kinds=kinds)
-    assert asked == [(FileMetadata(file_format="PNG"), {})] * 4
+    stripped = FileMetadata(file_format="PNG")
+    assert asked == [(stripped, {}), (WRITTEN[UnusualKind.MESSENGER], {}), (stripped, {})] * 2
     again = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     assert again.verdicts == file.verdicts
-    assert list(again.verdicts) == ["a, solarised or inverted", "a, palette", "b, solarised or inverted", "b, palette"]
+    ways = ("solarised or inverted", "messenger", "messenger, stripped")
+    assert list(again.verdicts) == [f"{name}, {way}" for name in "ab" for way in ways]
     measure_unusual(scenes, {"m": fixed_model}, {"m": again}, kinds=kinds)
-    assert len(asked) == 4
-    assert unusual_report(scenes, again, kinds).overall.photographs == 4
+    assert len(asked) == 6
+    report = unusual_report(scenes, again, kinds)
+    assert report.overall == report.stripped == Accepted(4, 2)
     assert VerdictFile.opened(tmp_path / "p6.json", {"seed": 2}).verdicts == {}
 
 
 def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
     kind = UnusualKind.AGX
     file = VerdictFile(
-        Path("p6.json"), {}, {"a, rendering, AgX": Verdict.GOOD, "b, rendering, AgX": Verdict.DO_NOT_TRUST}
+        Path("p6.json"),
+        {},
+        {
+            "a, rendering, AgX": Verdict.GOOD,
+            "b, rendering, AgX": Verdict.DO_NOT_TRUST,
+            "a, rendering, AgX, stripped": Verdict.GOOD,
+            "b, rendering, AgX, stripped": Verdict.GOOD,
+        },
     )
     report = {"m": unusual_report([File(scene, "a"), File(scene, "b")], file, (kind,))}
     summary = BodySummary(3, 8, {}, ())
@@ -104,6 +117,7 @@ def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
     text = "\n".join(unusual_section(report, {"both": real}))
     assert "| rendering, AgX | 50 % (1 of 2) |" in text
     assert "| **all kinds** | 50 % (1 of 2) |" in text
+    assert "| all kinds, without metadata | 100 % (2 of 2) |" in text
     assert "| m | 0 % (0 of 8) | 0 % (0 of 8) |" in text
     assert "| m, metadata ignored | 25 % (2 of 8) | 25 % (2 of 8) |" in text
     assert "refused" not in "\n".join(unusual_section(report, None))

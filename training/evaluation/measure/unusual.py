@@ -12,6 +12,7 @@ from tqdm import tqdm
 
 from crfnet_core.estimate import estimate_response
 from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Verdict
@@ -19,9 +20,25 @@ from training.evaluation.measure.verdict_files import VerdictFile
 from training.evaluation.report.unusual import Accepted, UnusualReport
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
+from training.synthesis.unusual.encodings import MESSENGER_QUALITY
 
 #: The metadata of the pictures: no program or camera that makes such pictures writes the EXIF of a camera.
 NO_CAMERA = FileMetadata(file_format="PNG")
+
+#: The metadata of kinds whose programs write some: Blender's into a render; of a messenger's JPEG file a usual size and
+#: the tables of the best quality.
+WRITTEN = {
+    UnusualKind.FILMIC: replace(NO_CAMERA, renderer="Blender"),
+    UnusualKind.AGX: replace(NO_CAMERA, renderer="Blender"),
+    UnusualKind.MESSENGER: FileMetadata(
+        width=1600,
+        height=1200,
+        file_format="JPEG",
+        has_jfif=True,
+        luma_table=scaled_table(ANNEX_K_LUMA, MESSENGER_QUALITY[1]),
+        chroma_table=scaled_table(ANNEX_K_CHROMA, MESSENGER_QUALITY[1]),
+    ),
+}
 
 #: Seed of the pictures. Each has a generator of its own, so a kind that is added last changes no other picture.
 SEED = 2017
@@ -34,7 +51,7 @@ def measure_unusual(
     *,
     kinds: Sequence[UnusualKind] = tuple(UnusualKind),
 ) -> None:
-    """Add to the verdict files what they lack, with the prior "camera", as of files that name no camera.
+    """Add to the verdict files what they lack, with the prior "camera", as their programs write files and without that.
 
     Parameters
     ----------
@@ -47,30 +64,40 @@ def measure_unusual(
     kinds : sequence of UnusualKind
         The kinds.
     """
-    labels = [label(file, kind) for file in scenes for kind in kinds]
-    if all(one in file.verdicts for one in labels for file in files.values()):
+    listed = [(scene, kind) for scene in scenes for kind in kinds]
+    labels = {label(*one, is_stripped=way) for one in listed for way in (False, True)}
+    if all(labels <= file.verdicts.keys() for file in files.values()):
         return
     networks = {name: ResponseNetwork.load(folder) for name, folder in models.items()}
-    pictures = tqdm(unusual_photographs(scenes, kinds), desc="P6", total=len(labels), unit="photograph")
-    for one, (_, photo) in zip(labels, pictures, strict=True):
+    pictures = tqdm(unusual_photographs(scenes, kinds), desc="P6", total=len(listed), unit="photograph")
+    for (scene, kind), (_, photo) in zip(listed, pictures, strict=True):
+        written, stripped = label(scene, kind), label(scene, kind, is_stripped=True)
+        files_of_picture = {written: WRITTEN.get(kind, NO_CAMERA), stripped: NO_CAMERA}
         for name, file in files.items():
-            if one not in file.verdicts:
-                estimate = estimate_response(replace(photo, metadata=NO_CAMERA), network=networks[name])
-                file.verdicts[one] = estimate.verdict
-                file.save()
+            for one, metadata in files_of_picture.items():
+                if one not in file.verdicts:
+                    estimate = estimate_response(replace(photo, metadata=metadata), network=networks[name])
+                    file.verdicts[one] = estimate.verdict
+                    file.save()
 
 
-def label(file: SceneFile, kind: UnusualKind) -> str:
-    """Return the label of a picture."""
-    return f"{file.name}, {kind}"
+def label(scene: SceneFile, kind: UnusualKind, *, is_stripped: bool = False) -> str:
+    """Return the label of a picture in the file that its program writes, or in one that was stripped of metadata."""
+    return f"{scene.name}, {kind}" + (", stripped" if is_stripped and kind in WRITTEN else "")
 
 
 def unusual_report(
     scenes: Sequence[SceneFile], file: VerdictFile, kinds: Sequence[UnusualKind] = tuple(UnusualKind)
 ) -> UnusualReport:
     """Return how many pictures a model accepts, from its complete verdicts."""
-    by_kind = accepted_by_kind((kind, file.verdicts[label(scene, kind)]) for kind in kinds for scene in scenes)
-    return UnusualReport({kind.value: counts for kind, counts in by_kind.items()}, accepted_overall(by_kind))
+    written, stripped = (
+        accepted_by_kind(
+            (kind, file.verdicts[label(scene, kind, is_stripped=way)]) for kind in kinds for scene in scenes
+        )
+        for way in (False, True)
+    )
+    by_kind = {kind.value: counts for kind, counts in written.items()}
+    return UnusualReport(by_kind, accepted_overall(written), accepted_overall(stripped))
 
 
 def unusual_photographs(

@@ -34,8 +34,12 @@ def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
                 "band coverage": models[model].band_coverage,
             }
     if report.p6:
-        overall = report.p6[model].overall
-        figures["P6"] = {"photographs": overall.photographs, "accepted": overall.share}
+        overall, stripped = report.p6[model].overall, report.p6[model].stripped
+        figures["P6"] = {
+            "photographs": overall.photographs,
+            "accepted": overall.share,
+            "accepted without metadata": stripped.share,
+        }
     return figures
 
 

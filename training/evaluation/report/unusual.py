@@ -9,8 +9,9 @@ from training.evaluation.report.markdown_tables import rows_of
 from training.evaluation.report.real.content import RealReport, ways_of
 
 INTRODUCTION = """\
-Every kind of picture of every test scene, as a file that names no camera, with the prior "camera". "Accepted" are those
-that the model calls "good" or "usable": the fewer the better.
+Every kind of picture of every test scene, as a file that names no camera, with the prior "camera". Blender's renders
+and messengers' copies have the metadata that these programs write; the last row is without. "Accepted" are those that
+the model calls "good" or "usable": the fewer the better.
 """
 
 REFUSED_TEXT = """\
@@ -49,10 +50,13 @@ class UnusualReport:
         Kind of picture -> how many are accepted.
     overall : Accepted
         Of all kinds together.
+    stripped : Accepted
+        The same without any metadata.
     """
 
     kinds: dict[str, Accepted]
     overall: Accepted
+    stripped: Accepted
 
 
 def unusual_section(reports: dict[str, UnusualReport], real: dict[str, RealReport] | None) -> list[str]:
@@ -61,6 +65,7 @@ def unusual_section(reports: dict[str, UnusualReport], real: dict[str, RealRepor
     kinds = list(next(iter(reports.values())).kinds)
     rows = [[kind, *(_cell(reports[name].kinds[kind]) for name in models)] for kind in kinds]
     rows.append(["**all kinds**", *(_cell(reports[name].overall) for name in models)])
+    rows.append(["all kinds, without metadata", *(_cell(reports[name].stripped) for name in models)])
     parts = ["## P6: pictures that no response explains\n", INTRODUCTION]
     parts.append(rows_of(["kind", *(f"{name}: accepted" for name in models)], rows))
     if real:
