@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.colorimetry import Chromaticity
+from crfnet_core.metadata.cicp import cicp_tags
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
@@ -20,29 +20,6 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
 )
 from crfnet_core.metadata.icc import read_icc
-
-#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
-C: Chromaticity = (0.310, 0.316)
-DCI: Chromaticity = (0.314, 0.351)
-
-_SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
-
-#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified".
-CICP_PRIMARIES = {
-    1: REC709,
-    4: Primaries("BT.470 M", (0.67, 0.33), (0.21, 0.71), (0.14, 0.08), C),
-    5: Primaries("Rec.601 (625 lines)", (0.64, 0.33), (0.29, 0.60), (0.15, 0.06)),
-    6: Primaries("Rec.601 (525 lines)", *_SMPTE_C),
-    7: Primaries("SMPTE 240M", *_SMPTE_C),
-    8: Primaries("film", (0.681, 0.319), (0.243, 0.692), (0.145, 0.049), C),
-    9: REC2020,
-    11: Primaries("DCI-P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), DCI),
-    12: DISPLAY_P3,
-    22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
-}
-
-#: TransferCharacteristics of ITU-T H.273, Table 3, that are no ordinary picture for a display.
-CICP_TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
@@ -96,15 +73,12 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     return ColorTags(first.primaries, transfer, first.source)
 
 
-def cicp_tags(codes: Sequence[int], source: str = "CICP") -> ColorTags:
-    """Return what code points of ITU-T H.273 say: at least ColourPrimaries and TransferCharacteristics.
-
-    Codes that are unspecified or reserved say nothing.
-    """
-    if len(codes) < 2:
-        return ColorTags()
-    primaries, transfer = CICP_PRIMARIES.get(codes[0]), CICP_TRANSFERS.get(codes[1], "")
-    return ColorTags(primaries, transfer, source) if primaries or transfer else ColorTags()
+def header_attribute(header: Any, name: str) -> Any:
+    """Return a value in the header; None where it is absent or no value of Python's."""
+    try:
+        return header.getattribute(name)
+    except (RuntimeError, TypeError, ValueError):
+        return None
 
 
 def _icc_tags(header: Any) -> ColorTags:
@@ -119,14 +93,14 @@ def _icc_tags(header: Any) -> ColorTags:
 
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:
     """Return what EXIF says; that of an uncalibrated picture says nothing."""
-    space = _attribute(header, "Exif:ColorSpace")
+    space = header_attribute(header, "Exif:ColorSpace")
     primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index)
     return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
 
 
 def _interop_tags(header: Any) -> ColorTags:
     """Return what the Color Interop Forum's name of the encoding says: "lin_ap1_scene" is linear."""
-    name = _attribute(header, "colorInteropID")
+    name = header_attribute(header, "colorInteropID")
     parts = name.split("_") if isinstance(name, str) else []
     primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
     transfer = "linear" if parts[:1] == ["lin"] else ""
@@ -149,13 +123,5 @@ def _chromaticity_tags(header: Any) -> ColorTags:
 
 def _sequence(header: Any, name: str) -> Sequence[Any]:
     """Return an array of numbers in the header; empty where it is absent."""
-    value = _attribute(header, name)
+    value = header_attribute(header, name)
     return () if value is None or isinstance(value, str | int | float) else value
-
-
-def _attribute(header: Any, name: str) -> Any:
-    """Return a value in the header; None where it is absent or no value of Python's."""
-    try:
-        return header.getattribute(name)
-    except (RuntimeError, TypeError, ValueError):
-        return None

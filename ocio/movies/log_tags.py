@@ -12,20 +12,17 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from ocio.movies.color import PublishedCurve
-
-#: Texts in the file, outside of its pictures -> the curve.
+#: Texts in the file, outside of its pictures -> the curve, as `crfnet_core.recognition` names it.
 TEXTS = {
-    rb"com\.apple\.rec2020\.apple-log": PublishedCurve("Apple Log", "Apple", "Apple Log"),
-    rb"com\.apple\.apple-wide-gamut\.apple-log": PublishedCurve("Apple Log 2", "Apple", "Apple Log 2"),
-    rb'"CaptureGammaEquation"\s+value="s-log3-cine"': PublishedCurve("S-Log3", "Sony", "S-Log3 S-Gamut3.Cine"),
-    rb'"CaptureGammaEquation"\s+value="s-log3"': PublishedCurve("S-Log3", "Sony", "S-Log3 S-Gamut3"),
-    rb'"CaptureGammaEquation"\s+value="s-log2"': PublishedCurve("S-Log2", "Sony"),
+    rb"com\.apple\.rec2020\.apple-log": "Apple Log",
+    rb"com\.apple\.apple-wide-gamut\.apple-log": "Apple Log 2",
+    rb'"CaptureGammaEquation"\s+value="s-log3-cine"': "Sony S-Log3",
+    rb'"CaptureGammaEquation"\s+value="s-log3"': "Sony S-Log3 in S-Gamut3",
+    rb'"CaptureGammaEquation"\s+value="s-log2"': "Sony S-Log2",
 }
 
 #: ARRI's key, in lower case, and how its value begins for LogC3.
-ARRI_KEY, ARRI_LOG = "com.arri.camera.colorgammasxs", "LOG-C"
-ARRI_CURVE = PublishedCurve("LogC3", "ARRI", "ARRI LogC3 (EI800)")
+ARRI_KEY, ARRI_LOG, ARRI_CURVE = "com.arri.camera.colorgammasxs", "LOG-C", "ARRI LogC3"
 
 #: Bytes at either end of a file in which texts are looked for where it has no boxes.
 _ENDS = 1 << 20
@@ -34,8 +31,8 @@ _ENDS = 1 << 20
 _LARGEST = 1 << 25
 
 
-def log_curve(path: Path, metadata: Mapping[str, str]) -> PublishedCurve | None:
-    """Return the log curve that a maker names in a movie; None if none does.
+def log_curve(path: Path, metadata: Mapping[str, str]) -> str:
+    """Return the log curve that a maker names in a movie; empty if none does.
 
     Parameters
     ----------
@@ -49,7 +46,7 @@ def log_curve(path: Path, metadata: Mapping[str, str]) -> PublishedCurve | None:
     with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
         parts = list(_beside_pictures(content))
         found = (curve for text, curve in TEXTS.items() if any(re.search(text, content[part]) for part in parts))
-        return next(found, None)
+        return next(found, "")
 
 
 def _beside_pictures(content: mmap.mmap) -> Iterator[slice]:

@@ -8,6 +8,8 @@ import pytest
 
 from crfnet_core.colorimetry import adaptation, chromaticity_of, rgb_to_xyz, xyz_of
 from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import cicp
+from crfnet_core.metadata.cicp import cicp_tags
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
@@ -24,7 +26,7 @@ from crfnet_core.metadata.color_tags import (
     conversion_matrix,
 )
 from crfnet_core.metadata.exif import interoperability_index
-from crfnet_core.metadata.header_colors import CICP_PRIMARIES, TABLES, cicp_tags, header_color_tags
+from crfnet_core.metadata.header_colors import TABLES, header_color_tags
 from crfnet_core.metadata.icc import SAME_COLORANTS, read_icc
 from tests.helpers.color_profiles import exif_segment, matrix_profile, numbers, profile, write_tagged
 from tests.helpers.crafted_files import with_jpeg_segment
@@ -253,9 +255,9 @@ class TestOpenExr:
         assert self.tags(chromaticities=numbers) == ColorTags()
 
 
-@pytest.mark.parametrize("code", CICP_PRIMARIES)
+@pytest.mark.parametrize("code", cicp.PRIMARIES)
 def test_cicp_primaries_make_a_white(code):
-    primaries = CICP_PRIMARIES[code]
+    primaries = cicp.PRIMARIES[code]
     np.testing.assert_allclose(primaries.to_xyz().sum(axis=1), xyz_of(primaries.white), atol=1e-12)
     assert cicp_tags((code, 1)) == ColorTags(primaries, "", "CICP")
 
