@@ -1,4 +1,4 @@
-"""The colour tags in an image file's header: ICC profile, CICP, EXIF and OpenEXR's, the most telling first."""
+"""The colour tags in an image file's header: ICC profile, CICP, PNG's, EXIF and OpenEXR's, the most telling first."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.metadata.cicp import cicp_tags
+from crfnet_core.metadata import cicp
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
@@ -50,27 +50,27 @@ TABLES = "ICC profile of tables"
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
     """Return what an open file says of its colours; the first of these that says something is believed.
 
-    The ICC profile comes before CICP, but in PNG after it (PNG Specification, third edition, 4.3); then
-    come EXIF, and what OpenEXR files have. A profile that works by tables gives no primaries, and then nothing else is
-    asked for them.
+    The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
+    Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
+    gives no primaries, and then nothing else is asked for them.
 
     Parameters
     ----------
     header : OpenImageIO.ImageSpec
         Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes), "Exif:ColorSpace",
-        "colorInteropID" and "chromaticities" (x and y of red, green, blue and white).
+        "colorInteropID", "chromaticities" (x and y of red, green, blue and white), and of PNG "png:sRGB", "png:gamma".
     file_format : str
         As in `FileMetadata`.
     interop_index : str
         EXIF InteroperabilityIndex, which OpenImageIO does not read.
     """
-    tags = [_icc_tags(header), cicp_tags(_sequence(header, "CICP"))]
-    ordered = [*(reversed(tags) if file_format == "PNG" else tags), _exif_tags(header, interop_index)]
-    ordered += [_interop_tags(header), _chromaticity_tags(header)]
-    found = [each for each in ordered if each.source]
-    first = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
+    icc, codes = _icc_tags(header), cicp.cicp_tags(_sequence(header, "CICP"))
+    first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
+    others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
+    found = [each for each in (*first, *others) if each.source]
+    telling = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
     transfer = next((each.transfer for each in found if each.transfer), "")
-    return ColorTags(first.primaries, transfer, first.source)
+    return ColorTags(telling.primaries, transfer, telling.source)
 
 
 def header_attribute(header: Any, name: str) -> Any:
@@ -86,9 +86,17 @@ def _icc_tags(header: Any) -> ColorTags:
     profile = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     if profile is None or not profile.is_rgb:
         return ColorTags()
-    codes = cicp_tags(profile.cicp)
+    codes = cicp.cicp_tags(profile.cicp)
     primaries = profile.primaries or codes.primaries
     return ColorTags(primaries, codes.transfer, "ICC profile" if primaries else TABLES)
+
+
+def _png_tags(header: Any) -> tuple[ColorTags, ...]:
+    """Return what PNG's chunks say beside CICP and the profile: a gamma of 1 is linear."""
+    is_srgb, is_linear = header_attribute(header, "png:sRGB") is not None, header_attribute(header, "png:gamma") == 1
+    srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
+    gamma = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
+    return srgb, _chromaticity_tags(header, "cHRM chunk"), gamma
 
 
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:
@@ -107,18 +115,18 @@ def _interop_tags(header: Any) -> ColorTags:
     return ColorTags(primaries, transfer, "colorInteropID") if primaries or transfer else ColorTags()
 
 
-def _chromaticity_tags(header: Any) -> ColorTags:
-    """Return what OpenEXR's chromaticities say; nothing if they make no colours of three kinds."""
+def _chromaticity_tags(header: Any, source: str) -> ColorTags:
+    """Return what the chromaticities of OpenEXR and PNG say; nothing if they make no colours of three kinds."""
     numbers = np.ravel(_sequence(header, "chromaticities"))
     if numbers.size != 8 or not np.isfinite(numbers).all() or (corners := numbers.reshape(4, 2))[3].min() <= 0:
         return ColorTags()
-    for named in (*PHOTOGRAPHIC.values(), AP0, AP1):
+    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *cicp.PRIMARIES.values()):
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
-            return ColorTags(named, source="chromaticities")
+            return ColorTags(named, source=source)
     red, green, blue, white = ((float(x), float(y)) for x, y in corners)
     own = Primaries("primaries of its own", red, green, blue, white)
     is_sound = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)]))) > LEAST_AREA
-    return ColorTags(own, source="chromaticities") if is_sound else ColorTags()
+    return ColorTags(own, source=source) if is_sound else ColorTags()
 
 
 def _sequence(header: Any, name: str) -> Sequence[Any]:

@@ -221,11 +221,13 @@ def test_bad_frames_are_refused_in_one_line(linearize, tmp_path, monkeypatch, mo
 @needs_av
 def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
     options = "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -color_trc smpte2084"
-    path = make_movie(tmp_path / "hdr.mp4", options)
+    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
+    path = make_movie(tmp_path / "hdr.mp4", options, source=source)
     for arguments in (("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")):
         done = crfnet(*arguments)
         assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
-        assert 'give it the color space "Rec.2100-PQ - Display"' in done.err
+        assert "hdr.mp4 frame 1: is encoded as PQ: so says its metadata (CICP)" in done.err
+        assert 'in ACES configs "Rec.2100-PQ - Display"' in done.err
     assert listed(tmp_path) == ["hdr.mp4"]
 
 
