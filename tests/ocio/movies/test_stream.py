@@ -72,6 +72,7 @@ SONY = '<AcquisitionRecord><Group name="CameraUnitMetadataSet"><Item name="Captu
         (SONY.format("s-log3-cine").encode(), "Sony S-Log3"),
         (SONY.format("s-log3").encode(), "Sony S-Log3 in S-Gamut3"),
         (SONY.format("s-log2").encode(), "Sony S-Log2"),
+        (b"<Gamma>\n  <CaptureGamma>V-Log</CaptureGamma>\n</Gamma>", "Panasonic V-Log"),
     ],
 )
 def test_log_curves_that_makers_write_are_named(movie, tmp_path, content, name):
@@ -86,7 +87,29 @@ def test_a_log_curve_is_named_beside_the_tag_of_its_primaries(tmp_path):
     assert read_stream(path).color == ColorTags(REC2020, "Apple Log", "CICP and the maker's entry")
 
 
-@pytest.mark.parametrize("content", [SONY.format("rec709").encode(), b"s-log3-cine", b"apple-log"])
+CAPTION = "1\n00:00:00,000 --> 00:00:00,033\n<font>FrameCnt: 1\n[iso: 100] [color_md : {}] [focal_len: 24.00]</font>"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "curve"),
+    [
+        ("C0001M01.XML", SONY.format("s-log3-cine"), "Sony S-Log3"),
+        ("C0001.SRT", CAPTION.format("d_log"), "DJI D-Log"),
+        ("C0001.SRT", CAPTION.format("dlog_m"), ""),
+        ("C0001.SRT", CAPTION.format("default"), ""),
+        ("C0002M01.XML", SONY.format("s-log3-cine"), ""),
+    ],
+)
+def test_log_curves_that_cameras_write_beside_a_movie_are_named(movie, tmp_path, name, content, curve):
+    path = tmp_path / "C0001.MP4"
+    path.write_bytes(movie.read_bytes())
+    (tmp_path / name).write_text(content, encoding="utf-8")
+    assert read_stream(path).color.transfer == curve
+
+
+@pytest.mark.parametrize(
+    "content", [SONY.format("rec709").encode(), b"<CaptureGamma>HD</CaptureGamma>", b"s-log3-cine", b"apple-log"]
+)
 def test_other_texts_name_no_curve(movie, tmp_path, content):
     path = tmp_path / "plain.mp4"
     path.write_bytes(movie.read_bytes() + boxed(b"meta", content))
