@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
-from ocio.configs.file_rules import plate_pattern
+from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.files import WRITERS
@@ -136,6 +136,7 @@ class OutputFiles:
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_pattern=file_pattern or plate_pattern(photo.name),
             exposure=exposure,
+            linear_patterns=linear_patterns(self.spi1d.stem, [path.name for path in self.linear]),
         )
 
 

@@ -5,6 +5,7 @@ file_kinds       which format a file has, told from its first bytes; what is ref
 camera_raw       camera raw, told from its first bytes and from the directory of a TIFF file
 header_checks    what a header must say: size, depth, colour
 jpeg_files       JPEG: checks before decoding, and the standard image of one with a gain map
+png_files        PNG: what its chunks say of colours
 heif             HEIC and AVIF, which OpenImageIO's wheel cannot read
 heif_boxes       what the boxes of such a file say of its picture: colour, depth, gain map
 problems         the errors of files that cannot be decoded

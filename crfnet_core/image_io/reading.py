@@ -17,6 +17,7 @@ from crfnet_core.image_io.file_kinds import file_kind
 from crfnet_core.image_io.header_checks import checked_bit_depth
 from crfnet_core.image_io.heif import read_heif
 from crfnet_core.image_io.jpeg_files import base_image, checked_jpeg_header
+from crfnet_core.image_io.png_files import with_color_chunks
 from crfnet_core.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photo import CodeValues, Photo
 
@@ -75,7 +76,7 @@ def _read(path: Path, kind: str) -> CodeValues:
     if source is None:
         raise problems.damaged(path, kind, problem)
     try:
-        header = source.spec()
+        header = with_color_chunks(source.spec(), path) if kind == "PNG" else source.spec()
         if kind == "JPEG" and str(header.format) == "half":
             return _read_base_image(path)
         bit_depth = checked_bit_depth(path, header)

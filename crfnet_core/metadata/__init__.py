@@ -4,6 +4,7 @@ file_metadata   what is read: names, sizes, tables, profile
 transfer_tags   log, PQ and HLG, as files name them
 color_tags      primaries and encodings as files tag them
 header_colors   the tags in a header: ICC profile, CICP, EXIF
+cicp            the code points of ITU-T H.273
 icc             the primaries of an ICC profile
 exif            what OpenImageIO leaves out of EXIF
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.metadata.header_colors import header_color_tags
+from crfnet_core.metadata.header_colors import header_attribute, header_color_tags
 from crfnet_core.metadata.jpeg import JpegHeader, Table
 from crfnet_core.metadata.transfer_tags import dpx_transfer, with_named_transfer
 
@@ -127,22 +127,14 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
 
 def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
     """Return the printable characters of a text in the header."""
-    value = _attribute(header, name)
+    value = header_attribute(header, name)
     return "".join(filter(str.isprintable, value[:longest])).strip() if isinstance(value, str) else ""
 
 
 def _number(header: Any, name: str) -> int | None:
     """Return a positive whole number in the header."""
-    value = _attribute(header, name)
+    value = header_attribute(header, name)
     return value if isinstance(value, int) and value > 0 else None
-
-
-def _attribute(header: Any, name: str) -> Any:
-    """Return a value in the header; None where it is absent or no value of Python's."""
-    try:
-        return header.getattribute(name)
-    except (RuntimeError, TypeError, ValueError):
-        return None
 
 
 def _year(time: str) -> int | None:

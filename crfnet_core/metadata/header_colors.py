@@ -1,4 +1,4 @@
-"""The colour tags in an image file's header: ICC profile, CICP, EXIF and OpenEXR's, the most telling first."""
+"""The colour tags in an image file's header: ICC profile, CICP, PNG's, EXIF and OpenEXR's, the most telling first."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.colorimetry import Chromaticity
+from crfnet_core.metadata import cicp
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
@@ -20,29 +20,6 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
 )
 from crfnet_core.metadata.icc import read_icc
-
-#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
-C: Chromaticity = (0.310, 0.316)
-DCI: Chromaticity = (0.314, 0.351)
-
-_SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
-
-#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified".
-CICP_PRIMARIES = {
-    1: REC709,
-    4: Primaries("BT.470 M", (0.67, 0.33), (0.21, 0.71), (0.14, 0.08), C),
-    5: Primaries("Rec.601 (625 lines)", (0.64, 0.33), (0.29, 0.60), (0.15, 0.06)),
-    6: Primaries("Rec.601 (525 lines)", *_SMPTE_C),
-    7: Primaries("SMPTE 240M", *_SMPTE_C),
-    8: Primaries("film", (0.681, 0.319), (0.243, 0.692), (0.145, 0.049), C),
-    9: REC2020,
-    11: Primaries("DCI-P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), DCI),
-    12: DISPLAY_P3,
-    22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
-}
-
-#: TransferCharacteristics of ITU-T H.273, Table 3, that are no ordinary picture for a display.
-CICP_TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
@@ -73,38 +50,35 @@ TABLES = "ICC profile of tables"
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
     """Return what an open file says of its colours; the first of these that says something is believed.
 
-    The ICC profile comes before CICP, but in PNG after it (PNG Specification, third edition, 4.3); then
-    come EXIF, and what OpenEXR files have. A profile that works by tables gives no primaries, and then nothing else is
-    asked for them.
+    The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
+    Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
+    gives no primaries, and then nothing else is asked for them.
 
     Parameters
     ----------
     header : OpenImageIO.ImageSpec
         Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes), "Exif:ColorSpace",
-        "colorInteropID" and "chromaticities" (x and y of red, green, blue and white).
+        "colorInteropID", "chromaticities" (x and y of red, green, blue and white), and of PNG "png:sRGB", "png:gamma".
     file_format : str
         As in `FileMetadata`.
     interop_index : str
         EXIF InteroperabilityIndex, which OpenImageIO does not read.
     """
-    tags = [_icc_tags(header), cicp_tags(_sequence(header, "CICP"))]
-    ordered = [*(reversed(tags) if file_format == "PNG" else tags), _exif_tags(header, interop_index)]
-    ordered += [_interop_tags(header), _chromaticity_tags(header)]
-    found = [each for each in ordered if each.source]
-    first = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
+    icc, codes = _icc_tags(header), cicp.cicp_tags(_sequence(header, "CICP"))
+    first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
+    others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
+    found = [each for each in (*first, *others) if each.source]
+    telling = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
     transfer = next((each.transfer for each in found if each.transfer), "")
-    return ColorTags(first.primaries, transfer, first.source)
+    return ColorTags(telling.primaries, transfer, telling.source)
 
 
-def cicp_tags(codes: Sequence[int], source: str = "CICP") -> ColorTags:
-    """Return what code points of ITU-T H.273 say: at least ColourPrimaries and TransferCharacteristics.
-
-    Codes that are unspecified or reserved say nothing.
-    """
-    if len(codes) < 2:
-        return ColorTags()
-    primaries, transfer = CICP_PRIMARIES.get(codes[0]), CICP_TRANSFERS.get(codes[1], "")
-    return ColorTags(primaries, transfer, source) if primaries or transfer else ColorTags()
+def header_attribute(header: Any, name: str) -> Any:
+    """Return a value in the header; None where it is absent or no value of Python's."""
+    try:
+        return header.getattribute(name)
+    except (RuntimeError, TypeError, ValueError):
+        return None
 
 
 def _icc_tags(header: Any) -> ColorTags:
@@ -112,50 +86,50 @@ def _icc_tags(header: Any) -> ColorTags:
     profile = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     if profile is None or not profile.is_rgb:
         return ColorTags()
-    codes = cicp_tags(profile.cicp)
+    codes = cicp.cicp_tags(profile.cicp)
     primaries = profile.primaries or codes.primaries
     return ColorTags(primaries, codes.transfer, "ICC profile" if primaries else TABLES)
 
 
+def _png_tags(header: Any) -> tuple[ColorTags, ...]:
+    """Return what PNG's chunks say beside CICP and the profile: a gamma of 1 is linear."""
+    is_srgb, is_linear = header_attribute(header, "png:sRGB") is not None, header_attribute(header, "png:gamma") == 1
+    srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
+    gamma = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
+    return srgb, _chromaticity_tags(header, "cHRM chunk"), gamma
+
+
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:
     """Return what EXIF says; that of an uncalibrated picture says nothing."""
-    space = _attribute(header, "Exif:ColorSpace")
+    space = header_attribute(header, "Exif:ColorSpace")
     primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index)
     return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
 
 
 def _interop_tags(header: Any) -> ColorTags:
     """Return what the Color Interop Forum's name of the encoding says: "lin_ap1_scene" is linear."""
-    name = _attribute(header, "colorInteropID")
+    name = header_attribute(header, "colorInteropID")
     parts = name.split("_") if isinstance(name, str) else []
     primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
     transfer = "linear" if parts[:1] == ["lin"] else ""
     return ColorTags(primaries, transfer, "colorInteropID") if primaries or transfer else ColorTags()
 
 
-def _chromaticity_tags(header: Any) -> ColorTags:
-    """Return what OpenEXR's chromaticities say; nothing if they make no colours of three kinds."""
+def _chromaticity_tags(header: Any, source: str) -> ColorTags:
+    """Return what the chromaticities of OpenEXR and PNG say; nothing if they make no colours of three kinds."""
     numbers = np.ravel(_sequence(header, "chromaticities"))
     if numbers.size != 8 or not np.isfinite(numbers).all() or (corners := numbers.reshape(4, 2))[3].min() <= 0:
         return ColorTags()
-    for named in (*PHOTOGRAPHIC.values(), AP0, AP1):
+    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *cicp.PRIMARIES.values()):
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
-            return ColorTags(named, source="chromaticities")
+            return ColorTags(named, source=source)
     red, green, blue, white = ((float(x), float(y)) for x, y in corners)
     own = Primaries("primaries of its own", red, green, blue, white)
     is_sound = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)]))) > LEAST_AREA
-    return ColorTags(own, source="chromaticities") if is_sound else ColorTags()
+    return ColorTags(own, source=source) if is_sound else ColorTags()
 
 
 def _sequence(header: Any, name: str) -> Sequence[Any]:
     """Return an array of numbers in the header; empty where it is absent."""
-    value = _attribute(header, name)
+    value = header_attribute(header, name)
     return () if value is None or isinstance(value, str | int | float) else value
-
-
-def _attribute(header: Any, name: str) -> Any:
-    """Return a value in the header; None where it is absent or no value of Python's."""
-    try:
-        return header.getattribute(name)
-    except (RuntimeError, TypeError, ValueError):
-        return None

@@ -2,7 +2,7 @@
 
 tagged          encodings with a published curve that the file names: refused
 levels          where the darkest, the middle and the brightest samples lie
-log_footage     how likely the levels make log footage, and the nearest curve
+log_footage     how likely the levels make log footage, and which curves they may have
 log_curves      the published curves of log footage, and their names in ACES configs
 limited_range   the codes 16 to 235 of video, stored as if they were 0 to 255
 recognition     the finding, in words, with what to do
@@ -11,7 +11,7 @@ recognition     the finding, in words, with what to do
 from crfnet_core.recognition.levels import Levels
 from crfnet_core.recognition.limited_range import is_limited_range
 from crfnet_core.recognition.log_curves import COLOR_SPACES, LogCurve, log_curves
-from crfnet_core.recognition.log_footage import log_factor, nearest_curves
+from crfnet_core.recognition.log_footage import NearCurve, light_error, log_factor, nearest_curves
 from crfnet_core.recognition.recognition import Kind, Recognition, recognize
 from crfnet_core.recognition.tagged import refuse_tagged, tag_refusal
 
@@ -20,8 +20,10 @@ __all__ = [
     "Kind",
     "Levels",
     "LogCurve",
+    "NearCurve",
     "Recognition",
     "is_limited_range",
+    "light_error",
     "log_curves",
     "log_factor",
     "nearest_curves",

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from crfnet_core.recognition.levels import Levels
 from crfnet_core.recognition.log_curves import LEAST_REFLECTANCE, MOST_REFLECTANCE, LogCurve, log_curves
+from crfnet_core.types import Float64Array
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below
 #: this brightness, so 2 of 94 may (rule of succession), and all log footage that is stored as its maker says.
@@ -26,6 +29,28 @@ NOISE, NOISE_DEVIATION = 0.004, 0.003
 #: Curves that are named.
 MOST_NAMED = 4
 
+#: The fraction of the samples below the codes over which the light of two curves is compared.
+DARK = 0.01
+
+
+@dataclass(frozen=True)
+class NearCurve:
+    """A published curve that the levels of log footage may have.
+
+    Parameters
+    ----------
+    name : str
+        As in `log_curves`.
+    probability : float
+        That it is the right one, by the levels alone.
+    expected_error : float
+        How far its light is expected to be off, in stops, over all curves that it may be: see `light_error`.
+    """
+
+    name: str
+    probability: float
+    expected_error: float
+
 
 def log_factor(levels: Levels) -> float:
     """Return the likelihood of the levels of log footage, relative to that of ordinary photographs: Eq. 40.
@@ -37,10 +62,11 @@ def log_factor(levels: Levels) -> float:
     return BLACK_FACTOR * (LOW_WHITE_FACTOR if levels.white < LOW_WHITE else HIGH_WHITE_FACTOR)
 
 
-def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[str, ...]:
-    """Return the names of up to four published curves that explain the levels best, the best first: Eq. 41.
+def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCurve, ...]:
+    """Return up to four published curves that explain the levels best, the likeliest first: Eq. 41.
 
     Only where black and the middle lie is compared, so curves of nearly the same black and gray cannot be told apart.
+    All are taken for equally frequent.
 
     Parameters
     ----------
@@ -50,25 +76,38 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[str, ..
         The makers that the files name: where some are known, only their curves are asked.
     """
     curves = log_curves()
-    of_makers = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)}
-    scores = {name: _log_likelihood(curve, levels) for name, curve in (of_makers or curves).items()}
-    return tuple(sorted(scores, key=lambda name: -scores[name])[:MOST_NAMED])
+    asked = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves
+    scores = np.array([_log_likelihood(curve, levels) for curve in asked.values()])
+    weights = np.exp(scores - scores.max())
+    probabilities = weights / weights.sum()
+    near = []
+    for position in np.argsort(-scores)[:MOST_NAMED]:
+        name = [*asked][position]
+        errors = [light_error(asked[name], true, levels) for true in asked.values()]
+        near.append(NearCurve(name, float(probabilities[position]), float(probabilities @ errors)))
+    return tuple(near)
+
+
+def light_error(named: LogCurve, true: LogCurve, levels: Levels) -> float:
+    """Return how far the light of a picture is off, in stops, if one curve is taken for another: a shape error."""
+    codes = np.linspace(levels.quantile(DARK), levels.white, 64)
+    return float(np.log2(_reflectance(named, codes) / _reflectance(true, codes)).std())
 
 
 def _log_likelihood(curve: LogCurve, levels: Levels) -> float:
     """Return the log likelihood of black and the middle under a curve, up to a constant."""
     black = float(curve(0.0))
-    middle = _reflectance(curve, levels.middle) / MIDDLE_REFLECTANCE
-    darkest = _reflectance(curve, max(levels.black, black + NOISE)) / DARKEST_REFLECTANCE
+    levels_seen = np.array([levels.middle, max(levels.black, black + NOISE)])
     below = max(0.0, black - NOISE - levels.black) / NOISE_DEVIATION
-    stops = np.log2([middle, darkest]) / (MIDDLE_STOPS, DARKEST_STOPS)
+    expected = MIDDLE_REFLECTANCE, DARKEST_REFLECTANCE
+    stops = np.log2(_reflectance(curve, levels_seen) / expected) / (MIDDLE_STOPS, DARKEST_STOPS)
     return float(-below - (stops**2).sum() / 2)
 
 
-def _reflectance(curve: LogCurve, code: float) -> float:
-    """Return the reflectance of a code value."""
+def _reflectance(curve: LogCurve, codes: Float64Array) -> Float64Array:
+    """Return the reflectances of code values."""
     reflectance = np.geomspace(LEAST_REFLECTANCE, MOST_REFLECTANCE, 4096)
-    return float(np.interp(code, curve(reflectance), reflectance))
+    return np.interp(codes, curve(reflectance), reflectance)
 
 
 def _is_of(name: str, make: str) -> bool:

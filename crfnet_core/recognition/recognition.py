@@ -39,15 +39,21 @@ class Recognition:
     advice : str
         What to do.
     curves : tuple of str
-        Of log footage the published curves whose levels fit, the nearest first.
+        Of log footage up to four published curves whose levels fit, the likeliest first.
+    probabilities : tuple of float
+        Of each, by the levels alone.
+    errors : tuple of float
+        How far the light of each is expected to be off, in stops.
     color_space : str
-        The name of the first of them in ACES configs; empty if it has none.
+        The name in ACES configs of the one whose light is expected to be off least; empty if it has none.
     """
 
     kind: Kind
     reason: str
     advice: str
     curves: tuple[str, ...] = ()
+    probabilities: tuple[float, ...] = ()
+    errors: tuple[float, ...] = ()
     color_space: str = ""
 
     @classmethod
@@ -55,7 +61,8 @@ class Recognition:
         """Return what `dataclasses.asdict` made of a recognition, also after JSON; None for an ordinary picture."""
         if entry is None:
             return None
-        return cls(**{**entry, "kind": Kind(entry["kind"]), "curves": tuple(entry["curves"])})
+        several = {name: tuple(entry.get(name, ())) for name in ("curves", "probabilities", "errors")}
+        return cls(**{**entry, **several, "kind": Kind(entry["kind"])})
 
 
 def recognize(
@@ -105,16 +112,22 @@ def _by_origin(origin: FileOrigin) -> Recognition | None:
 
 def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
     """Return that a picture is log footage, with the curves that fit."""
-    curves = nearest_curves(levels, makes)
-    spaces = " or ".join(f'"{COLOR_SPACES[name]}"' for name in curves if name in COLOR_SPACES)
+    near = nearest_curves(levels, makes)
+    least = min(near, key=lambda each: each.expected_error)
+    spaces = " or ".join(f'"{COLOR_SPACES[each.name]}"' for each in near if each.name in COLOR_SPACES)
+    fit, guess = f"its maker's curve is {least.name}", ""
+    if len(near) > 1:
+        fit = f"by its levels the curve is {', '.join(f'{each.name} ({each.probability:.0%})' for each in near)}"
+        guess = f"; if nothing says, {least.name} is safest: its light may be off by {least.expected_error:.1f} stop"
     return Recognition(
         kind=Kind.LOG_FOOTAGE,
-        reason=f"log footage: black lies at code {255 * levels.black:.0f} of 255; its levels fit the curves"
-        f" {', '.join(curves)}, in this order",
-        advice="give it the colour space of the log curve that the camera was set to"
-        + (f", in ACES configs {spaces}" if spaces else ""),
-        curves=curves,
-        color_space=COLOR_SPACES.get(curves[0], ""),
+        reason=f"log footage: black lies at code {255 * levels.black:.0f} of 255; {fit}",
+        advice="give it the colour space of the log curve that the camera was set to, which its menu or the clip's"
+        " metadata say" + (f", in ACES configs {spaces}" if spaces else "") + guess,
+        curves=tuple(each.name for each in near),
+        probabilities=tuple(each.probability for each in near),
+        errors=tuple(each.expected_error for each in near),
+        color_space=COLOR_SPACES.get(least.name, ""),
     )
 
 

@@ -7,6 +7,14 @@ from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.photo import Photo
 from crfnet_core.recognition.log_curves import COLOR_SPACES
 
+#: Encoding by the name that tags give it -> colour space of OpenColorIO's ACES studio config.
+TAGGED_SPACES = COLOR_SPACES | {
+    "Apple Log 2": "Apple Log 2",
+    "Sony S-Log3 in S-Gamut3": "S-Log3 S-Gamut3",
+    "HLG": "Rec.2100-HLG - Display",
+    "PQ": "Rec.2100-PQ - Display",
+}
+
 #: What to do if the tag is wrong.
 _IF_WRONG = "if the tag is wrong, ignore metadata (--ignore-metadata)"
 
@@ -30,7 +38,7 @@ def tag_refusal(color: ColorTags) -> str:
         return ""
     if color.transfer == "linear":
         return f"is linear already: so says its metadata ({color.source}). Give it a linear colour space; {_IF_WRONG}"
-    space = COLOR_SPACES.get(color.transfer, "")
+    space = TAGGED_SPACES.get(color.transfer, "")
     named = f', in ACES configs "{space}"' if space else ""
     return (
         f"is encoded as {color.transfer}: so says its metadata ({color.source}). That curve is published, so give the"

@@ -11,10 +11,10 @@ from typing import Any
 
 from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
-from ocio.commands.options import estimate_options, plate_options
+from ocio.commands.options import estimate_options, plate_arguments, plate_options
 from ocio.commands.printing import has_matplotlib, print_json, print_lines, progress_bar
 from ocio.movies.frames import MovieFrames
-from ocio.options import EstimateOptions, OutputOptions
+from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import PhotographEstimate, PhotographRecord
 
@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.json:
         print_json({"folder": str(arguments.out), "estimates": [document]})
     else:
-        _print_estimate(estimated, document, plan.files)
+        _print_estimate(estimated, document, plan.files, plan.plates)
 
 
 def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: OutputOptions) -> None:
@@ -60,7 +60,9 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
         raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
 
 
-def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles) -> None:
+def _print_estimate(
+    estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles, plates: PlateOptions
+) -> None:
     """Print what was read, found and written, and how to use it."""
     read = [*estimated.movies, *map(str, estimated.facts)]
     lines = [*read, *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
@@ -68,16 +70,17 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     plate = estimated.plates[0]
     if isinstance(plate, MovieFrames):
         print_lines([f"The linear plate is frame {plate.numbers[0]}; the whole movie, with the LUT:"])
-        print_lines([f"  {_linearize_line(estimated.paths[0], files)}"])
+        print_lines([f"  {_linearize_line(estimated.paths[0], files, plates)}"])
         return
     print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
     print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files, document))
 
 
-def _linearize_line(movie: Path, files: OutputFiles) -> str:
-    """Return the command line by which all frames of a movie become linear plates."""
+def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:
+    """Return the command line by which all frames of a movie become linear plates like the one that was written."""
     frames = Path("linear", f"{plain_stem(movie)}.%04d.exr")
-    return shlex.join(["crfnet", "linearize", str(movie), "--lut", str(files.spi1d), "--out", str(frames)])
+    command = ["crfnet", "linearize", str(movie), "--lut", str(files.spi1d), "--out", str(frames)]
+    return shlex.join([*command, *plate_arguments(plates)])
 
 
 def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Sequence
 
 import PyOpenColorIO as OCIO
 
@@ -21,6 +21,9 @@ COUNTER_NAMES = (
     r"(image|img|photo|picture|pic|scan|frame|untitled|unnamed|screenshot|fullsizerender)([-_. ]*\(?\d*\)?)",
 )
 
+#: The most patterns of one rule: OpenColorIO's regular expressions fail with 4000.
+MOST_PATTERNS = 100
+
 #: Frame numbers at the end of a name: shot.0001.
 FRAME_NUMBER = re.compile(r"\.\d{2,}$")
 
@@ -36,6 +39,26 @@ def plate_pattern(name: str) -> str:
     stem, dot, suffix = name.rpartition(".")
     stem = stem.replace("#", "?")
     return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
+
+
+def linear_pattern(name: str) -> str:
+    """Return the pattern of a linear plate such as "shot.0001_linear.exr": its own name, with any frame number."""
+    return re.sub(r"\.\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
+
+
+def linear_patterns(stem: str, names: Sequence[str] = ()) -> tuple[str, ...]:
+    """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
+
+    Parameters
+    ----------
+    stem : str
+        What files of the plate are named after, for example "clip" or "shot.0001".
+    names : sequence of str
+        The names of its linear files without folder: see `linear_pattern`. For more than `MOST_PATTERNS` of them, one
+        pattern stands for all.
+    """
+    named = map(linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
+    return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr"]))
 
 
 def is_counter_name(name: str) -> bool:

@@ -12,9 +12,9 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
-from ocio.configs.file_rules import LINEAR_SUFFIX, remove_file_rules, rule_regex
+from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules
 from ocio.configs.plate_views import add_plate_views, plate_views, remove_plate_views
-from ocio.configs.reference_space import matrix_transform, rec709_to_reference
+from ocio.configs.reference_space import linear_space_name, matrix_transform, rec709_to_reference
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"
@@ -43,6 +43,11 @@ class PlateColorSpace:
         Stops added after the response. They stand in the config as a transform of their own, to be edited there.
     primaries : Primaries
         In which the plate is encoded.
+    linear_patterns : tuple of str
+        The names of the plate's linear OpenEXR files, for a file rule of their own.
+    linear_primaries : Primaries or None
+        In which those are. None if they are not known: then there is no rule. Nor is there one for linear Rec.709, or
+        in a config without a space for them.
 
     Raises
     ------
@@ -59,6 +64,8 @@ class PlateColorSpace:
     file_pattern: str | None = None
     exposure: float = 0.0
     primaries: Primaries = REC709
+    linear_patterns: tuple[str, ...] = ()
+    linear_primaries: Primaries | None = None
 
     def __post_init__(self) -> None:
         lut_file = PureWindowsPath(self.lut_file)
@@ -154,10 +161,10 @@ def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
             toReference=_to_reference(config, space),
         )
         config.addColorSpace(color_space)
-        if modern and space.file_pattern is not None:
-            rules = config.getFileRules()
-            rules.insertRule(0, space.name, space.name, rule_regex([space.file_pattern]))
-            config.setFileRules(rules)
+        linear = space.linear_primaries
+        if linear and linear != REC709 and (name := linear_space_name(config, linear)):
+            add_file_rule(config, space.name + LINEAR_SUFFIX, name, space.linear_patterns)
+        add_file_rule(config, space.name, space.name, [space.file_pattern] if space.file_pattern else ())
     except OCIO.Exception as problem:
         raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
 

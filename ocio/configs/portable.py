@@ -20,18 +20,13 @@ from crfnet_core.metadata.color_tags import (
 )
 from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
 from ocio.configs.plate_views import add_plate_views
-from ocio.configs.reference_space import REC709_TO_AP0, matrix_transform
+from ocio.configs.reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"
 
-#: Linear spaces of other primaries, in which linear plates may be: the name in Blender, and other names.
-LINEAR_SPACES = (
-    (DISPLAY_P3, "Linear DCI-P3 D65", ("lin_p3d65_scene", "lin_p3d65", "Linear P3-D65")),
-    (REC2020, "Linear Rec.2020", ("lin_rec2020_scene", "lin_rec2020")),
-    (ADOBE_RGB, "Linear AdobeRGB", ("lin_adobergb_scene", "lin_adobergb")),
-    (PROPHOTO, "Linear ProPhoto RGB", ("lin_prophoto",)),
-)
+#: The primaries of linear plates whose spaces the packaged config does not have.
+ADDED_PRIMARIES = (DISPLAY_P3, REC2020, ADOBE_RGB, PROPHOTO)
 
 #: The most plates whose views are in the config: more would bury the others in the menus.
 MOST_PLATES_WITH_VIEWS = 16
@@ -54,8 +49,8 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
         If two spaces share a name or an alias, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
-    for primaries, name, aliases in LINEAR_SPACES:
-        _add_linear_space(config, primaries, name, aliases)
+    for primaries in ADDED_PRIMARIES:
+        _add_linear_space(config, primaries)
     names = Counter(space.name.casefold() for space in spaces)
     for space in spaces:
         if names[space.name.casefold()] > 1:
@@ -66,11 +61,12 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     return add_plate_views(config, [space.name for space in spaces])
 
 
-def _add_linear_space(config: OCIO.Config, primaries: Primaries, name: str, aliases: Sequence[str]) -> None:
-    """Add the linear space of some primaries to a config whose reference is linear Rec.709."""
+def _add_linear_space(config: OCIO.Config, primaries: Primaries) -> None:
+    """Add the linear space of some primaries, by its name in Blender, to a config whose reference is linear Rec.709."""
+    *aliases, name = LINEAR_NAMES[primaries]
     space = OCIO.ColorSpace(
         name=name,
-        aliases=list(aliases),
+        aliases=aliases,
         family="Scene-linear",
         encoding="scene-linear",
         description=f"Scene-linear light, {primaries.name} primaries.",

@@ -1,4 +1,4 @@
-"""From linear Rec.709, the space of our linear plates, to the scene reference space of any config."""
+"""The linear spaces of any config by their primaries, and from linear Rec.709 to its scene reference space."""
 
 from __future__ import annotations
 
@@ -6,6 +6,16 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
+from crfnet_core.metadata.color_tags import (
+    ADOBE_RGB,
+    AP0,
+    AP1,
+    DISPLAY_P3,
+    PROPHOTO,
+    REC709,
+    REC2020,
+    Primaries,
+)
 from crfnet_core.types import Float64Array
 
 #: Names and aliases of linear Rec.709 in common configs, the most specific first.
@@ -20,12 +30,30 @@ LINEAR_REC709 = (
     "Utility - Linear - sRGB",
 )
 
+#: Primaries -> names, aliases and roles of the linear space with them in common configs: the Color Interop Forum's name
+#: first, where there is one, and Blender's last.
+LINEAR_NAMES: dict[Primaries, tuple[str, ...]] = {
+    REC709: LINEAR_REC709,
+    AP0: ("lin_ap0_scene", "aces_interchange", "ACES2065-1"),
+    AP1: ("lin_ap1_scene", "lin_ap1", "acescg", "ACEScg"),
+    DISPLAY_P3: ("lin_p3d65_scene", "lin_p3d65", "Linear P3-D65", "Linear DCI-P3 D65"),
+    REC2020: ("lin_rec2020_scene", "lin_rec2020", "Linear Rec.2020"),
+    ADOBE_RGB: ("lin_adobergb_scene", "lin_adobergb", "Linear AdobeRGB"),
+    PROPHOTO: ("lin_prophoto", "Linear ProPhoto RGB"),
+}
+
 #: Linear Rec.709 to ACES2065-1, row by row; with Bradford chromatic adaptation, as in the ACES configs.
 REC709_TO_AP0 = (
     (0.439632981919, 0.382988698152, 0.177378319930),
     (0.089776442959, 0.813439428749, 0.096784128292),
     (0.017541170383, 0.111546553302, 0.870912276314),
 )
+
+
+def linear_space_name(config: OCIO.Config, primaries: Primaries) -> str | None:
+    """Return a config's name of the linear space with some primaries; None if it has none that is known."""
+    spaces = filter(None, map(config.getColorSpace, LINEAR_NAMES.get(primaries, ())))
+    return next((str(space.getName()) for space in spaces), None)
 
 
 def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:

@@ -8,7 +8,7 @@ decoding    frames by number: seek to the key frame before, decode from there
 stream      what a movie says of its pictures, read once
 index       the times of all frames, without decoding them
 conversion  YUV to RGB
-color       matrix, primaries and transfer functions as streams tag them
+color       how streams code RGB: matrix and range
 log_tags    what makers write of their log curves into movies
 timecode    SMPTE timecode, counted on from frame to frame
 library     PyAV and its absence; which files are movies

@@ -1,21 +1,8 @@
-"""Matrix, primaries and transfer functions as streams tag them, by the numbers of ITU-T H.273 (CICP)."""
+"""How streams code RGB: matrix and range, by the numbers of ITU-T H.273 (CICP)."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020, Primaries
-
-#: H.273 ColourPrimaries. BT.601's two systems are those of ITU-R BT.601-7; DCI-P3 has the white of SMPTE RP 431-2.
-PRIMARIES = {
-    1: REC709,
-    5: Primaries("Rec.601 (625 lines)", (0.64, 0.33), (0.29, 0.60), (0.15, 0.06)),
-    6: (REC601_525 := Primaries("Rec.601 (525 lines)", (0.630, 0.340), (0.310, 0.595), (0.155, 0.070))),
-    7: REC601_525,
-    9: REC2020,
-    11: Primaries("DCI-P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), (0.314, 0.351)),
-    12: DISPLAY_P3,
-}
 
 #: H.273 MatrixCoefficients -> name, and the weights of red and blue in luma.
 MATRICES = {
@@ -35,44 +22,6 @@ FULL_RANGE = 2
 
 #: Lines from which an untagged stream is taken to have the matrix of BT.709, below it that of BT.601.
 HD_LINES = 720
-
-
-@dataclass(frozen=True)
-class PublishedCurve:
-    """A transfer function that is published, so that no response need be estimated.
-
-    Parameters
-    ----------
-    name : str
-        As `ColorTags.transfer` has it.
-    standard : str
-        Who publishes it.
-    color_space : str
-        The colour space to choose, by its name in OpenColorIO's studio config; empty if that has none.
-    """
-
-    name: str
-    standard: str
-    color_space: str = ""
-
-    @property
-    def advice(self) -> str:
-        """What to do with footage of this curve, as the second part of an error message."""
-        space = f'give it the color space "{self.color_space}" of an ACES studio config' if self.color_space else ""
-        return (
-            f"is tagged {self.name} ({self.standard}), whose curve is published, so there is no response to estimate;"
-            f" {space or 'linearize it with that curve'}"
-        )
-
-
-#: H.273 TransferCharacteristics that are not those of ordinary pictures.
-TRANSFERS = {
-    8: PublishedCurve("linear", "H.273"),
-    9: PublishedCurve("Log 100:1", "H.273"),
-    10: PublishedCurve("Log 316:1", "H.273"),
-    16: PublishedCurve("PQ", "SMPTE ST 2084, ITU-R BT.2100", "Rec.2100-PQ - Display"),
-    18: PublishedCurve("HLG", "ARIB STD-B67, ITU-R BT.2100", "Rec.2100-HLG - Display"),
-}
 
 
 @dataclass(frozen=True)

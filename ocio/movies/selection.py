@@ -43,11 +43,8 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
     Raises
     ------
     PhotoError
-        If the movie has a published curve, or none of these frames can be decoded.
+        If none of these frames can be decoded.
     """
-    movie = frames.movie
-    if movie.curve:
-        raise PhotoError(f"{movie.path}: {movie.curve.advice}")
     parts = [part.tolist() for part in np.array_split(frames.numbers, count) if len(part)]
     seen: list[Float32Array] = []
     for part in parts:

@@ -12,8 +12,9 @@ import numpy as np
 
 from crfnet_core.errors import PlateError
 from crfnet_core.image_io import MAX_PIXELS
+from crfnet_core.metadata.cicp import cicp_tags
 from crfnet_core.metadata.color_tags import ColorTags
-from ocio.movies.color import PRIMARIES, TRANSFERS, Coding, PublishedCurve
+from ocio.movies.color import Coding
 from ocio.movies.conversion import bit_depth
 from ocio.movies.index import FrameIndex, read_index
 from ocio.movies.library import opened, undecodable
@@ -60,8 +61,6 @@ class MovieStream:
         Whether the frames hold two fields.
     color : ColorTags
         Primaries and transfer function as tagged.
-    curve : PublishedCurve or None
-        The published transfer function that the movie has; None for ordinary pictures.
     metadata : mapping of str to str
         Of the file and of its video, by FFmpeg's names in lower case.
     index : FrameIndex
@@ -80,7 +79,6 @@ class MovieStream:
     timecode: Timecode | None
     is_interlaced: bool
     color: ColorTags
-    curve: PublishedCurve | None
     metadata: Mapping[str, str]
     index: FrameIndex
 
@@ -90,7 +88,7 @@ class MovieStream:
         parts = [
             f"{self.codec}, {self.width} x {self.height}, {self.bit_depth} bits, {count} frames{rate}",
             f"{self.coding.matrix}, {'full' if self.coding.is_full_range else 'limited'} range",
-            f"tagged {self.curve.name}" if self.curve else "",
+            f"tagged {self.color.transfer}" if self.color.transfer else "",
             f"timecode {self.timecode}" if self.timecode else "",
             *(f"the stream {assumption}" for assumption in self.coding.assumptions),
             "interlaced: deinterlace it first, its frames mix two moments" if self.is_interlaced else "",
@@ -125,8 +123,6 @@ def _described(
     is_turned = turn[0] == 0
     name = stream.codec_context.codec.canonical_name
     rate = Fraction(stream.average_rate or 0)
-    curve = TRANSFERS.get(frame.color_trc) or log_curve(path, metadata)
-    primaries = PRIMARIES.get(frame.color_primaries)
     return MovieStream(
         path=path,
         codec=CODEC_NAMES.get(name, name),
@@ -139,8 +135,7 @@ def _described(
         rate=rate,
         timecode=Timecode.parse(metadata.get("timecode", ""), rate),
         is_interlaced=frame.interlaced_frame,
-        color=ColorTags(primaries, curve.name if curve else "", "CICP" if primaries or curve else ""),
-        curve=curve,
+        color=_color(path, frame, metadata),
         metadata=metadata,
         index=index,
     )
@@ -171,6 +166,14 @@ def _coding(path: Path, frame: VideoFrame, codec: str) -> Coding:
     if coding is None or form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
         raise undecodable(path, f"pixels of {form.name}, matrix {frame.colorspace} of H.273")
     return coding
+
+
+def _color(path: Path, frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
+    """Return primaries and transfer function as the stream tags them, or else the log curve that its maker names."""
+    tags = cicp_tags((frame.color_primaries, frame.color_trc))
+    if tags.transfer or not (curve := log_curve(path, metadata)):
+        return tags
+    return ColorTags(tags.primaries, curve, " and ".join(filter(None, (tags.source, "the maker's entry"))))
 
 
 def _turn(frame: VideoFrame) -> tuple[int, int, int, int]:

@@ -23,6 +23,7 @@ from ocio.pipeline.estimates import estimate_photographs, load_network, load_pri
 from ocio.pipeline.folders import estimated_light, with_light, write_estimate
 from ocio.pipeline.manifest import MANIFEST, Manifest, PhotographRecord
 from ocio.pipeline.workers import cores, worker_pool
+from ocio.plates.linear_space import linear_space
 from ocio.staging import staged_files
 
 #: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
@@ -189,7 +190,7 @@ def estimate_each(
             show_progress(progress, done, len(tasks))
         names = [str(task.photo) for task in tasks]
         manifest.rewrite(dict.fromkeys([*names, *manifest.records]))
-        _write_configs(out, manifest)
+        _write_configs(out, manifest, first.plates.output_space)
     return [manifest.records[name] for name in names]
 
 
@@ -253,7 +254,7 @@ def _check_absent(paths: Iterable[Path]) -> None:
             raise PlateError(f"{path}: exists already; add --overwrite or move it away")
 
 
-def _write_configs(out: Path, manifest: Manifest) -> None:
+def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
     """Write a config into each folder, with the colour spaces of all its photographs that have an estimate."""
     folders: dict[Path, list[PhotographRecord]] = {}
     for record in manifest.records.values():
@@ -266,7 +267,9 @@ def _write_configs(out: Path, manifest: Manifest) -> None:
             files[0].config.unlink(missing_ok=True)
             continue
         spaces = [
-            with_light(own.plate_color_space(photo), record.exposure, record.plate)
+            with_light(
+                own.plate_color_space(photo), record.exposure, record.plate, linear_space(record.plate, output_space)
+            )
             for own, photo, record in zip(files, photos, records, strict=True)
         ]
         check = {files[0].color_space: read_lut(files[0].spi1d).channels[0]}  # they all are made alike

@@ -20,6 +20,7 @@ from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
 from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
+from ocio.plates.linear_space import LinearSpace
 from ocio.plates.primaries import PlatePrimaries, common_primaries
 from ocio.report import estimate_document, json_text
 from ocio.staging import staged_files
@@ -93,7 +94,7 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
         was: either all files are written, or none.
     """
     light = estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
-    config = portable_config([with_light(plan.space, light.stops, light.plate)])
+    config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
     folder = plan.files.report.parent
     with output_folder(folder), staged_files(folder) as staged:
         files = plan.files.in_folder(staged)
@@ -118,13 +119,17 @@ def estimated_light(estimated: PhotographEstimate, plates: PlateOptions, *, lut_
     return PlateLight.of(estimated.tags[0], replace(lut, comments=(*lut.comments, comment)), plates)
 
 
-def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries) -> PlateColorSpace:
-    """Return a plate's colour space with its exposure and its primaries; unknown ones are taken for Rec.709."""
+def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries, linear: LinearSpace) -> PlateColorSpace:
+    """Return a plate's colour space with its exposure, its primaries, and those of its linear files.
+
+    Unknown primaries of the plate are taken for Rec.709.
+    """
     treated = "" if plate.primaries else ", treated as Rec.709"
     return replace(
         space,
         exposure=stops,
         primaries=plate.primaries or REC709,
+        linear_primaries=linear.target,
         description=f"{space.description}; primaries {plate}{treated}",
     )
 

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from dataclasses import dataclass
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.file_rules import is_counter_name, plate_pattern
-from ocio.configs.reference_space import LINEAR_REC709
+from ocio.configs.file_rules import is_counter_name, linear_pattern, plate_pattern
+from ocio.configs.reference_space import LINEAR_NAMES, linear_space_name
 from ocio.configs.studio.looks import Look
 
 #: The space of linear plates of which no header says more.
 DEFAULT_LINEAR = "lin_rec709_scene"
-
-#: Names and roles of the spaces that headers of linear plates state (Color Interop Forum, "Color Space Encodings for
-#: Texture Assets and CG Rendering"), in configs that do not know these names yet.
-OTHER_NAMES = {
-    DEFAULT_LINEAR: LINEAR_REC709,
-    "lin_ap0_scene": ("aces_interchange",),
-    "lin_ap1_scene": ("acescg", "ACEScg", "lin_ap1"),
-    "lin_p3d65_scene": ("lin_p3d65", "Linear P3-D65"),
-    "lin_rec2020_scene": ("lin_rec2020", "Linear Rec.2020"),
-    "lin_adobergb_scene": ("lin_adobergb", "Linear AdobeRGB"),
-}
 
 
 @dataclass(frozen=True)
@@ -86,20 +74,14 @@ class PlateRules:
         space = _linear_space(config, set(look.linear.values()))
         if look.linear and not linear_patterns and space is None:
             notes.append(f"no file rule for {next(iter(look.linear))}: the config has no colour space as its header's")
-        linear = linear_patterns or (_distinct(map(_linear_pattern, look.linear)) if space else ())
+        linear = linear_patterns or (_distinct(map(linear_pattern, look.linear)) if space else ())
         return cls(encoded, linear, space or DEFAULT_LINEAR, tuple(notes))
 
 
 def _linear_space(config: OCIO.Config, stated: set[str]) -> str | None:
     """Return the config's space that the headers of linear plates state, or None if it has none."""
-    names = [name for state in stated if len(stated) == 1 and state for name in (state, *OTHER_NAMES.get(state, ()))]
-    spaces = filter(None, map(config.getColorSpace, names))
-    return next((str(space.getName()) for space in spaces), None)
-
-
-def _linear_pattern(name: str) -> str:
-    """Return the pattern of a linear plate's file: its own name, with any frame number."""
-    return re.sub(r"\.\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
+    primaries = [each for each in LINEAR_NAMES if each.interop_id and {each.interop_id} == stated]
+    return linear_space_name(config, primaries[0]) if primaries else None
 
 
 def _distinct(patterns: Iterable[str]) -> tuple[str, ...]:

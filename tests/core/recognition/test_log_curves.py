@@ -3,7 +3,10 @@
 import numpy as np
 import pytest
 
+from crfnet_core.metadata import cicp
 from crfnet_core.recognition import COLOR_SPACES, log_curves
+from crfnet_core.recognition.tagged import TAGGED_SPACES
+from ocio.movies import log_tags
 
 #: Published codes of 10 bits (black, 18 % gray, 90 % white), from the makers' tables.
 PUBLISHED = {
@@ -72,6 +75,14 @@ def test_the_named_color_space_of_the_aces_config_undoes_the_curve(name):
     found = np.array([to_linear.applyRGB([code] * 3)[1] for code in codes])
     np.testing.assert_allclose(found / found[1], reflectance / 0.18, rtol=2e-3)
     assert found[1] == pytest.approx(0.18, rel=0.02)
+
+
+def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
+    ocio = pytest.importorskip("PyOpenColorIO")
+    names = set(ocio.Config.CreateFromFile("ocio://studio-config-latest").getColorSpaceNames())
+    assert set(TAGGED_SPACES.values()) <= names
+    assert set(TAGGED_SPACES) <= {*log_curves(), *cicp.TRANSFERS.values(), *log_tags.TEXTS.values()}
+    assert {*log_tags.TEXTS.values(), log_tags.ARRI_CURVE} <= {*log_curves(), *TAGGED_SPACES}
 
 
 @pytest.mark.parametrize("name", log_curves())

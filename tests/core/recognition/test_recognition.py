@@ -1,5 +1,8 @@
 """Log footage, limited range and tags: what is recognized, and what is left alone."""
 
+import dataclasses
+import json
+
 import numpy as np
 import pytest
 
@@ -8,9 +11,12 @@ from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.recognition import (
+    COLOR_SPACES,
     Kind,
     Levels,
+    Recognition,
     is_limited_range,
+    light_error,
     log_curves,
     log_factor,
     nearest_curves,
@@ -53,14 +59,15 @@ def test_a_lifted_black_with_a_clipped_white_says_less():
 def test_a_maker_in_the_file_names_its_own_curves(name):
     maker = name.split()[0]
     named = nearest_curves(Levels.of(log_picture(name)), (f"{maker.upper()} CORPORATION",))
-    assert name in named
-    assert all(each.startswith(maker) for each in named)
+    assert name in [each.name for each in named]
+    assert all(each.name.startswith(maker) for each in named)
+    assert sum(each.probability for each in named) == pytest.approx(1)
 
 
 def test_the_nearest_curve_has_black_and_gray_where_the_picture_has():
     for name in ("Apple Log", "ARRI LogC4", "Sony S-Log2"):
         levels = Levels.of(log_picture(name))
-        best = log_curves()[nearest_curves(levels)[0]]
+        best = log_curves()[nearest_curves(levels)[0].name]
         assert len(nearest_curves(levels)) == 4
         assert abs(float(best(0.0)) - float(log_curves()[name](0.0))) < 0.035
 
@@ -69,8 +76,38 @@ def test_log_footage_is_recognized_with_its_remedy():
     found = recognize(Levels.of(log_picture("Panasonic V-Log")), log_probability=0.9, makes=("Panasonic",))
     assert (found.kind, found.curves, found.color_space) == (Kind.LOG_FOOTAGE, ("Panasonic V-Log",), "V-Log V-Gamut")
     assert found.reason.startswith("log footage: black lies at code ")
-    assert 'in ACES configs "V-Log V-Gamut"' in found.advice
+    assert found.reason.endswith("; its maker's curve is Panasonic V-Log")
+    assert found.advice.endswith(', in ACES configs "V-Log V-Gamut"')
+    assert (found.probabilities, found.errors) == ((1.0,), (0.0,))
     assert recognize(Levels.of(log_picture("Panasonic V-Log")), log_probability=0.4) is None
+
+
+def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_error():
+    found = recognize(Levels.of(log_picture("ARRI LogC3")), log_probability=0.9)
+    safest, error = min(zip(found.curves, found.errors, strict=True), key=lambda pair: pair[1])
+    assert f"by its levels the curve is {found.curves[0]} ({found.probabilities[0]:.0%}), " in found.reason
+    assert found.advice.endswith(f"; if nothing says, {safest} is safest: its light may be off by {error:.1f} stop")
+    assert list(found.probabilities) == sorted(found.probabilities, reverse=True)
+    assert 0 < sum(found.probabilities) < 1
+    assert found.color_space == COLOR_SPACES.get(safest, "")
+    assert Recognition.from_dict(json.loads(json.dumps(dataclasses.asdict(found)))) == found
+
+
+def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
+    levels, curves = Levels.of(log_picture("Canon Log 2")), log_curves()
+    names = [name for name in curves if name.startswith("Canon")]
+    near = {each.name: each for each in nearest_curves(levels, ("Canon",))}
+    assert set(near) == set(names)
+    for name in names:
+        errors = [near[true].probability * light_error(curves[name], curves[true], levels) for true in names]
+        assert near[name].expected_error == pytest.approx(sum(errors))
+
+
+def test_an_error_of_light_is_that_of_the_shape():
+    levels = Levels.of(log_picture("ARRI LogC3"))
+    curve = log_curves()["ARRI LogC3"]
+    assert light_error(curve, curve, levels) == 0
+    assert light_error(lambda light: curve(2 * np.asarray(light)), curve, levels) < 0.01
 
 
 @pytest.mark.parametrize("seed", range(4))

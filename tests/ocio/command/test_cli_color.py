@@ -231,3 +231,40 @@ class TestConfig:
         for suffix in ("spi1d", "cube", "clf"):
             comments = read_lut(look / f"shot.{suffix}").comments
             assert comments[-1] == "Primaries: Display P3 (ICC profile); the LUT leaves them as they are"
+
+
+@pytest.mark.parametrize(
+    ("output", "space", "to_aces"),
+    [
+        ("ACEScg", "ACEScg", "ACEScg"),
+        ("ACES2065-1", "ACES2065-1", "ACES2065-1"),
+        ("plate", "Linear DCI-P3 D65", "Display P3"),
+        ("scene_linear", "scene_linear", "sRGB"),
+    ],
+)
+def test_the_config_finds_the_linear_plate_in_its_space(crfnet, fixed_model, plate, tmp_path, output, space, to_aces):
+    """OpenColorIO sees the file's name only; from the space that it finds, the light is that of the plate itself."""
+    photo = write_tagged(tmp_path / "shot.0001.png", read_image(plate, kind="uint8"), matrix_profile(DISPLAY_P3))
+    look = tmp_path / "look"
+    arguments = ("--no-sheet", "--depth", "float", "--output-space", output, "--model", fixed_model)
+    assert crfnet("estimate", photo, "--out", look, *arguments).code == 0
+    config = loaded(look / "config.ocio")
+    for name in ("shot.0001_linear.exr", "shot.0002_linear.EXR", "linear/shot.0001.exr"):
+        assert config.getColorSpaceFromFilepath(str(look / name))[0] == space
+    assert config.getColorSpaceFromFilepath("beauty.0001.exr")[0] == "scene_linear"
+    encoded, _ = config.getColorSpaceFromFilepath(str(photo))
+    linear = read_exr(look / "shot.0001_linear.exr")[0][::40, ::40].reshape(-1, 3)
+    codes = read_photo(photo).pixels[::40, ::40].reshape(-1, 3)
+    expected = converted(config, encoded, "ACES2065-1", codes)
+    np.testing.assert_allclose(converted(config, space, "ACES2065-1", linear), expected, atol=1e-5)
+    np.testing.assert_allclose(to_space(linear, to_aces, "ACES2065-1"), expected, atol=1e-4)
+
+
+def test_the_config_of_many_finds_each_linear_plate(crfnet, fixed_model, plate, tmp_path):
+    for name, primaries in (("a.png", DISPLAY_P3), ("b.png", ADOBE_RGB), ("c.png", REC709)):
+        write_tagged(tmp_path / name, read_image(plate, kind="uint8"), matrix_profile(primaries))
+    arguments = ("--each", "--workers", 1, "--no-sheet", "--output-space", "plate", "--model", fixed_model)
+    assert crfnet("estimate", tmp_path, "--out", tmp_path / "look", *arguments).code == 0
+    config = loaded(tmp_path / "look" / "config.ocio")
+    found = [config.getColorSpaceFromFilepath(f"/x/{name}_linear.exr")[0] for name in "abc"]
+    assert found == ["Linear DCI-P3 D65", "Linear AdobeRGB", "scene_linear"]

@@ -12,6 +12,7 @@ import pytest
 
 from crfnet_core.image_io import read_photo
 from ocio.arguments.parts import BAD_INPUT
+from ocio.configs.files import load_config
 from ocio.luts.files import read_lut
 from ocio.movies import decoding
 from tests.helpers.folders import listed, tree
@@ -221,12 +222,25 @@ def test_bad_frames_are_refused_in_one_line(linearize, tmp_path, monkeypatch, mo
 @needs_av
 def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
     options = "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -color_trc smpte2084"
-    path = make_movie(tmp_path / "hdr.mp4", options)
+    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
+    path = make_movie(tmp_path / "hdr.mp4", options, source=source)
     for arguments in (("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")):
         done = crfnet(*arguments)
         assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
-        assert 'give it the color space "Rec.2100-PQ - Display"' in done.err
+        assert "hdr.mp4 frame 1: is encoded as PQ: so says its metadata (CICP)" in done.err
+        assert 'in ACES configs "Rec.2100-PQ - Display"' in done.err
     assert listed(tmp_path) == ["hdr.mp4"]
+
+
+@needs_av
+def test_the_printed_line_makes_all_frames_like_the_one_that_was_written(crfnet, fixed_model, movie, tmp_path):
+    chosen = ("--exposure", "gray=0.42", "--output-space", "ACEScg", "--primaries", "p3", "--depth", "float")
+    done = crfnet("estimate", movie, "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet", *chosen)
+    (line,) = [line for line in done.out.splitlines() if line.startswith("  crfnet linearize")]
+    words = shlex.split(line)
+    assert dict(zip(words[7::2], words[8::2], strict=True)) == dict(zip(chosen[::2], chosen[1::2], strict=True))
+    config = load_config(tmp_path / "look" / "config.ocio")
+    assert config.getColorSpaceFromFilepath(words[6].replace("%04d", "0001"))[0] == "ACEScg"
 
 
 @needs_av

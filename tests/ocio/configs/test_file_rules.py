@@ -5,7 +5,14 @@ import re
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.file_rules import add_file_rule, file_rules, is_counter_name, plate_pattern, rule_regex
+from ocio.configs.file_rules import (
+    add_file_rule,
+    file_rules,
+    is_counter_name,
+    linear_patterns,
+    plate_pattern,
+    rule_regex,
+)
 from ocio.configs.portable import portable_config
 from tests.helpers.configs import rule_names
 
@@ -112,3 +119,14 @@ def test_names_that_somebody_gave_are_his(name):
 )
 def test_a_frame_stands_for_all_frames(name, pattern):
     assert plate_pattern(name) == pattern
+
+
+def test_the_linear_files_of_a_plate_are_known_by_name_and_as_frames():
+    names = ["shot.0001_linear.exr", "shot.0002_linear.exr", "other_linear.exr"]
+    assert linear_patterns("shot.0001", names) == ("shot.#_linear.exr", "other_linear.exr", "shot.#.exr")
+
+
+def test_the_linear_files_of_thousands_of_photographs_make_a_rule_that_opencolorio_takes():
+    config = portable_config([])
+    add_file_rule(config, "plate", "ACEScct", linear_patterns("0001", [f"{n:04d}_linear.exr" for n in range(5000)]))
+    assert config.getColorSpaceFromFilepath("/x/4999_linear.exr")[0] == "ACEScct"

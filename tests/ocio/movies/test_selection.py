@@ -3,10 +3,14 @@
 import pytest
 
 from crfnet_core.errors import PhotoError
-from ocio.defaults import FRAMES_ANALYZED
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.posterior import Prior
+from ocio.defaults import FRAMES_ANALYZED, PRIORS
 from ocio.movies.frames import MovieFrames
 from ocio.movies.selection import chosen_photos
-from tests.helpers.movies import make_movie
+from ocio.options import EstimateOptions
+from ocio.pipeline import estimate_photographs
+from tests.helpers.movies import SOURCE, make_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -60,11 +64,12 @@ def test_frames_have_names_bits_and_metadata(tmp_path):
     assert abs(codes - codes.round()).max() < 1e-3
 
 
-def test_a_published_curve_is_answered_with_its_name(tmp_path):
-    path = make_movie(tmp_path / "a.mp4", f"{H264} -color_trc arib-std-b67")
+def test_a_published_curve_is_answered_with_its_color_space_unless_metadata_is_ignored(tmp_path, fixed_model):
+    path = make_movie(tmp_path / "a.mp4", f"{H264} -color_trc arib-std-b67", source=SOURCE.replace("128x96", "320x240"))
+    network, prior = ResponseNetwork.load(fixed_model), Prior.load(PRIORS[0])
     with pytest.raises(PhotoError) as told:
-        chosen(path)
-    assert str(told.value) == (
-        f"{path}: is tagged HLG (ARIB STD-B67, ITU-R BT.2100), whose curve is published, so there is no response to"
-        ' estimate; give it the color space "Rec.2100-HLG - Display" of an ACES studio config'
-    )
+        estimate_photographs([path], network, prior, EstimateOptions())
+    message = str(told.value)
+    assert message.startswith(f"{path} frame 1: is encoded as HLG: so says its metadata (CICP)")
+    assert 'in ACES configs "Rec.2100-HLG - Display"' in message
+    assert estimate_photographs([path], network, prior, EstimateOptions(use_metadata=False)).movies

@@ -4,13 +4,12 @@ import struct
 from fractions import Fraction
 
 import numpy as np
-import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import PlateError
-from crfnet_core.metadata import file_origin
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020
-from ocio.movies import color, log_tags
+from crfnet_core.metadata import cicp, file_origin
+from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags
+from ocio.movies import log_tags
 from ocio.movies.frames import MovieFrames
 from ocio.movies.header import frame_header, movie_metadata
 from ocio.movies.library import is_movie
@@ -31,12 +30,18 @@ def movie(tmp_path_factory):
 
 @pytest.mark.parametrize(
     ("tag", "primaries"),
-    [("bt709", REC709), ("bt2020", REC2020), ("smpte432", DISPLAY_P3), ("smpte170m", color.REC601_525)],
+    [
+        ("bt709", REC709),
+        ("bt2020", REC2020),
+        ("smpte432", DISPLAY_P3),
+        ("smpte170m", cicp.PRIMARIES[6]),
+        ("film", cicp.PRIMARIES[8]),
+    ],
 )
 def test_primaries_are_those_of_the_tag(tmp_path, tag, primaries):
     found = read_stream(make_movie(tmp_path / "a.mp4", f"{H264} -color_primaries {tag} -color_trc bt709"))
     assert (found.color.primaries, found.color.source) == (primaries, "CICP")
-    assert (found.curve, found.color.transfer) == (None, "")
+    assert found.color.transfer == ""
     assert movie_metadata(found).color == found.color
 
 
@@ -45,10 +50,10 @@ def test_untagged_streams_say_nothing_of_colors(movie):
     assert (found.primaries, found.transfer, found.source) == (None, "", "")
 
 
-@pytest.mark.parametrize(("tag", "name"), [("arib-std-b67", "HLG"), ("smpte2084", "PQ"), ("log100", "Log 100:1")])
+@pytest.mark.parametrize(("tag", "name"), [("arib-std-b67", "HLG"), ("smpte2084", "PQ"), ("log100", "log 100:1")])
 def test_published_curves_are_named(tmp_path, tag, name):
     found = read_stream(make_movie(tmp_path / "a.mp4", f"{H264} -color_primaries bt2020 -color_trc {tag}"))
-    assert (found.curve.name, found.color.transfer) == (name, name)
+    assert (found.color.transfer, found.color.source) == (name, "CICP")
     assert f"; tagged {name}" in str(found)
 
 
@@ -60,43 +65,65 @@ SONY = '<AcquisitionRecord><Group name="CameraUnitMetadataSet"><Item name="Captu
 
 
 @pytest.mark.parametrize(
-    ("content", "name", "space"),
+    ("content", "name"),
     [
-        (b"com.apple.rec2020.apple-log", "Apple Log", "Apple Log"),
-        (b"com.apple.apple-wide-gamut.apple-log", "Apple Log 2", "Apple Log 2"),
-        (SONY.format("s-log3-cine").encode(), "S-Log3", "S-Log3 S-Gamut3.Cine"),
-        (SONY.format("s-log3").encode(), "S-Log3", "S-Log3 S-Gamut3"),
-        (SONY.format("s-log2").encode(), "S-Log2", ""),
+        (b"com.apple.rec2020.apple-log", "Apple Log"),
+        (b"com.apple.apple-wide-gamut.apple-log", "Apple Log 2"),
+        (SONY.format("s-log3-cine").encode(), "Sony S-Log3"),
+        (SONY.format("s-log3").encode(), "Sony S-Log3 in S-Gamut3"),
+        (SONY.format("s-log2").encode(), "Sony S-Log2"),
+        (b"<Gamma>\n  <CaptureGamma>V-Log</CaptureGamma>\n</Gamma>", "Panasonic V-Log"),
     ],
 )
-def test_log_curves_that_makers_write_are_named(movie, tmp_path, content, name, space):
+def test_log_curves_that_makers_write_are_named(movie, tmp_path, content, name):
     path = tmp_path / "log.mp4"
     path.write_bytes(movie.read_bytes() + boxed(b"meta", content))
-    found = read_stream(path).curve
-    assert (found.name, found.color_space) == (name, space)
+    assert read_stream(path).color == ColorTags(None, name, "the maker's entry")
 
 
-@pytest.mark.parametrize("content", [SONY.format("rec709").encode(), b"s-log3-cine", b"apple-log"])
+def test_a_log_curve_is_named_beside_the_tag_of_its_primaries(tmp_path):
+    path = make_movie(tmp_path / "log.mp4", f"{H264} -color_primaries bt2020")
+    path.write_bytes(path.read_bytes() + boxed(b"meta", b"com.apple.rec2020.apple-log"))
+    assert read_stream(path).color == ColorTags(REC2020, "Apple Log", "CICP and the maker's entry")
+
+
+CAPTION = "1\n00:00:00,000 --> 00:00:00,033\n<font>FrameCnt: 1\n[iso: 100] [color_md : {}] [focal_len: 24.00]</font>"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "curve"),
+    [
+        ("C0001M01.XML", SONY.format("s-log3-cine"), "Sony S-Log3"),
+        ("C0001.SRT", CAPTION.format("d_log"), "DJI D-Log"),
+        ("C0001.SRT", CAPTION.format("dlog_m"), ""),
+        ("C0001.SRT", CAPTION.format("default"), ""),
+        ("C0002M01.XML", SONY.format("s-log3-cine"), ""),
+    ],
+)
+def test_log_curves_that_cameras_write_beside_a_movie_are_named(movie, tmp_path, name, content, curve):
+    path = tmp_path / "C0001.MP4"
+    path.write_bytes(movie.read_bytes())
+    (tmp_path / name).write_text(content, encoding="utf-8")
+    assert read_stream(path).color.transfer == curve
+
+
+@pytest.mark.parametrize(
+    "content", [SONY.format("rec709").encode(), b"<CaptureGamma>HD</CaptureGamma>", b"s-log3-cine", b"apple-log"]
+)
 def test_other_texts_name_no_curve(movie, tmp_path, content):
     path = tmp_path / "plain.mp4"
     path.write_bytes(movie.read_bytes() + boxed(b"meta", content))
-    assert read_stream(path).curve is None
+    assert read_stream(path).color == ColorTags()
 
 
 def test_texts_among_the_pictures_name_no_curve(movie, tmp_path):
     path = tmp_path / "plain.mp4"
     path.write_bytes(movie.read_bytes() + boxed(b"mdat", b"com.apple.rec2020.apple-log"))
-    assert read_stream(path).curve is None
+    assert read_stream(path).color == ColorTags()
 
 
 def test_arri_names_its_curve():
     assert log_tags.log_curve(None, {"com.arri.camera.ColorGammaSxS": "LOG-C"}) == log_tags.ARRI_CURVE
-
-
-def test_the_color_spaces_are_those_of_the_studio_config():
-    names = set(OCIO.Config.CreateFromBuiltinConfig("studio-config-latest").getColorSpaceNames())
-    curves = [*color.TRANSFERS.values(), *log_tags.TEXTS.values(), log_tags.ARRI_CURVE]
-    assert {curve.color_space for curve in curves} - {""} <= names
 
 
 def test_frame_rate_timecode_and_pixel_aspect(tmp_path):

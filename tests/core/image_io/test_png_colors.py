@@ -1,0 +1,94 @@
+"""What the chunks of PNG files say of colours, by their order in the specification's third edition."""
+
+import struct
+import zlib
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+
+from crfnet_core.image_io import read_photo
+from crfnet_core.image_io.png_files import with_color_chunks
+from crfnet_core.metadata import cicp
+from crfnet_core.metadata.color_tags import (
+    ADOBE_RGB,
+    DISPLAY_P3,
+    PHOTOGRAPHIC,
+    PROPHOTO,
+    REC709,
+    REC2020,
+    ColorTags,
+    Primaries,
+)
+from tests.helpers.color_profiles import matrix_profile
+from tests.helpers.crafted_files import png, png_chunk
+
+#: Primaries of a display that is none of the named ones.
+OWN = Primaries("own", (0.66, 0.34), (0.24, 0.67), (0.145, 0.055), (0.333, 0.342))
+
+#: A profile in Adobe RGB as PNG holds it.
+ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))
+
+
+def tags(path, **chunks):
+    content = b"".join(png_chunk(name.encode(), content) for name, content in chunks.items())
+    path.write_bytes(png(2, 2, bytes(14), chunks=content))
+    return read_photo(path).metadata.color
+
+
+def chrm(primaries):
+    white_last = np.rint(primaries.corners * 100_000).astype(int).ravel().tolist()
+    return struct.pack(">8I", *white_last[6:], *white_last[:6])
+
+
+@pytest.mark.parametrize("primaries", [*PHOTOGRAPHIC.values(), cicp.PRIMARIES[11]])
+def test_named_chromaticities_are_known(tmp_path, primaries):
+    assert tags(tmp_path / "a.png", cHRM=chrm(primaries)) == ColorTags(primaries, "", "cHRM chunk")
+
+
+def test_others_are_taken_as_they_are(tmp_path):
+    found = tags(tmp_path / "a.png", cHRM=chrm(OWN)).primaries
+    np.testing.assert_allclose(found.corners, OWN.corners, atol=1e-5)
+
+
+@pytest.mark.parametrize(
+    ("codes", "expected"),
+    [
+        ((12, 13, 0, 1), ColorTags(DISPLAY_P3, "", "CICP")),
+        ((9, 16, 0, 1), ColorTags(REC2020, "PQ", "CICP")),
+        ((9, 18, 0, 1), ColorTags(REC2020, "HLG", "CICP")),
+        ((2, 2, 0, 1), ColorTags(ADOBE_RGB, "", "ICC profile")),
+        ((2, 18, 0, 1), ColorTags(ADOBE_RGB, "HLG", "ICC profile")),
+    ],
+)
+def test_codes_come_before_the_profile(tmp_path, codes, expected):
+    assert tags(tmp_path / "a.png", cICP=bytes(codes), iCCP=ICC_CHUNK) == expected
+
+
+def test_chunks_are_believed_by_their_order(tmp_path):
+    chunks = {"cICP": bytes([12, 13, 0, 1]), "iCCP": ICC_CHUNK, "sRGB": b"\0", "cHRM": chrm(PROPHOTO)}
+    expected = [(DISPLAY_P3, "CICP"), (ADOBE_RGB, "ICC profile"), (REC709, "sRGB chunk"), (PROPHOTO, "cHRM chunk")]
+    for index, (primaries, source) in enumerate(expected):
+        left = dict([*chunks.items()][index:])
+        assert tags(tmp_path / "a.png", **left) == ColorTags(primaries, "", source)
+
+
+def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
+    path, linear = tmp_path / "a.png", struct.pack(">I", 100_000)
+    assert tags(path, gAMA=linear) == ColorTags(None, "linear", "gAMA chunk")
+    assert tags(path, gAMA=linear, cHRM=chrm(REC2020)) == ColorTags(REC2020, "linear", "cHRM chunk")
+    assert tags(path, gAMA=linear, sRGB=b"\0") == ColorTags(REC709, "", "sRGB chunk")
+    assert tags(path, gAMA=linear, cICP=bytes([9, 13, 0, 1])) == ColorTags(REC2020, "", "CICP")
+    assert tags(path, gAMA=struct.pack(">I", 45_455)) == ColorTags()
+
+
+@pytest.mark.parametrize("chunks", [{}, {"cHRM": bytes(32)}, {"cHRM": bytes(31)}, {"cICP": bytes(3)}, {"sRGB": b""}])
+def test_damaged_chunks_say_nothing(tmp_path, chunks):
+    assert tags(tmp_path / "a.png", **chunks) == ColorTags()
+
+
+def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
+    path = tmp_path / "a.png"
+    path.write_bytes(png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))[:70])
+    found = with_color_chunks(oiio.ImageSpec(), path)
+    assert [each.name for each in found.extra_attribs] == ["png:gamma"]
