@@ -27,7 +27,7 @@ from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
 from crfnet_core.types import Progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
 
-__all__ = ["ResponseEstimate", "WindowEstimate", "estimate_of", "estimate_response"]
+__all__ = ["ResponseEstimate", "WindowEstimate", "editor_warnings", "estimate_of", "estimate_response"]
 
 #: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
@@ -135,6 +135,12 @@ def estimate_of(
     )
 
 
+def editor_warnings(origins: Sequence[FileOrigin]) -> list[str]:
+    """Return a warning for each program that edited the photographs."""
+    editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
+    return [f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors]
+
+
 def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
     """Return factors on the families: the geometric mean over photographs, since one camera took them all."""
     if not origins:
@@ -164,11 +170,8 @@ def _warnings(
     photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin], recognition: Recognition | None
 ) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
-    editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
     warnings = [recognition.reason] if recognition else []
-    warnings += [
-        f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors
-    ]
+    warnings += editor_warnings(origins)
     windows = [window for photograph in photographs for window in photograph.windows]
     if windows and not any(window.covers_range for window in windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")

@@ -20,8 +20,6 @@ import numpy as np
 
 from crfnet_core import ResponseCurve, ResponseEstimate, Window, WindowEstimate
 from crfnet_core.metadata import FileOrigin
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.origin import Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.recognition import Recognition
 
@@ -102,7 +100,7 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         families={Family(name): share for name, share in json.loads(entries.get("families", "{}")).items()},
         verdict=Verdict(entries["verdict"]),
         prior=entries.get("prior", ""),
-        origins=tuple(_origins(entries)),
+        origins=tuple(map(FileOrigin.from_dict, json.loads(entries.get("metadata", "[]")))),
         warnings=_lines(entries["warnings"]),
         model=entries["model"],
         photos=_lines(entries["photos"]),
@@ -125,13 +123,6 @@ def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),
         )
-
-
-def _origins(entries: Mapping[str, Any]) -> Iterator[FileOrigin]:
-    """Yield what the metadata of each photograph says; of layout 1 nothing."""
-    for origin in json.loads(entries.get("metadata", "[]")):
-        kinds = {"device": Device(origin["device"]), "encoding": Encoding(origin["encoding"])}
-        yield FileOrigin(**{**origin, **kinds, "words": tuple(origin["words"])})
 
 
 def _lines(text: str) -> tuple[str, ...]:

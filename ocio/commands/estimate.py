@@ -63,7 +63,12 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
 def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles) -> None:
     """Print what was read, found and written, and how to use it."""
     read = [*estimated.movies, *map(str, estimated.facts)]
-    lines = [*read, *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
+    lines = [
+        *read,
+        *report.verdict_lines(estimated.estimate),
+        *report.light_lines(document),
+        *report.offer_lines(estimated.offers),
+    ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files), ""])
     plate = estimated.plates[0]
     if isinstance(plate, MovieFrames):

@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+from crfnet_core.files import json_text
 from crfnet_core.metadata import FileOrigin
 from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import SHAPES, Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response_estimate import SCHEMA_VERSION
-from ocio.report import json_text
 
 jsonschema = pytest.importorskip("jsonschema")
 
