@@ -81,6 +81,11 @@ class CameraAnswer:
     difference: float | None = None
     agrees: bool | None = None
 
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
+        """Return what `dataclasses.asdict` made of it, also after JSON; None for an estimate of photographs alone."""
+        return entry and cls(*(entry[field.name] for field in dataclasses.fields(cls)))
+
 
 @dataclass(frozen=True, eq=False)
 class ResponseEstimate:
@@ -202,7 +207,7 @@ class ResponseEstimate:
                 model=document["model"],
                 photos=tuple(photo["name"] for photo in document["photographs"]),
                 recognition=Recognition.from_dict(document.get("recognition")),
-                camera=CameraAnswer(**camera) if (camera := document.get("camera")) else None,
+                camera=CameraAnswer.from_dict(document.get("camera")),
             )
         except KeyError as problem:
             raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
