@@ -84,7 +84,7 @@ class CameraAnswer:
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
         """Return what `dataclasses.asdict` made of it, also after JSON; None for an estimate of photographs alone."""
-        return entry and cls(*(entry[field.name] for field in dataclasses.fields(cls)))
+        return None if entry is None else cls(*(entry[field.name] for field in dataclasses.fields(cls)))
 
 
 @dataclass(frozen=True, eq=False)

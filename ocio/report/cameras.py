@@ -23,8 +23,10 @@ def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
 
 
 def camera_line(camera: Camera) -> str:
-    """Return a camera in one line, for lists."""
-    return "; ".join(filter(None, [f"{camera.name}: {camera.settings.camera}".rstrip(": "), camera.basis]))
+    """Return a camera in one line, for lists; its make and model where its name does not begin with them."""
+    model = camera.settings.camera
+    is_named = camera.name.casefold().startswith(model.casefold())
+    return f"{camera.name}: {camera.basis if is_named else f'{model}; {camera.basis}'}"
 
 
 def camera_summary(camera: Camera) -> dict[str, Any]:
