@@ -1,5 +1,6 @@
 """Estimate a camera's response from one photograph, with numpy and onnxruntime.
 
+analysis             what the network reads in each photograph
 estimate             the method on one screen: photographs in, response and uncertainty out
 response_estimate    what comes out, and the same as a document for JSON
 calibration          the response measured from an exposure stack instead

@@ -29,6 +29,10 @@ class CalibrationError(CRFNetError):
     """An exposure stack that cannot be read as one, or that no camera response explains."""
 
 
+class CameraError(CRFNetError):
+    """A camera that is not in the library, or cannot be read from it, kept in it or used."""
+
+
 class LutError(CRFNetError):
     """A lookup table that is malformed or cannot be written."""
 

@@ -5,17 +5,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from crfnet_core.errors import PhotoError
-from crfnet_core.metadata import FileOrigin, family_factors, file_origin
+from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
+from crfnet_core.metadata import FileOrigin, family_factors
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import (
-    Evidence,
     Family,
     Posterior,
     Prior,
@@ -24,18 +22,15 @@ from crfnet_core.posterior import (
     independent_share,
     scene_similarities,
 )
-from crfnet_core.recognition import Levels, Recognition, log_factor, recognize, refuse_tagged
+from crfnet_core.recognition import Levels, Recognition, log_factor, recognize
 from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
-from crfnet_core.types import Float32Array, Float64Array, Progress
-from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
+from crfnet_core.types import Progress
+from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
 
-__all__ = ["ResponseEstimate", "WindowEstimate", "estimate_response"]
+__all__ = ["ResponseEstimate", "WindowEstimate", "editor_warnings", "estimate_of", "estimate_response"]
 
 #: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
-
-#: Samples along each side of the thumbnails by which photographs of one scene are recognised.
-THUMBNAIL = 16
 
 
 def estimate_response(
@@ -83,23 +78,49 @@ def estimate_response(
         If there is no photograph, one is smaller than a window, something else is given, or a file names an encoding
         with a published curve.
     """
-    sources = [_choose_windows(photo, windows, seed, coverage, use_metadata) for photo in _checked(photos)]
-    if not sources:
-        raise PhotoError("there is no photograph to analyse; give at least one")
+    analyzed = analyze_photographs(
+        photos,
+        network=network,
+        use_metadata=use_metadata,
+        windows=windows,
+        seed=seed,
+        coverage=coverage,
+        progress=progress,
+    )
+    return estimate_of(analyzed, model=network.config.label, prior=prior, bank=bank)
+
+
+def estimate_of(
+    photographs: Sequence[AnalyzedPhotograph],
+    *,
+    model: str,
+    prior: Prior | None = None,
+    bank: ResponseBank | None = None,
+) -> ResponseEstimate:
+    """Return the response of the camera that took photographs which a network has read.
+
+    Parameters
+    ----------
+    photographs : sequence of AnalyzedPhotograph
+        At least one; all read by one network.
+    model : str
+        The label of this network.
+    prior, bank : Prior and ResponseBank, optional
+        As of `estimate_response`.
+    """
     bank = bank or ResponseBank.load()
-    origins = tuple(source.origin for source in sources if source.origin is not None and use_metadata)
-    levels = Levels.joint([source.levels for source in sources])
+    origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
+    levels = Levels.joint([photograph.levels for photograph in photographs])
     prior = (prior or Prior.load()).given(_metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
-    readings = _readings(sources, network, progress)
-    independent = independent_share(scene_similarities([source.thumbnail for source in sources]))
-    evidences = [reading.evidence for reading in readings]
+    independent = independent_share(scene_similarities([photograph.thumbnail for photograph in photographs]))
+    evidences = [photograph.evidence for photograph in photographs]
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
-    makes = tuple(source.make for source in sources if use_metadata)
+    makes = tuple(photograph.make for photograph in photographs)
     recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=posterior.mean_weights,
-        windows=_window_estimates(sources, readings, bank, prior),
+        windows=_window_estimates(photographs, bank, prior),
         uncertainty=posterior.expected_error,
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
@@ -107,68 +128,17 @@ def estimate_response(
         verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.of(posterior),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(sources, origins, recognition),
-        model=network.config.label,
-        photos=tuple(source.name for source in sources),
+        warnings=_warnings(photographs, origins, recognition),
+        model=model,
+        photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
     )
 
 
-@dataclass(frozen=True)
-class _Source:
-    """What stays of a photograph once its windows are cut."""
-
-    name: str
-    is_gray: bool
-    windows: tuple[Window, ...]
-    samples: Float32Array
-    thumbnail: Float64Array
-    levels: Levels
-    make: str
-    origin: FileOrigin | None
-
-
-@dataclass(frozen=True)
-class _Reading:
-    """The evidence of a photograph, and of each of its windows by itself."""
-
-    evidence: Evidence
-    windows: tuple[Evidence, ...]
-
-
-def _checked(photos: Photo | Iterable[Photo]) -> Iterator[Photo]:
-    """Yield the photographs, one by one; refuse what is none, such as a file's name or an array."""
-    several: Iterable[object] = (photos,)
-    if isinstance(photos, Iterable) and not isinstance(photos, str | np.ndarray):
-        several = photos
-    for photo in several:
-        if not isinstance(photo, Photo):
-            raise PhotoError(
-                f"a {type(photo).__name__} is no Photo; read_photo makes one of a file, Photo.from_array of an array"
-            )
-        yield photo
-
-
-def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_metadata: bool) -> _Source:
-    """Return the windows of one photograph; an error names its file."""
-    metadata = photo.metadata
-    if use_metadata:
-        refuse_tagged(photo)
-    try:
-        windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
-    except PhotoError as problem:
-        raise PhotoError(f"{photo.path}: {problem}") from None
-    samples = cut_windows(photo.pixels, windows)
-    return _Source(
-        name=photo.path.name,
-        is_gray=photo.is_gray,
-        windows=windows,
-        samples=samples,
-        thumbnail=_thumbnail(photo.pixels),
-        levels=Levels.of(photo.pixels),
-        make="" if metadata is None else metadata.make,
-        origin=None if metadata is None else file_origin(metadata),
-    )
+def editor_warnings(origins: Sequence[FileOrigin]) -> list[str]:
+    """Return a warning for each program that edited the photographs."""
+    editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
+    return [f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors]
 
 
 def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
@@ -179,38 +149,14 @@ def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
     return {family: float(np.exp(np.mean([np.log(each[family]) for each in factors]))) for family in Family}
 
 
-def _thumbnail(pixels: Float32Array) -> Float64Array:
-    """Return ranks of brightness on a coarse grid, shape (16, 16): no exposure or response changes them."""
-    rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
-    samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
-    cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
-    ranks: Float64Array = cells.ravel().argsort().argsort().reshape(cells.shape).astype(np.float64)
-    return ranks
-
-
-def _readings(sources: Sequence[_Source], network: ResponseNetwork, progress: Progress | None) -> list[_Reading]:
-    """Return what the network reads in each photograph."""
-    readings: list[_Reading] = []
-    total, done = sum(len(source.windows) for source in sources), 0
-    for source in sources:
-
-        def moved(count: int, _: int, before: int = done) -> None:
-            if progress is not None:
-                progress(before + count, total)
-
-        predictions = network.predict(network.inputs(source.samples, progress=moved), progress=moved)
-        evidence = predictions.pooled or pooling.robust_mean(predictions.windows)
-        readings.append(_Reading(evidence, predictions.windows))
-        done += len(source.windows)
-    return readings
-
-
 def _window_estimates(
-    sources: Sequence[_Source], readings: Sequence[_Reading], bank: ResponseBank, prior: Prior
+    photographs: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
 ) -> tuple[WindowEstimate, ...]:
     """Return what each window says by itself, in the order of the photographs."""
-    origins = [(number, window) for number, source in enumerate(sources) for window in source.windows]
-    posteriors = [Posterior.of(bank, prior, [evidence]) for reading in readings for evidence in reading.windows]
+    origins = [(number, window) for number, photo in enumerate(photographs) for window in photo.windows]
+    if not origins:
+        return ()
+    posteriors = [Posterior.of(bank, prior, [found]) for photo in photographs for found in photo.window_evidences]
     weights = np.stack([posterior.mean_weights for posterior in posteriors])
     answers = zip(weights, (posterior.expected_distance for posterior in posteriors), strict=True)
     kept = pooling.inliers(weights).tolist()
@@ -221,19 +167,16 @@ def _window_estimates(
 
 
 def _warnings(
-    sources: Sequence[_Source], origins: Sequence[FileOrigin], recognition: Recognition | None
+    photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin], recognition: Recognition | None
 ) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
-    editors = dict.fromkeys(origin.editor for origin in origins if origin.editor)
     warnings = [recognition.reason] if recognition else []
-    warnings += [
-        f"saved by {editor}, which may have changed the tones: give the camera's own file" for editor in editors
-    ]
-    if not any(window.covers_range for source in sources for window in source.windows):
+    warnings += editor_warnings(origins)
+    windows = [window for photograph in photographs for window in photograph.windows]
+    if windows and not any(window.covers_range for window in windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
-    if all(source.is_gray for source in sources):
+    if all(photograph.is_gray for photograph in photographs):
         warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
-    clipped = [(source.samples <= 0.5 / 255) | (source.samples >= 254.5 / 255) for source in sources]
-    if np.mean([part.mean() for part in clipped]) > MOSTLY_CLIPPED:
+    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
         warnings.append("mostly clipped: take a photograph with another exposure")
     return tuple(warnings)

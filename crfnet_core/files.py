@@ -1,13 +1,16 @@
-"""Write a file whole or not at all."""
+"""Write a file whole or not at all; a document as text."""
 
 from __future__ import annotations
 
+import json
 import os
+import re
 import tempfile
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
+from typing import Any
 
 from crfnet_core.errors import CRFNetError
 
@@ -88,6 +91,12 @@ def atomic_write_text(
     """Write `text` as UTF-8, its line ends as they are; options and errors are those of `atomic_write`."""
     with atomic_write(path, overwrite=overwrite, error=error) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def json_text(document: Mapping[str, Any]) -> str:
+    """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
+    text = json.dumps(document, indent=1, ensure_ascii=False)
+    return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
 
 
 def _umask() -> int:

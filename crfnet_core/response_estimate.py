@@ -9,20 +9,17 @@ import dataclasses
 import math
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from enum import Enum
 from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import EstimateError, one_line
 from crfnet_core.metadata import FileOrigin
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.origin import Encoding
 from crfnet_core.metrics import brightness_percent
 from crfnet_core.posterior import Family, LikelyKind, Verdict
 from crfnet_core.recognition import Recognition
 from crfnet_core.response import ResponseCurve
-from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.types import Float64Array, plain_values, same_fields
 from crfnet_core.windows import Window
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
@@ -56,6 +53,38 @@ class WindowEstimate:
     def __eq__(self, other: object) -> bool:
         """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
         return same_fields(self, other) if isinstance(other, WindowEstimate) else NotImplemented
+
+
+@dataclass(frozen=True)
+class CameraAnswer:
+    """A stored camera whose response is the answer, or could be, and how far photographs' own estimate is from it.
+
+    Parameters
+    ----------
+    name : str
+        The camera's, in the library.
+    is_measured : bool
+        Whether its response was measured; else it is estimated from photographs.
+    basis : str
+        What it rests on, in words.
+    difference_stops, difference : float, optional
+        Shape error in stops and E_est between the photographs' own estimate and the camera's response; None if there
+        are no photographs to compare.
+    agrees : bool, optional
+        Whether this difference is no larger than usual.
+    """
+
+    name: str
+    is_measured: bool
+    basis: str
+    difference_stops: float | None = None
+    difference: float | None = None
+    agrees: bool | None = None
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
+        """Return what `dataclasses.asdict` made of it, also after JSON; None for an estimate of photographs alone."""
+        return None if entry is None else cls(*(entry[field.name] for field in dataclasses.fields(cls)))
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,6 +121,8 @@ class ResponseEstimate:
         File names of the photographs.
     recognition : Recognition, optional
         What the photographs are if they are log footage or limited range: see `crfnet_core.recognition`.
+    camera : CameraAnswer, optional
+        The stored camera whose response this is; None if it is estimated from the photographs alone.
     """
 
     curve: ResponseCurve
@@ -108,6 +139,7 @@ class ResponseEstimate:
     model: str
     photos: tuple[str, ...]
     recognition: Recognition | None = None
+    camera: CameraAnswer | None = None
 
     def __eq__(self, other: object) -> bool:
         """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
@@ -134,6 +166,7 @@ class ResponseEstimate:
             "family": {"words": kind.words, "probability": kind.probability} if kind else None,
             "families": self.families,
             "recognition": dataclasses.asdict(self.recognition) if self.recognition else None,
+            "camera": dataclasses.asdict(self.camera) if self.camera else None,
             "prior": self.prior,
             "metadata": [dataclasses.asdict(origin) for origin in self.origins],
             "warnings": self.warnings,
@@ -142,7 +175,7 @@ class ResponseEstimate:
             "windows": [_window_document(window) for window in self.windows],
             "response": {"brightness": self.curve.brightness, "lower": self.band[0], "upper": self.band[1]},
         }
-        return {name: _plain(entry) for name, entry in document.items()}
+        return {name: plain_values(entry) for name, entry in document.items()}
 
     @classmethod
     def from_dict(cls, document: Mapping[str, Any]) -> ResponseEstimate:
@@ -169,11 +202,12 @@ class ResponseEstimate:
                 families={Family(name): _number(share) for name, share in document["families"].items()},
                 verdict=Verdict(document["verdict"]),
                 prior=document["prior"],
-                origins=tuple(_origins(document["metadata"])),
+                origins=tuple(map(FileOrigin.from_dict, document["metadata"])),
                 warnings=tuple(document["warnings"]),
                 model=document["model"],
                 photos=tuple(photo["name"] for photo in document["photographs"]),
                 recognition=Recognition.from_dict(document.get("recognition")),
+                camera=CameraAnswer.from_dict(document.get("camera")),
             )
         except KeyError as problem:
             raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
@@ -213,27 +247,6 @@ def _windows(documents: list[dict[str, Any]]) -> Iterator[WindowEstimate]:
         yield WindowEstimate(entry["photo"], window, weights, _number(entry["expected_error"]), entry["kept"])
 
 
-def _origins(documents: list[dict[str, Any]]) -> Iterator[FileOrigin]:
-    """Yield what the metadata of the photographs of a document says."""
-    for entry in documents:
-        entries = {field.name: entry[field.name] for field in dataclasses.fields(FileOrigin)}
-        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
-        yield FileOrigin(**entries | kinds | {"words": tuple(entry["words"])})
-
-
 def _number(entry: float | None) -> float:
     """Return a number of a document; NaN for null."""
     return math.nan if entry is None else float(entry)
-
-
-def _plain(value: Any) -> Any:
-    """Return a value as plain dicts, lists, texts and numbers; NaN, which JSON does not have, as None."""
-    if isinstance(value, Mapping):
-        return {_plain(name): _plain(entry) for name, entry in value.items()}
-    if isinstance(value, np.ndarray | np.generic):
-        return _plain(value.tolist())
-    if isinstance(value, list | tuple):
-        return [_plain(entry) for entry in value]
-    if isinstance(value, Enum):
-        return value.value
-    return None if isinstance(value, float) and math.isnan(value) else value

@@ -1,9 +1,11 @@
-"""Names for the arrays that pass between modules and for callbacks; when two dataclasses of arrays are equal."""
+"""Names for the arrays that pass between modules and for callbacks; dataclasses of arrays: equal or not, and plain."""
 
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Callable
+import math
+from collections.abc import Callable, Mapping
+from enum import Enum
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -43,6 +45,19 @@ def same_fields(one: DataclassInstance, other: DataclassInstance) -> bool:
     """Return whether two instances of one dataclass are equal: arrays by their elements, and NaN equal to NaN."""
     names = [each.name for each in dataclasses.fields(one) if each.compare]
     return all(_same(getattr(one, name), getattr(other, name)) for name in names)
+
+
+def plain_values(value: Any) -> Any:
+    """Return a value as plain dicts, lists, texts and numbers; NaN, which JSON does not have, as None."""
+    if isinstance(value, Mapping):
+        return {plain_values(name): plain_values(entry) for name, entry in value.items()}
+    if isinstance(value, np.ndarray | np.generic):
+        return plain_values(value.tolist())
+    if isinstance(value, list | tuple):
+        return [plain_values(entry) for entry in value]
+    if isinstance(value, Enum):
+        return value.value
+    return None if isinstance(value, float) and math.isnan(value) else value
 
 
 def _same(one: Any, other: Any) -> bool:

@@ -15,7 +15,7 @@ from typing import TextIO
 
 import shtab
 
-from ocio.arguments import calibrate, completion, config, convert, estimate, info, linearize
+from ocio.arguments import calibrate, camera, completion, config, convert, estimate, info, linearize
 from ocio.arguments.parts import BAD_INPUT, Parser
 from ocio.interruption import interruptible
 
@@ -49,7 +49,7 @@ def build_parser() -> argparse.ArgumentParser:
     )
     parser.add_argument("--version", action="version", version=f"crfnet {version('crfnet')}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for subcommand in (estimate, calibrate, linearize, config, convert, info, completion):
+    for subcommand in (estimate, calibrate, camera, linearize, config, convert, info, completion):
         subcommand.add(commands)
     return parser
 

@@ -26,6 +26,8 @@ class EstimateOptions:
         Which kinds of responses to expect: the name of a packaged prior, or a JSON file.
     use_metadata : bool
         Whether what the files say of their making counts.
+    camera : str or None
+        The stored camera whose response is the answer; None to estimate it from the photographs.
     """
 
     model: Path | None = None
@@ -34,6 +36,7 @@ class EstimateOptions:
     seed: int = 0
     prior: str | Path = PRIORS[0]
     use_metadata: bool = True
+    camera: str | None = None
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -4,7 +4,7 @@ import contextlib
 import io
 import subprocess
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -38,6 +38,15 @@ class CommandResult:
     code: int
     out: str
     err: str
+
+
+@pytest.fixture(scope="session", autouse=True)
+def own_cameras(tmp_path_factory) -> Iterator[Path]:
+    """The user's library of cameras: an empty one, whatever is kept on this machine."""
+    with pytest.MonkeyPatch.context() as patch:
+        folder = tmp_path_factory.mktemp("data")
+        patch.setenv("CRFNET_DATA_DIR", str(folder))
+        yield folder / "cameras"
 
 
 @pytest.fixture(scope="session")

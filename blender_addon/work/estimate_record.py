@@ -2,10 +2,10 @@
 """An estimate as the entries that a .blend file keeps, and back.
 
 The entries are texts, numbers and flat lists of numbers in double precision, because a custom property holds nothing
-else; several texts are one, with a line each; families, what the metadata says and what the photographs are recognized
-as are texts in JSON. Files saved with these names must stay readable: a change of them needs a new
+else; several texts are one, with a line each; families, what the metadata says, what the photographs are recognized as
+and the stored camera are texts in JSON. Files saved with these names must stay readable: a change of them needs a new
 `scene.stored_estimate.LAYOUT`. Layout 1 knew neither the expected shape error nor families, prior and metadata; the
-first files of layout 2 have no recognition.
+first files of layout 2 have neither recognition nor a stored camera.
 """
 
 from __future__ import annotations
@@ -20,10 +20,9 @@ import numpy as np
 
 from crfnet_core import ResponseCurve, ResponseEstimate, Window, WindowEstimate
 from crfnet_core.metadata import FileOrigin
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.origin import Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.recognition import Recognition
+from crfnet_core.response_estimate import CameraAnswer
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -39,6 +38,7 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "prior": estimate.prior,
         "metadata": json.dumps([dataclasses.asdict(origin) for origin in estimate.origins], ensure_ascii=False),
         "recognition": json.dumps(estimate.recognition and dataclasses.asdict(estimate.recognition)),
+        "camera": json.dumps(estimate.camera and dataclasses.asdict(estimate.camera), ensure_ascii=False),
         "warnings": "\n".join(estimate.warnings),
         "weights": estimate.weights.tolist(),
         "brightness": estimate.curve.brightness.tolist(),
@@ -102,11 +102,12 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         families={Family(name): share for name, share in json.loads(entries.get("families", "{}")).items()},
         verdict=Verdict(entries["verdict"]),
         prior=entries.get("prior", ""),
-        origins=tuple(_origins(entries)),
+        origins=tuple(map(FileOrigin.from_dict, json.loads(entries.get("metadata", "[]")))),
         warnings=_lines(entries["warnings"]),
         model=entries["model"],
         photos=_lines(entries["photos"]),
         recognition=Recognition.from_dict(json.loads(entries.get("recognition", "null"))),
+        camera=CameraAnswer.from_dict(json.loads(entries.get("camera", "null"))),
     )
 
 
@@ -125,13 +126,6 @@ def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),
         )
-
-
-def _origins(entries: Mapping[str, Any]) -> Iterator[FileOrigin]:
-    """Yield what the metadata of each photograph says; of layout 1 nothing."""
-    for origin in json.loads(entries.get("metadata", "[]")):
-        kinds = {"device": Device(origin["device"]), "encoding": Encoding(origin["encoding"])}
-        yield FileOrigin(**{**origin, **kinds, "words": tuple(origin["words"])})
 
 
 def _lines(text: str) -> tuple[str, ...]:

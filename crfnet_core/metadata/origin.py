@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, fields
 from enum import StrEnum
+from typing import Any
 
 from crfnet_core.metadata.devices import Device, camera_name, device_of
 from crfnet_core.metadata.editors import editor_name
@@ -113,6 +115,13 @@ class FileOrigin:
         """Whether messengers and web sites send such files: no camera named, scaled, and strongly compressed."""
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
         return is_compressed and self.is_scaled is True and not self.camera
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
+        """Return what `dataclasses.asdict` made of an origin, also after JSON; other entries are left out."""
+        entries = {field.name: entry[field.name] for field in fields(cls)}
+        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
+        return cls(**entries | kinds | {"words": tuple(entry["words"])})
 
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:

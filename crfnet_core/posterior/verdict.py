@@ -24,7 +24,13 @@ class Verdict(StrEnum):
     @classmethod
     def of(cls, posterior: Posterior) -> Verdict:
         """Return the verdict on the answer of a posterior."""
-        stops = posterior.expected_shape_error
-        if sum(posterior.families[family] for family in UNUSUAL) > UNUSUAL_LIMIT or stops > USABLE_STOPS:
+        if sum(posterior.families[family] for family in UNUSUAL) > UNUSUAL_LIMIT:
             return cls.DO_NOT_TRUST
-        return cls.GOOD if stops <= GOOD_STOPS and posterior.expected_error <= GOOD_ERROR else cls.USABLE
+        return cls.of_errors(posterior.expected_shape_error, posterior.expected_error)
+
+    @classmethod
+    def of_errors(cls, stops: float, error: float) -> Verdict:
+        """Return the verdict on an answer by its expected shape error in stops and its expected E_est."""
+        if stops > USABLE_STOPS:
+            return cls.DO_NOT_TRUST
+        return cls.GOOD if stops <= GOOD_STOPS and error <= GOOD_ERROR else cls.USABLE

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import shtab
 
-from ocio.arguments.parts import Commands, Parser, add_command, add_json
+from ocio.arguments.parts import Commands, Parser, add_action, add_command
 
 EXAMPLES = """examples:
   crfnet config add --base /studio/config.ocio look                       into that config; a backup is kept
@@ -29,16 +29,16 @@ def add(commands: Commands) -> None:
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
     _add_add(actions)
     _add_overlay(actions)
-    listing = _add_action(actions, "list", "list the plates of a config")
+    listing = add_action(actions, "list", "list the plates of a config")
     listing.add_argument("config", metavar="CONFIG", help="the config")
-    removal = _add_action(actions, "remove", "take plates out of a config")
+    removal = add_action(actions, "remove", "take plates out of a config")
     removal.add_argument("config", metavar="CONFIG", help="the config")
     removal.add_argument("names", nargs="+", metavar="NAME", help='a color space, like "CRF plate01"')
 
 
 def _add_add(actions: Commands) -> None:
     """Add `crfnet config add`."""
-    parser = _add_action(actions, "add", "put plates into a config")
+    parser = add_action(actions, "add", "put plates into a config")
     _add_looks(parser, base="the config to add to")
     _add_out(parser, required=False, words="write here, and leave CONFIG as it is: a file, or a folder for config.ocio")
     parser.add_argument(
@@ -57,7 +57,7 @@ def _add_add(actions: Commands) -> None:
 
 def _add_overlay(actions: Commands) -> None:
     """Add `crfnet config overlay`."""
-    parser = _add_action(actions, "overlay", "write a config of plates alone, and a merge file for ociomergeconfigs")
+    parser = add_action(actions, "overlay", "write a config of plates alone, and a merge file for ociomergeconfigs")
     _add_looks(parser, base="the config to merge with; it is not changed")
     _add_out(parser, required=True, words="the config to write; the merge file has its name, with .ociom")
 
@@ -75,10 +75,3 @@ def _add_out(parser: argparse.ArgumentParser, *, required: bool, words: str) -> 
     out = parser.add_argument("--out", type=Path, required=required, metavar="FILE", help=words)
     out.complete = shtab.FILE  # type: ignore[attr-defined]
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")
-
-
-def _add_action(actions: Commands, name: str, summary: str) -> argparse.ArgumentParser:
-    """Add one action, with --json."""
-    parser = actions.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
-    add_json(parser)
-    return parser

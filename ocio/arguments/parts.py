@@ -45,10 +45,22 @@ def add_command(commands: Commands, name: str, summary: str, examples: str) -> a
     )
 
 
-def add_network(parser: argparse.ArgumentParser) -> None:
-    """Add the options of commands that run the network."""
+def add_action(actions: Commands, name: str, summary: str) -> argparse.ArgumentParser:
+    """Add one action of a subcommand, with --json."""
+    parser = actions.add_parser(name, help=summary, description=summary[0].upper() + summary[1:] + ".")
+    add_json(parser)
+    return parser
+
+
+def add_model(parser: argparse.ArgumentParser) -> None:
+    """Add --model."""
     model = parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
     model.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+
+
+def add_network(parser: argparse.ArgumentParser) -> None:
+    """Add the options of commands that run the network."""
+    add_model(parser)
     prior = parser.add_argument(
         "--prior",
         default=PRIORS[0],
@@ -56,6 +68,7 @@ def add_network(parser: argparse.ArgumentParser) -> None:
         help=f"what to expect: today's cameras, any source (film, old video too), or as a JSON file says ({PRIORS[0]})",
     )
     prior.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("--camera", metavar="NAME", help="the response of a stored camera: see crfnet camera list")
     parser.add_argument(
         "--ignore-metadata",
         action="store_true",

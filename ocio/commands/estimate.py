@@ -65,7 +65,12 @@ def _print_estimate(
 ) -> None:
     """Print what was read, found and written, and how to use it."""
     read = [*estimated.movies, *map(str, estimated.facts)]
-    lines = [*read, *report.verdict_lines(estimated.estimate), *report.light_lines(document)]
+    lines = [
+        *read,
+        *report.verdict_lines(estimated.estimate),
+        *report.light_lines(document),
+        *report.offer_lines(estimated.offers),
+    ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files), ""])
     plate = estimated.plates[0]
     if isinstance(plate, MovieFrames):

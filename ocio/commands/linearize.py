@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
+from crfnet_core.errors import CameraError
 from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
@@ -21,12 +22,14 @@ from ocio.plates.linear import linear_targets, linearize_plates
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Write plates as linear EXR through a LUT, or through a response estimated from several of the frames."""
+    """Write plates as linear EXR through a LUT, a stored camera's response, or one estimated from the frames."""
+    if arguments.lut and arguments.camera:
+        raise CameraError("--lut and --camera both name a response; give one of them")
     sequence = find_source(arguments.plates, arguments.frames)
     targets = linear_targets(arguments.out, sequence)
     folder = Path(arguments.out).parent
     check_folder(folder)
-    estimate = None if arguments.lut else _estimate_frames(sequence, arguments)
+    estimate = None if arguments.lut else _response(sequence, arguments)
     lut: AnyLut
     if estimate:
         lut, lines = pipeline.response_lut(estimate), [report.source_line(estimate), *report.verdict_lines(estimate)]
@@ -50,9 +53,11 @@ def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
     return lines if inverted or path.suffix.lower() not in READERS else []
 
 
-def _estimate_frames(sequence: FrameSequence | MovieFrames, arguments: argparse.Namespace) -> ResponseEstimate:
-    """Return the response of a sequence, with a progress bar."""
+def _response(sequence: FrameSequence | MovieFrames, arguments: argparse.Namespace) -> ResponseEstimate:
+    """Return the response of a stored camera, or that of a sequence, with a progress bar."""
     options = estimate_options(arguments)
+    if stored := pipeline.load_camera_response(options):
+        return stored
     prior, network = pipeline.load_prior(options), pipeline.load_network(options)
     with progress_bar("windows") as progress:
         return pipeline.estimate_frames(sequence, network, prior, options, progress=progress)

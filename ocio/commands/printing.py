@@ -11,8 +11,8 @@ from typing import Any
 
 from tqdm import tqdm
 
+from crfnet_core.files import json_text
 from crfnet_core.types import Progress
-from ocio import report
 
 #: Seconds between two lines of progress where there is no terminal.
 LINE_SECONDS = 60
@@ -30,7 +30,7 @@ def has_matplotlib() -> bool:
 
 def print_json(document: Mapping[str, Any]) -> None:
     """Print a JSON document."""
-    sys.stdout.write(report.json_text(document))
+    sys.stdout.write(json_text(document))
 
 
 def print_lines(lines: Iterable[str]) -> None:

@@ -21,8 +21,10 @@ from ocio.pipeline.estimates import (
     PhotographEstimate,
     estimate_frames,
     estimate_photographs,
+    load_camera_response,
     load_network,
     load_prior,
+    model_label,
     response_lut,
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
@@ -42,8 +44,10 @@ __all__ = [
     "estimate_photographs",
     "export_luts",
     "find_photographs",
+    "load_camera_response",
     "load_network",
     "load_prior",
+    "model_label",
     "plan_calibration",
     "plan_each",
     "plan_outputs",

@@ -12,7 +12,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CalibrationError, CurveError, PlateError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.response import ResponseCurve
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
@@ -22,7 +22,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.response import response_of_lut
 from ocio.options import OutputOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.report import calibration_document, calibration_provenance, json_text
+from ocio.report import calibration_document, calibration_provenance
 from ocio.staging import staged_files
 
 

@@ -19,7 +19,7 @@ from ocio.configs.portable import portable_config
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.estimates import estimate_photographs, load_network, load_prior
+from ocio.pipeline.estimates import estimate_photographs, load_camera, load_network, load_prior
 from ocio.pipeline.folders import estimated_light, with_light, write_estimate
 from ocio.pipeline.manifest import MANIFEST, Manifest, PhotographRecord
 from ocio.pipeline.workers import cores, worker_pool
@@ -179,7 +179,8 @@ def estimate_each(
     first = tasks[0]
     if not (out / MANIFEST).exists() and not first.plates.overwrite:
         _check_absent([task.files.config for task in tasks])
-    _network_and_prior(first.options)  # a bad model or prior is refused before anything is written
+    _network_and_prior(first.options)  # a bad model, prior or camera is refused before anything is written
+    load_camera(first.options)
     with output_folder(out):
         manifest = Manifest(out / MANIFEST, _settings(first), overwrite=first.plates.overwrite)
         todo = [task for task in tasks if not _is_done(task, manifest)]

@@ -6,12 +6,21 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from crfnet_core.cameras import (
+    Camera,
+    CameraSettings,
+    camera_estimate,
+    find_camera,
+    offered_cameras,
+    with_camera,
+)
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.network import ResponseNetwork
+from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Prior
+from crfnet_core.response_estimate import CameraAnswer
 from crfnet_core.types import Float32Array, Progress
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
@@ -46,6 +55,8 @@ class PhotographEstimate:
         The response that they have in common.
     plates : tuple of FrameSequence or MovieFrames
         For each of `paths`, what becomes its linear plate: the photograph, or the first frame of the movie analysed.
+    offers : tuple of CameraAnswer
+        Stored cameras of the first photograph's make and model, if none was asked for.
     """
 
     paths: tuple[Path, ...]
@@ -55,6 +66,7 @@ class PhotographEstimate:
     stride: int
     estimate: ResponseEstimate
     plates: tuple[FrameSequence | MovieFrames, ...]
+    offers: tuple[CameraAnswer, ...] = ()
 
     @property
     def movies(self) -> tuple[str, ...]:
@@ -82,6 +94,44 @@ def load_prior(options: EstimateOptions) -> Prior:
         If there is no such prior, or the file is none.
     """
     return Prior.load(options.prior)
+
+
+def load_camera(options: EstimateOptions) -> Camera | None:
+    """Return the stored camera that the options name; None if they name none.
+
+    Raises
+    ------
+    CameraError
+        If there is no such camera, or its file is damaged.
+    """
+    return None if options.camera is None else find_camera(options.camera)
+
+
+def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
+    """Return the response of the stored camera that the options name, for photographs that nobody looks at.
+
+    Raises
+    ------
+    CameraError
+        If there is no such camera, or it has no evidence of the model.
+    PriorError, ModelError
+        If there is no such prior or model.
+    """
+    camera = load_camera(options)
+    if camera is None:
+        return None
+    return camera_estimate(camera, model=model_label(options.model), prior=load_prior(options))
+
+
+def model_label(model: Path | None) -> str:
+    """Return the label of a model without loading its network; None stands for the default.
+
+    Raises
+    ------
+    ModelError
+        If the model folder is absent, incomplete or altered.
+    """
+    return ModelConfig.read(model_folder(model) / "model.json").label
 
 
 def estimate_photographs(
@@ -121,6 +171,7 @@ def estimate_photographs(
     """
     facts: list[PhotoFacts] = []
     tags: list[ColorTags] = []
+    settings: list[CameraSettings] = []
     previews: list[Float32Array] = []
     plates: list[FrameSequence | MovieFrames] = []
 
@@ -129,6 +180,7 @@ def estimate_photographs(
             source = MovieFrames.find(path) if is_movie(path) else FrameSequence((path,))
             for index, (plate, photo) in enumerate(_photos(source)):
                 facts.append(PhotoFacts.of(photo))
+                settings.append(CameraSettings.of(photo.metadata))
                 if not previews:
                     stride = _stride(facts[0])
                     previews.append(photo.pixels[::stride, ::stride].copy())
@@ -138,9 +190,16 @@ def estimate_photographs(
                 yield photo
 
     estimate = _estimate(photos(), network, prior, options, progress)
-    stride = _stride(facts[0])
+    is_offering = options.use_metadata and options.camera is None
     return PhotographEstimate(
-        tuple(paths), tuple(facts), tuple(tags), previews[0], stride, estimate, plates=tuple(plates)
+        paths=tuple(paths),
+        facts=tuple(facts),
+        tags=tuple(tags),
+        preview=previews[0],
+        stride=_stride(facts[0]),
+        estimate=estimate,
+        plates=tuple(plates),
+        offers=tuple(offered_cameras(estimate, settings[0], prior=prior)) if is_offering else (),
     )
 
 
@@ -195,8 +254,9 @@ def _estimate(
     options: EstimateOptions,
     progress: Progress | None,
 ) -> ResponseEstimate:
-    """Return the response that photographs have in common, by the options."""
-    return estimate_response(
+    """Return the response that photographs have in common, or that of a stored camera, by the options."""
+    camera = load_camera(options)  # first, so that a wrong name is refused at once
+    estimate = estimate_response(
         photos,
         network=network,
         prior=prior,
@@ -205,6 +265,7 @@ def _estimate(
         seed=options.seed,
         progress=progress,
     )
+    return with_camera(estimate, camera, prior=prior) if camera else estimate
 
 
 def _photos(source: FrameSequence | MovieFrames) -> Iterator[tuple[FrameSequence | MovieFrames, Photo]]:

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PlateError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.metadata.color_tags import REC709
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
@@ -22,7 +22,7 @@ from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
 from ocio.plates.linear_space import LinearSpace
 from ocio.plates.primaries import PlatePrimaries, common_primaries
-from ocio.report import estimate_document, json_text
+from ocio.report import estimate_document
 from ocio.staging import staged_files
 
 
@@ -168,6 +168,7 @@ def write_estimate(
     if files.sheet:
         _write_sheet(files.sheet, estimated)
     document = estimate_document(estimated.estimate, estimated.facts, files, light)
+    document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
     atomic_write_text(files.report, json_text(document), error=PlateError)
     return document

@@ -3,6 +3,7 @@
 facts        what is said everywhere, among it the provenance that LUT files carry
 words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
+cameras      stored cameras in words and as JSON
 calibration  a measured response in words, as JSON and as provenance
 """
 
@@ -12,7 +13,15 @@ from ocio.report.calibration import (
     calibration_provenance,
     comparison_lines,
 )
-from ocio.report.documents import estimate_document, json_text, lut_document, model_document, plate_document
+from ocio.report.cameras import (
+    camera_line,
+    camera_summary,
+    disagreement_lines,
+    offer_lines,
+    photograph_documents,
+    photograph_lines,
+)
+from ocio.report.documents import estimate_document, lut_document, model_document, plate_document
 from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error, provenance, shape_error
 from ocio.report.words import (
     REMEDIES,
@@ -37,17 +46,22 @@ __all__ = [
     "calibration_document",
     "calibration_lines",
     "calibration_provenance",
+    "camera_line",
+    "camera_summary",
     "comparison_lines",
     "curve_error",
+    "disagreement_lines",
     "estimate_document",
     "file_lines",
-    "json_text",
     "light_lines",
     "lut_document",
     "lut_lines",
     "model_document",
     "model_lines",
+    "offer_lines",
     "oiiotool_lines",
+    "photograph_documents",
+    "photograph_lines",
     "plate_document",
     "plate_lines",
     "provenance",

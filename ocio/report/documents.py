@@ -3,9 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
-import json
-import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -28,12 +26,6 @@ DECIMALS = 6
 
 #: Brightnesses whose irradiance is shown of a LUT.
 QUARTERS = (0.25, 0.5, 0.75)
-
-
-def json_text(document: Mapping[str, Any]) -> str:
-    """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
-    text = json.dumps(document, indent=1, ensure_ascii=False)
-    return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
 
 
 def estimate_document(

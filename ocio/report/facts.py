@@ -9,6 +9,7 @@ import numpy as np
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.metrics import brightness_percent
 from crfnet_core.photo import Photo
+from crfnet_core.response_estimate import CameraAnswer
 
 
 @dataclass(frozen=True)
@@ -66,10 +67,24 @@ def expected_errors(estimate: ResponseEstimate) -> str:
 
 
 def basis(estimate: ResponseEstimate) -> str:
-    """Return the prior, and what the files say of their making if that was used; empty if it is not known."""
+    """Return the stored camera, or the prior and what the files say of their making; empty if it is not known."""
+    if estimate.camera:
+        return camera_words(estimate.camera)
     if not estimate.prior:
         return ""
     return f"prior: {estimate.prior}; {_metadata_words(estimate)}"
+
+
+def camera_words(camera: CameraAnswer) -> str:
+    """Return a stored camera, what its response rests on, and how far the photographs' own estimate is from it."""
+    words = f'response of the camera "{camera.name}", {camera.basis}'
+    return words if camera.agrees is None else f"{words}; the photographs' own estimate is {agreement(camera)}"
+
+
+def agreement(camera: CameraAnswer) -> str:
+    """Return how far the photographs that were compared with a stored camera are from it."""
+    more = "" if camera.agrees else ", more than usual"
+    return f"{camera.difference_stops:.2f} stop and E_est {camera.difference:.2f} away{more}"
 
 
 def agreeing(estimate: ResponseEstimate) -> str:
@@ -82,8 +97,8 @@ def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     kind = estimate.likely_kind
     lines = (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
-        f"Photographs: {', '.join(estimate.photos)}",
-        f"Model: {estimate.model}",
+        f"Photographs: {', '.join(estimate.photos)}" if estimate.photos else "",
+        f"Model: {estimate.model}" if estimate.model else "",
         f"Verdict: {estimate.verdict}, expected error {expected_errors(estimate)}",
         "; ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
     )

@@ -36,7 +36,9 @@ REMEDIES = {
 
 
 def source_line(estimate: ResponseEstimate) -> str:
-    """Return from which photographs a response was estimated."""
+    """Return from which photographs a response was estimated, or of which stored camera it is."""
+    if estimate.camera:
+        return f'Response of the camera "{estimate.camera.name}".'
     first, *others = estimate.photos
     return f"Response estimated from {first}" + (f" and {len(others)} more frames." if others else ".")
 
@@ -45,11 +47,11 @@ def verdict_lines(estimate: ResponseEstimate) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
     kind, rests_on = estimate.likely_kind, basis(estimate)
     return [
-        f"The estimate is {_verdict_words(estimate, kind)}.",
+        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, kind)}.",
         _expectation(estimate),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
-        f"{agreeing(estimate)}.",
+        *([f"{agreeing(estimate)}."] if estimate.windows else []),
         *(f"Warning: {warning}." for warning in estimate.warnings),
     ]
 

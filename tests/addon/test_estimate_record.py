@@ -11,6 +11,7 @@ from crfnet_core.errors import CurveError
 from crfnet_core.metadata.devices import Device
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.recognition import Kind, Recognition
+from crfnet_core.response_estimate import CameraAnswer
 from ocio.pipeline import response_lut
 from ocio.report import verdict_lines
 
@@ -25,6 +26,7 @@ SAVED = {
     "prior": str,
     "metadata": str,
     "recognition": str,
+    "camera": str,
     "warnings": str,
     "weights": list,
     "brightness": list,
@@ -38,7 +40,7 @@ SAVED = {
 }
 
 #: Entries that layout 1 lacked; it had "spread" instead.
-NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition")
+NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition", "camera")
 
 
 @pytest.fixture(scope="module")
@@ -81,10 +83,16 @@ def test_what_the_photographs_are_recognized_as_comes_back(found, curves):
     assert again.recognition.kind is kind
 
 
+def test_the_stored_camera_is_kept(found):
+    camera = CameraAnswer("写真機", True, "measured from 6 exposures", 0.1, 0.5, False)
+    assert estimate_of(entries_of(dataclasses.replace(found, camera=camera))).camera == camera
+
+
 def test_an_estimate_saved_before_recognition_has_none(found):
     entries = entries_of(found)
-    del entries["recognition"]
+    del entries["recognition"], entries["camera"]
     assert estimate_of(entries).recognition is None
+    assert estimate_of(entries).camera is None
 
 
 @pytest.mark.parametrize("verdict", ["good", "usable", "do not trust"])

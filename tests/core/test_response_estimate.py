@@ -17,7 +17,7 @@ from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Posterior, ResponseBank, Verdict
 from crfnet_core.recognition import Kind, Recognition
 from crfnet_core.response import ResponseCurve
-from crfnet_core.response_estimate import SCHEMA_VERSION, ResponseEstimate
+from crfnet_core.response_estimate import SCHEMA_VERSION, CameraAnswer, ResponseEstimate
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
 
@@ -49,6 +49,7 @@ CHANGES = {
     "model": "other",
     "photos": ("a.jpg",),
     "recognition": Recognition(Kind.LIMITED_RANGE, "reason", "advice"),
+    "camera": CameraAnswer("a", is_measured=True, basis="measured"),
 }
 
 

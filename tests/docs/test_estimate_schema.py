@@ -9,12 +9,13 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+from crfnet_core.files import json_text
 from crfnet_core.metadata import FileOrigin
 from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import SHAPES, Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response_estimate import SCHEMA_VERSION
-from ocio.report import json_text
+from tests.helpers.cameras import photograph
 
 jsonschema = pytest.importorskip("jsonschema")
 
@@ -68,6 +69,18 @@ def test_the_sample(root, problems):
 def test_what_linearize_prints(crfnet, plate, fixed_model, tmp_path, problems):
     done = crfnet("linearize", plate, "--out", tmp_path / "a.exr", "--model", fixed_model, "--json")
     assert problems(json.loads(done.out)["estimate"]) == []
+
+
+def test_what_a_stored_camera_says(crfnet, plate, fixed_model, tmp_path, problems, monkeypatch):
+    monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
+    photo = photograph(plate, tmp_path / "photo.jpg")
+    model = ("--model", fixed_model, "--json")
+    assert problems(json.loads(crfnet("camera", "add", "a", photo, *model).out)["estimate"]) == []
+    for name, camera in (("own", ()), ("stored", ("--camera", "a"))):
+        done = crfnet("estimate", photo, "--out", tmp_path / name, *camera, "--no-sheet", *model)
+        (document,) = json.loads(done.out)["estimates"]
+        assert problems(document) == []
+        assert ("known_cameras" in document, document["camera"] is None) == ((not camera,) * 2)
 
 
 def test_what_the_api_gives_is_what_the_command_writes(plate, fixed_model, written):

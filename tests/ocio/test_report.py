@@ -7,6 +7,7 @@ import math
 import pytest
 
 from crfnet_core.estimate import estimate_response
+from crfnet_core.files import json_text
 from crfnet_core.image_io import read_photo
 from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.network import ModelConfig, ResponseNetwork
@@ -131,7 +132,7 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
 def test_the_document_is_json(estimate):
     """With the names of enumerations as texts, and figures rounded."""
     plates = PlateReport(written=(), skipped=(), missing=())
-    document = json.loads(report.json_text(report.plate_document(plates, estimate())))["estimate"]
+    document = json.loads(json_text(report.plate_document(plates, estimate())))["estimate"]
     assert document["family"] == {"words": "a camera's own rendering", "probability": 0.93}
     assert document["families"] == dict.fromkeys(Family, 0) | {"phone": 0.03, "camera": 0.9, "film": 0.07}
     assert (document["uncertainty_percent"], document["shape_uncertainty_stops"]) == (3.90625, 0.1)

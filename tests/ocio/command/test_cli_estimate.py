@@ -64,6 +64,7 @@ def test_prints_one_json_document(estimate, plate, tmp_path):
             "prior",
             "metadata",
             "recognition",
+            "camera",
             "warnings",
             "model",
             "weights",

@@ -92,7 +92,7 @@ class RealPhotograph:
 
     def truth(self) -> ResponseCurve:
         """Return the measured response."""
-        return ResponseCurve.from_samples(np.loadtxt(self.measured, delimiter=",", skiprows=1)[:, 1])
+        return read_measured(self.measured)
 
 
 def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
@@ -100,14 +100,19 @@ def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
 
     In DATA/real each body is a fold of its own; DATA/real_bodies says which bodies share one.
     """
-    sets = {REAL: [_of_real(data / REAL, row) for row in _rows(data / REAL)]}
+    sets = {REAL: [_of_real(data / REAL, row) for row in case_rows(data / REAL)]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in _rows(folder)]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
     return sets
 
 
-def _rows(folder: Path) -> list[dict[str, str]]:
+def read_measured(path: Path) -> ResponseCurve:
+    """Return a measured response: a file of irradiance and response."""
+    return ResponseCurve.from_samples(np.loadtxt(path, delimiter=",", skiprows=1)[:, 1])
+
+
+def case_rows(folder: Path) -> list[dict[str, str]]:
     """Return the rows of a folder's cases.csv."""
     with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))

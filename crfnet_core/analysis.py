@@ -1,0 +1,148 @@
+"""What stays of a photograph once the network has read it: its evidence, and what an estimate needs beside it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.metadata import FileOrigin, file_origin
+from crfnet_core.network import ResponseNetwork, pooling
+from crfnet_core.photo import Photo
+from crfnet_core.posterior import Evidence
+from crfnet_core.recognition import Levels, refuse_tagged
+from crfnet_core.types import Float32Array, Float64Array, Progress, show_progress
+from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
+
+#: Samples along each side of the thumbnails by which photographs of one scene are recognised.
+THUMBNAIL = 16
+
+
+@dataclass(frozen=True, eq=False)
+class AnalyzedPhotograph:
+    """A photograph as the network has read it.
+
+    Parameters
+    ----------
+    name : str
+        The file's.
+    evidence : Evidence
+        How likely each response makes the photograph.
+    thumbnail : ndarray, float64, shape (16, 16)
+        Ranks of brightness on a coarse grid: no exposure or response changes them.
+    levels : Levels
+        Where its darkest, its middle and its brightest samples lie.
+    make : str
+        The camera's maker, as the file writes it; empty if metadata is ignored.
+    origin : FileOrigin, optional
+        What the file says of its making; None if it has no metadata, or this is ignored.
+    is_gray : bool
+        Whether its three channels are equal.
+    clipped : float
+        Share of the samples of its windows at the ends of the range.
+    windows : tuple of Window
+        Its windows; those of a photograph that was kept for later are gone.
+    window_evidences : tuple of Evidence
+        What each window says by itself.
+    """
+
+    name: str
+    evidence: Evidence
+    thumbnail: Float64Array
+    levels: Levels
+    make: str
+    origin: FileOrigin | None
+    is_gray: bool
+    clipped: float
+    windows: tuple[Window, ...] = ()
+    window_evidences: tuple[Evidence, ...] = ()
+
+
+def analyze_photographs(
+    photos: Photo | Iterable[Photo],
+    *,
+    network: ResponseNetwork,
+    use_metadata: bool = True,
+    windows: int = WINDOWS_PER_PHOTOGRAPH,
+    seed: int = 0,
+    coverage: int = FULL_COVERAGE,
+    progress: Progress | None = None,
+) -> tuple[AnalyzedPhotograph, ...]:
+    """Return what the network reads in each photograph; `estimate_response` explains the parameters and the errors."""
+    sources = [_choose_windows(photo, windows, seed, coverage, use_metadata) for photo in _checked(photos)]
+    if not sources:
+        raise PhotoError("there is no photograph to analyse; give at least one")
+    total, done = sum(len(source.samples) for source in sources), 0
+    analyzed = []
+    for source in sources:
+
+        def moved(count: int, _: int, before: int = done) -> None:
+            show_progress(progress, before + count, total)
+
+        analyzed.append(_analyzed(source, network, moved))
+        done += len(source.samples)
+    return tuple(analyzed)
+
+
+@dataclass(frozen=True)
+class _Source:
+    """A photograph whose windows are cut; `analyzed` makes the rest of it once the evidence is known."""
+
+    samples: Float32Array
+    analyzed: Callable[..., AnalyzedPhotograph]
+
+
+def _checked(photos: Photo | Iterable[Photo]) -> Iterator[Photo]:
+    """Yield the photographs, one by one; refuse what is none, such as a file's name or an array."""
+    several: Iterable[object] = (photos,)
+    if isinstance(photos, Iterable) and not isinstance(photos, str | np.ndarray):
+        several = photos
+    for photo in several:
+        if not isinstance(photo, Photo):
+            raise PhotoError(
+                f"a {type(photo).__name__} is no Photo; read_photo makes one of a file, Photo.from_array of an array"
+            )
+        yield photo
+
+
+def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_metadata: bool) -> _Source:
+    """Return the windows of one photograph; an error names its file."""
+    metadata = photo.metadata if use_metadata else None
+    if use_metadata:
+        refuse_tagged(photo)
+    try:
+        windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
+    except PhotoError as problem:
+        raise PhotoError(f"{photo.path}: {problem}") from None
+    samples = cut_windows(photo.pixels, windows)
+    analyzed = partial(
+        AnalyzedPhotograph,
+        name=photo.path.name,
+        thumbnail=_thumbnail(photo.pixels),
+        levels=Levels.of(photo.pixels),
+        make="" if metadata is None else metadata.make,
+        origin=None if metadata is None else file_origin(metadata),
+        is_gray=photo.is_gray,
+        clipped=float(((samples <= 0.5 / 255) | (samples >= 254.5 / 255)).mean()),
+        windows=windows,
+    )
+    return _Source(samples, analyzed)
+
+
+def _thumbnail(pixels: Float32Array) -> Float64Array:
+    """Return ranks of brightness on a coarse grid, shape (16, 16): no exposure or response changes them."""
+    rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
+    samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
+    cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
+    ranks: Float64Array = cells.ravel().argsort().argsort().reshape(cells.shape).astype(np.float64)
+    return ranks
+
+
+def _analyzed(source: _Source, network: ResponseNetwork, progress: Progress) -> AnalyzedPhotograph:
+    """Return what the network reads in a photograph."""
+    predictions = network.predict(network.inputs(source.samples, progress=progress), progress=progress)
+    evidence = predictions.pooled or pooling.robust_mean(predictions.windows)
+    return source.analyzed(evidence=evidence, window_evidences=predictions.windows)

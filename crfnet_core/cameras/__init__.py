@@ -1,0 +1,38 @@
+"""Responses of one's cameras: measured, or estimated from photographs whose evidence accumulates.
+
+- `camera`: a camera, and what is kept of its photographs.
+- `documents`: the same as JSON, and the measured response in the document of `crfnet calibrate`.
+- `library`: the cameras in a folder: the user's own, and measured ones that come with this project.
+- `additions`: photographs or a measured response for a camera.
+- `answer`: a camera's response as an estimate, and photographs against it.
+- `matching`: the cameras that a photograph's metadata fit.
+"""
+
+from crfnet_core.cameras.additions import Addition, add_measured, add_photographs, remove_photographs
+from crfnet_core.cameras.answer import camera_estimate, compared, differences, with_camera
+from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse
+from crfnet_core.cameras.documents import camera_document, read_calibration
+from crfnet_core.cameras.library import DATA_VARIABLE, CameraLibrary, find_camera
+from crfnet_core.cameras.matching import matching_cameras, offered_cameras
+
+__all__ = [
+    "DATA_VARIABLE",
+    "Addition",
+    "Camera",
+    "CameraLibrary",
+    "CameraSettings",
+    "KeptPhotograph",
+    "MeasuredResponse",
+    "add_measured",
+    "add_photographs",
+    "camera_document",
+    "camera_estimate",
+    "compared",
+    "differences",
+    "find_camera",
+    "matching_cameras",
+    "offered_cameras",
+    "read_calibration",
+    "remove_photographs",
+    "with_camera",
+]

@@ -1,0 +1,132 @@
+"""`crfnet camera`: the responses of cameras, kept to be used again."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Callable
+
+from crfnet_core.cameras import (
+    Camera,
+    CameraLibrary,
+    add_measured,
+    add_photographs,
+    camera_document,
+    camera_estimate,
+    differences,
+    find_camera,
+    read_calibration,
+    remove_photographs,
+)
+from crfnet_core.errors import CameraError
+from crfnet_core.files import atomic_write_text, json_text
+from crfnet_core.network import ResponseNetwork
+from ocio import pipeline, report
+from ocio.commands.printing import print_json, print_lines, progress_bar
+from ocio.interchange.files import write_response
+from ocio.luts.files import WRITERS, write_lut
+
+
+def run(arguments: argparse.Namespace) -> None:
+    """Do what `crfnet camera add`, `list`, `show`, `remove` or `export` asks for."""
+    actions: dict[str, Callable[[argparse.Namespace], None]] = {
+        "add": _add,
+        "list": _list,
+        "show": _show,
+        "remove": _remove,
+        "export": _export,
+    }
+    actions[arguments.action](arguments)
+
+
+def _add(arguments: argparse.Namespace) -> None:
+    """Add photographs or a measured response to a camera."""
+    photos, calibration = arguments.photos, arguments.from_calibration
+    if bool(photos) == bool(calibration):
+        raise CameraError("give photographs, or --from-calibration FILE: one of them")
+    library = CameraLibrary.of_user()
+    if calibration:
+        measured = read_calibration(calibration)
+        camera = add_measured(library, arguments.name, measured, overwrite=arguments.overwrite)
+        notes = []
+    else:
+        network = ResponseNetwork.load(arguments.model)
+        with progress_bar("photographs") as progress:
+            done = add_photographs(library, arguments.name, photos, network=network, progress=progress)
+        camera = done.camera
+        notes = [f"{photograph.name} is there already and counts once." for photograph in done.known]
+    if not arguments.json:
+        print_lines([f"Kept in {library.folder}.", *notes])
+    _print_camera(camera, arguments)
+
+
+def _list(arguments: argparse.Namespace) -> None:
+    """List the user's cameras, and those that come with this project."""
+    own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
+    if arguments.json:
+        summaries = {
+            name: list(map(report.camera_summary, library.cameras()))
+            for name, library in (("cameras", own), ("shipped", shipped))
+        }
+        print_json({"folder": str(own.folder), **summaries, "problems": own.problems()})
+        return
+    print_lines([f"Yours, in {own.folder}:", *_indented(own)])
+    print_lines(["Measured, with crfnet:", *_indented(shipped)])
+    print_lines(f"note: {problem}" for problem in own.problems())
+
+
+def _show(arguments: argparse.Namespace) -> None:
+    """Show what is known of a camera."""
+    _print_camera(find_camera(arguments.name), arguments)
+
+
+def _remove(arguments: argparse.Namespace) -> None:
+    """Remove a camera, or photographs of it."""
+    library, name = CameraLibrary.of_user(), arguments.name
+    if arguments.photos:
+        left = report.camera_summary(remove_photographs(library, name, arguments.photos))
+    else:
+        with library.locked():
+            library.remove(name)
+        left = None
+    if arguments.json:
+        print_json({"folder": str(library.folder), "removed": arguments.photos or [name], "camera": left})
+    else:
+        print_lines(
+            [f"Removed: {', '.join(arguments.photos or [name])}.", *([f"Now {left['basis']}."] if left else [])]
+        )
+
+
+def _export(arguments: argparse.Namespace) -> None:
+    """Write the response of a camera as a LUT, for another program, or as the library keeps it."""
+    camera, out = find_camera(arguments.name), arguments.out
+    suffix, overwrite = out.suffix.lower(), arguments.overwrite
+    notes: list[str] = []
+    if suffix == ".json":
+        atomic_write_text(out, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
+    else:
+        lut = pipeline.response_lut(camera_estimate(camera, model=pipeline.model_label(arguments.model)))
+        if suffix in WRITERS:
+            write_lut(out, lut, overwrite=overwrite)
+        else:
+            notes += filter(None, [write_response(out, lut, overwrite=overwrite)])
+    if arguments.json:
+        print_json({"camera": camera.name, "written": str(out), "notes": notes})
+    else:
+        print_lines([*(f"{note}." for note in notes), f"Written: {out}."])
+
+
+def _print_camera(camera: Camera, arguments: argparse.Namespace) -> None:
+    """Print how good a camera's response is, its photographs, and which of them disagree."""
+    model = pipeline.model_label(arguments.model)
+    estimate, found = camera_estimate(camera, model=model), differences(camera, model=model)
+    if arguments.json:
+        photographs = report.photograph_documents(camera, found)
+        print_json(report.camera_summary(camera) | {"photographs": photographs, "estimate": estimate.to_dict()})
+        return
+    print_lines([report.camera_line(camera), *report.photograph_lines(camera, found, model=model)])
+    print_lines([*report.verdict_lines(estimate), *report.disagreement_lines(camera, found)])
+
+
+def _indented(library: CameraLibrary) -> list[str]:
+    """Return the cameras of a library, one line each."""
+    return [f"  {report.camera_line(camera)}" for camera in library.cameras()] or ["  none"]

@@ -1,0 +1,88 @@
+"""Stored cameras in words and as JSON."""
+
+from __future__ import annotations
+
+import shlex
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict
+from typing import Any
+
+from crfnet_core.cameras import Camera
+from crfnet_core.response_estimate import CameraAnswer
+from ocio.report.facts import agreement
+
+
+def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
+    """Return one line that offers stored cameras of a photograph's make and model; nothing without any."""
+    if not offers:
+        return []
+    named = " or ".join(
+        f"--camera {shlex.quote(offer.name)} ({offer.basis}; this estimate is {agreement(offer)})" for offer in offers
+    )
+    return [f"A response of this camera is known; to use it, add {named}."]
+
+
+def camera_line(camera: Camera) -> str:
+    """Return a camera in one line, for lists; its make and model where its name does not begin with them."""
+    model = camera.settings.camera
+    is_named = camera.name.casefold().startswith(model.casefold())
+    return f"{camera.name}: {camera.basis if is_named else f'{model}; {camera.basis}'}"
+
+
+def camera_summary(camera: Camera) -> dict[str, Any]:
+    """Return a camera in short, ready for JSON."""
+    settings = asdict(camera.settings) | {"iso": list(camera.settings.iso)}
+    return {
+        "name": camera.name,
+        **settings,
+        "is_measured": camera.measured is not None,
+        "photographs": len(camera.photographs),
+        "basis": camera.basis,
+    }
+
+
+def photograph_documents(camera: Camera, found: Mapping[str, CameraAnswer]) -> list[dict[str, Any]]:
+    """Return a camera's photographs, with how far each is from the others, ready for JSON.
+
+    Parameters
+    ----------
+    camera : Camera
+        The camera.
+    found : mapping of str to CameraAnswer
+        As `crfnet_core.cameras.differences` returns it.
+    """
+    return [
+        {
+            "name": photograph.name,
+            "sha256": photograph.sha256,
+            "network": photograph.model,
+            "iso": next(iter(photograph.settings.iso), None),
+            "difference_stops": found[key].difference_stops if (key := photograph.sha256) in found else None,
+            "difference": found[key].difference if key in found else None,
+            "agrees": found[key].agrees if key in found else None,
+        }
+        for photograph in camera.photographs
+    ]
+
+
+def photograph_lines(camera: Camera, found: Mapping[str, CameraAnswer], *, model: str) -> list[str]:
+    """Return a camera's photographs, one line each, with how far each is from the others or from the measurement."""
+    lines = []
+    for photograph in camera.photographs:
+        answer = found.get(photograph.sha256)
+        words = f"its own estimate is {agreement(answer)}" if answer else "the only one"
+        if photograph.model != model:
+            words = f"read by {photograph.model}, so it does not count; add it again"
+        iso = f", ISO {photograph.settings.iso[0]}" if photograph.settings.iso else ""
+        lines.append(f"  {photograph.name}{iso}: {words}")
+    return lines
+
+
+def disagreement_lines(camera: Camera, found: Mapping[str, CameraAnswer]) -> list[str]:
+    """Return a warning for each photograph that disagrees with the others or with the measurement."""
+    return [
+        f"Warning: {photograph.name} disagrees; was its picture mode another one? To take it out:"
+        f" crfnet camera remove {shlex.quote(camera.name)} {shlex.quote(photograph.name)}"
+        for photograph in camera.photographs
+        if (answer := found.get(photograph.sha256)) and not answer.agrees
+    ]
