@@ -26,7 +26,7 @@ from crfnet_core.posterior import (
 )
 from crfnet_core.recognition import Levels, Recognition, log_factor, recognize, refuse_tagged
 from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
-from crfnet_core.types import Float32Array, Float64Array, Progress
+from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
 __all__ = ["ResponseEstimate", "WindowEstimate", "estimate_response"]
@@ -155,17 +155,17 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_meta
     if use_metadata:
         refuse_tagged(photo)
     try:
-        windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
+        windows = select_windows(photo, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
-    samples = cut_windows(photo.pixels, windows)
+    samples = cut_windows(photo, windows)
     return _Source(
         name=photo.path.name,
         is_gray=photo.is_gray,
         windows=windows,
         samples=samples,
-        thumbnail=_thumbnail(photo.pixels),
-        levels=Levels.of(photo.pixels),
+        thumbnail=_thumbnail(photo),
+        levels=Levels.of(photo),
         make="" if metadata is None else metadata.make,
         origin=None if metadata is None else file_origin(metadata),
     )
@@ -179,7 +179,7 @@ def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
     return {family: float(np.exp(np.mean([np.log(each[family]) for each in factors]))) for family in Family}
 
 
-def _thumbnail(pixels: Float32Array) -> Float64Array:
+def _thumbnail(pixels: Pixels) -> Float64Array:
     """Return ranks of brightness on a coarse grid, shape (16, 16): no exposure or response changes them."""
     rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
     samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)

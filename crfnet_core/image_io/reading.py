@@ -42,14 +42,7 @@ def read_photo(path: str | Path) -> Photo:
         If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or no
         encoded photograph: CMYK, scene-linear, camera raw.
     """
-    values = read_codes(path)
-    return Photo(
-        pixels=values.pixels(),
-        bit_depth=values.bit_depth,
-        is_gray=values.is_gray,
-        path=Path(path),
-        metadata=values.metadata,
-    )
+    return Photo.from_codes(read_codes(path), Path(path))
 
 
 def read_codes(path: str | Path) -> CodeValues:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.types import Float32Array, Float64Array
+from crfnet_core.types import Float64Array, Pixels
 
 #: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. So few samples below
 #: black are dead pixels; a lens puts no more above white than reflections.
@@ -33,9 +34,9 @@ class Levels:
     histogram: Float64Array
 
     @classmethod
-    def of(cls, pixels: Float32Array) -> Levels:
+    def of(cls, pixels: Pixels) -> Levels:
         """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
-        step = max(1, int(np.ceil(np.sqrt(pixels.size / MOST_SAMPLES))))
+        step = max(1, math.ceil(math.sqrt(math.prod(pixels.shape) / MOST_SAMPLES)))
         codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.int64)
         return cls(np.bincount(codes.ravel(), minlength=BINS).astype(np.float64))
 
