@@ -37,7 +37,7 @@ class Levels:
     def of(cls, pixels: Pixels) -> Levels:
         """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
         step = max(1, math.ceil(math.sqrt(math.prod(pixels.shape) / MOST_SAMPLES)))
-        codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.int64)
+        codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.uint16)
         return cls(np.bincount(codes.ravel(), minlength=BINS).astype(np.float64))
 
     @classmethod

@@ -40,12 +40,15 @@ class CandidateResponses:
         g', per code.
     log_slope, log_irradiance : ndarray
         Their natural logarithms; the irradiance of code 0 counts as that of code 1.
+    log_variance : ndarray
+        The variance of a difference of two logarithms of irradiances around a code that rounding to codes makes.
     """
 
     irradiance: Float32Array
     slope: Float32Array
     log_slope: Float32Array
     log_irradiance: Float32Array
+    log_variance: Float32Array
 
 
 @cache
@@ -60,4 +63,7 @@ def candidate_responses() -> CandidateResponses:
     slope = np.gradient(irradiance, axis=0)
     positive = np.maximum(irradiance, irradiance[1])
     tables = (irradiance, slope, np.log(slope), np.log(positive))
-    return CandidateResponses(*(table.astype(np.float32) for table in tables))
+    single = [table.astype(np.float32) for table in tables]
+    with np.errstate(divide="ignore"):  # of code 0, which no statistic reads
+        log_variance = (single[1] / single[0]) ** 2 / np.float32(6)  # two roundings of variance 1 / 12
+    return CandidateResponses(*single, log_variance=log_variance)
