@@ -62,8 +62,6 @@ def candidate_responses() -> CandidateResponses:
     irradiance = np.stack([np.interp(np.linspace(0, 1, CODES), curve, uniform) for curve in mixed], axis=1)
     slope = np.gradient(irradiance, axis=0)
     positive = np.maximum(irradiance, irradiance[1])
-    tables = (irradiance, slope, np.log(slope), np.log(positive))
-    single = [table.astype(np.float32) for table in tables]
-    with np.errstate(divide="ignore"):  # of code 0, which no statistic reads
-        log_variance = (single[1] / single[0]) ** 2 / np.float32(6)  # two roundings of variance 1 / 12
-    return CandidateResponses(*single, log_variance=log_variance)
+    log_variance = (slope / positive) ** 2 / 6  # two roundings of variance 1 / 12
+    tables = (irradiance, slope, np.log(slope), np.log(positive), log_variance)
+    return CandidateResponses(*(table.astype(np.float32) for table in tables))
