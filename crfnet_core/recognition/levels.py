@@ -20,6 +20,9 @@ BINS = 1024
 #: Rows and columns are skipped until no more samples than these are left; nothing is averaged.
 MOST_SAMPLES = 3_000_000
 
+#: Rows of samples counted at a time.
+ROWS = 64
+
 
 @dataclass(frozen=True, eq=False)
 class Levels:
@@ -37,8 +40,11 @@ class Levels:
     def of(cls, pixels: Pixels) -> Levels:
         """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
         step = max(1, math.ceil(math.sqrt(math.prod(pixels.shape) / MOST_SAMPLES)))
-        codes = np.rint(pixels[::step, ::step] * np.float32(BINS - 1)).astype(np.uint16)
-        return cls(np.bincount(codes.ravel(), minlength=BINS).astype(np.float64))
+        counts, rows = np.zeros(BINS), ROWS * step
+        for top in range(0, pixels.shape[0], rows):
+            codes = np.rint(pixels[top : top + rows : step, ::step] * np.float32(BINS - 1)).astype(np.uint16)
+            counts += np.bincount(codes.ravel(), minlength=BINS)
+        return cls(counts)
 
     @classmethod
     def joint(cls, levels: Sequence[Levels]) -> Levels:
