@@ -19,17 +19,23 @@ files                write a file whole or not at all
 errors, types        the errors that a user can fix; names of array types
 
 The names below are the public interface: see docs/API.md. docs/METHOD.md explains the steps and their equations.
+Each is imported when it is first used, so that `import crfnet_core` waits neither for NumPy nor for onnxruntime.
 """
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.errors import CRFNetError
-from crfnet_core.estimate import ResponseEstimate, WindowEstimate, estimate_response
-from crfnet_core.image_io import read_photo
-from crfnet_core.metrics import estimation_error, linearization_error
-from crfnet_core.network import ModelConfig, ResponseNetwork
-from crfnet_core.photo import Photo
-from crfnet_core.response import ResponseCurve
-from crfnet_core.windows import Window, select_windows
+from importlib import import_module
+from importlib.util import find_spec
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from crfnet_core.emor import EmorBasis
+    from crfnet_core.errors import CRFNetError
+    from crfnet_core.estimate import ResponseEstimate, WindowEstimate, estimate_response
+    from crfnet_core.image_io import read_photo
+    from crfnet_core.metrics import estimation_error, linearization_error
+    from crfnet_core.network import ModelConfig, ResponseNetwork
+    from crfnet_core.photo import Photo
+    from crfnet_core.response import ResponseCurve
+    from crfnet_core.windows import Window, select_windows
 
 __all__ = [
     "CRFNetError",
@@ -47,3 +53,29 @@ __all__ = [
     "read_photo",
     "select_windows",
 ]
+
+#: The module of each public name that is not in `crfnet_core.estimate`.
+_MODULES = {
+    "CRFNetError": "errors",
+    "EmorBasis": "emor",
+    "ModelConfig": "network",
+    "Photo": "photo",
+    "ResponseCurve": "response",
+    "ResponseNetwork": "network",
+    "Window": "windows",
+    "estimation_error": "metrics",
+    "linearization_error": "metrics",
+    "read_photo": "image_io",
+    "select_windows": "windows",
+}
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name, or a module of this package, when it is first used (PEP 562)."""
+    if name in __all__:
+        found = getattr(import_module(f"{__name__}.{_MODULES.get(name, 'estimate')}"), name)
+        globals()[name] = found
+        return found
+    if not name.startswith("_") and find_spec(f"{__name__}.{name}"):
+        return import_module(f"{__name__}.{name}")
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -14,7 +14,7 @@ from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Evidence
 from crfnet_core.recognition import Levels, refuse_tagged
-from crfnet_core.types import Float32Array, Float64Array, Progress, show_progress
+from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, show_progress
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
 #: Samples along each side of the thumbnails by which photographs of one scene are recognised.
@@ -114,15 +114,15 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_meta
     if use_metadata:
         refuse_tagged(photo)
     try:
-        windows = select_windows(photo.pixels, count=count, seed=seed, coverage=coverage)
+        windows = select_windows(photo, count=count, seed=seed, coverage=coverage)
     except PhotoError as problem:
         raise PhotoError(f"{photo.path}: {problem}") from None
-    samples = cut_windows(photo.pixels, windows)
+    samples = cut_windows(photo, windows)
     analyzed = partial(
         AnalyzedPhotograph,
         name=photo.path.name,
-        thumbnail=_thumbnail(photo.pixels),
-        levels=Levels.of(photo.pixels),
+        thumbnail=_thumbnail(photo),
+        levels=Levels.of(photo),
         make="" if metadata is None else metadata.make,
         origin=None if metadata is None else file_origin(metadata),
         is_gray=photo.is_gray,
@@ -132,7 +132,7 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_meta
     return _Source(samples, analyzed)
 
 
-def _thumbnail(pixels: Float32Array) -> Float64Array:
+def _thumbnail(pixels: Pixels) -> Float64Array:
     """Return ranks of brightness on a coarse grid, shape (16, 16): no exposure or response changes them."""
     rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
     samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)

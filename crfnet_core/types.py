@@ -6,7 +6,7 @@ import dataclasses
 import math
 from collections.abc import Callable, Mapping
 from enum import Enum
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +30,18 @@ BoolArray = NDArray[np.bool_]
 
 #: Positions in an array.
 IndexArray = NDArray[np.intp]
+
+
+class Pixels(Protocol):
+    """Pixels that are cut and sampled, shape (H, W, 3), float32 in [0, 1]: an array of them, or a `Photo`."""
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """Rows, columns and channels."""
+
+    def __getitem__(self, index: Any, /) -> Float32Array:
+        """Return some of them, for an index of rows and columns."""
+
 
 #: Called with (done, total) after every step. If it raises, the work stops.
 Progress = Callable[[int, int], None]

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.types import Float32Array, Uint8Array
+from crfnet_core.types import Float32Array, Pixels, Uint8Array
 
 #: Side of a window in samples.
 WINDOW_SIZE = 227
@@ -45,8 +45,8 @@ class Window:
         """Whether the window holds enough of the 256 code values to show the whole response."""
         return self.filled >= FULL_COVERAGE
 
-    def cut(self, pixels: Float32Array) -> Float32Array:
-        """Return a view of the window's samples, shape (227, 227, 3)."""
+    def cut(self, pixels: Pixels) -> Float32Array:
+        """Return the window's samples, shape (227, 227, 3); of an array a view."""
         end_y, end_x = self.y + self.extent, self.x + self.extent
         return pixels[self.y : end_y : self.step, self.x : end_x : self.step]
 
@@ -74,7 +74,7 @@ def filled_codes(codes: Uint8Array) -> int:
 
 
 def select_windows(
-    pixels: Float32Array,
+    pixels: Pixels,
     *,
     count: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
@@ -89,7 +89,7 @@ def select_windows(
 
     Parameters
     ----------
-    pixels : ndarray, float32, shape (H, W, 3)
+    pixels : Photo, or ndarray, float32, shape (H, W, 3)
         A photograph, code values in [0, 1]; not changed.
     count : int
         Number of windows; fewer only if the photograph has fewer positions.
@@ -124,7 +124,7 @@ def select_windows(
     return tuple(chosen + others[: count - len(chosen)])
 
 
-def cut_windows(pixels: Float32Array, windows: Sequence[Window]) -> Float32Array:
+def cut_windows(pixels: Pixels, windows: Sequence[Window]) -> Float32Array:
     """Return the samples of `windows`, shape (N, 227, 227, 3), copied from `pixels` of shape (H, W, 3)."""
     return np.stack([window.cut(pixels) for window in windows])
 

@@ -21,6 +21,9 @@ from crfnet_core.image_io.png_files import with_color_chunks
 from crfnet_core.metadata.file_metadata import FileMetadata, metadata_of_header
 from crfnet_core.photo import CodeValues, Photo
 
+#: Rows read at a time.
+_ROWS = 256
+
 
 def read_photo(path: str | Path) -> Photo:
     """Return the photograph in an image file of 8 to 16 bits per sample.
@@ -43,14 +46,7 @@ def read_photo(path: str | Path) -> Photo:
         If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or no
         encoded photograph: CMYK, scene-linear, camera raw.
     """
-    values = read_codes(path)
-    return Photo(
-        pixels=values.pixels(),
-        bit_depth=values.bit_depth,
-        is_gray=values.is_gray,
-        path=Path(path),
-        metadata=values.metadata,
-    )
+    return Photo.from_codes(read_codes(path), Path(path))
 
 
 def read_codes(path: str | Path) -> CodeValues:
@@ -80,13 +76,28 @@ def _read(path: Path, kind: str) -> CodeValues:
         if kind == "JPEG" and str(header.format) == "half":
             return _read_base_image(path)
         bit_depth = checked_bit_depth(path, header)
-        values = source.read_image(0, 0, 0, min(header.nchannels, 4), header.format)
+        values = _samples(source, header)
         problem = problems.oiio_message(source)
     finally:
         source.close()
     if values is None or problem:
         raise problems.damaged(path, kind, problem)
     return _code_values(values, bit_depth, header, metadata_of_header(header, kind, jpeg))
+
+
+def _samples(source: Any, header: Any) -> NDArray[Any] | None:
+    """Return the samples in an open file, shape (H, W, 1 to 4), or None; whole pictures OpenImageIO holds twice."""
+    channels = min(header.nchannels, 4)
+    if header.tile_width:
+        return np.asarray(source.read_image(0, 0, 0, channels, header.format))
+    values = np.empty((header.height, header.width, channels), str(header.format))
+    for top in range(0, header.height, _ROWS):
+        bottom = min(top + _ROWS, header.height)
+        rows = source.read_scanlines(header.y + top, header.y + bottom, header.z, 0, channels, header.format)
+        if rows is None:
+            return None
+        values[top:bottom] = rows
+    return values
 
 
 def _code_values(values: NDArray[Any], bit_depth: int, header: Any, metadata: FileMetadata) -> CodeValues:

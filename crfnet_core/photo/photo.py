@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -22,7 +22,8 @@ class Photo:
     """A photograph in the encoding of its file.
 
     `crfnet_core.read_photo` reads one, and `from_array` takes an array; the constructor only checks. Photographs
-    compare by identity.
+    compare by identity. That of a file holds its codes, which need a quarter of the memory: `photo[::8, ::8]` are
+    `photo.pixels[::8, ::8]`, and no more than these are computed. The first use of `pixels` computes and keeps all.
 
     Parameters
     ----------
@@ -58,6 +59,14 @@ class Photo:
                 " Photo holds float32 of shape (H, W, 3): Photo.from_array converts"
             )
         check_range(self.pixels, str(self.path))
+
+    @classmethod
+    def from_codes(cls, values: CodeValues, path: Path) -> Photo:
+        """Return the photograph with the samples of a file."""
+        photo = cls.__new__(cls)
+        facts = {"bit_depth": values.bit_depth, "is_gray": values.is_gray, "path": path, "metadata": values.metadata}
+        vars(photo).update(facts, _values=replace(values, header=None))  # a header cannot go to another process
+        return photo
 
     @classmethod
     def from_array(
@@ -101,6 +110,26 @@ class Photo:
         )
         return cls(pixels, bits, has_equal_channels(pixels), Path(name), metadata)
 
+    if not TYPE_CHECKING:  # mypy knows the field
+
+        def __getattr__(self, name: str) -> Float32Array:
+            """Compute the pixels of a file when they are first asked for."""
+            if name != "pixels":
+                raise AttributeError(name, name=name, obj=self)
+            vars(self)["pixels"] = self._values.pixels()
+            return self.pixels
+
+    def __getitem__(self, index: Any) -> Float32Array:
+        """Return some of the pixels: `pixels[index]`, for an index of rows and columns."""
+        values: CodeValues | None = vars(self).get("_values")
+        return self.pixels[index] if values is None else values.pixels(index)
+
+    @property
+    def shape(self) -> tuple[int, ...]:
+        """The shape of `pixels`, (H, W, 3)."""
+        values: CodeValues | None = vars(self).get("_values")
+        return (self.pixels if values is None else values.codes).shape
+
 
 @dataclass(frozen=True, eq=False)
 class CodeValues:
@@ -139,11 +168,18 @@ class CodeValues:
         """Whether the three channels are equal everywhere."""
         return has_equal_channels(self.codes)
 
-    def pixels(self) -> Float32Array:
-        """Return code / largest in [0, 1], rounded to float32, shape (H, W, 3); divided by alpha if associated."""
+    def pixels(self, index: Any = ()) -> Float32Array:
+        """Return code / largest in [0, 1], rounded to float32, shape (H, W, 3); divided by alpha if associated.
+
+        Parameters
+        ----------
+        index : index of rows and columns
+            Which pixels; by default all.
+        """
+        codes = self.codes[index]
         if self.alpha is None or not self.is_associated:
-            return np.divide(self.codes, np.float32(self.largest), dtype=np.float32)
-        alpha = self.alpha[..., None]
-        pixels = np.zeros(self.codes.shape, np.float32)
-        np.divide(self.codes, alpha, out=pixels, where=alpha > 0, dtype=np.float32)
-        return np.minimum(pixels, 1, out=pixels)
+            return np.asarray(np.divide(codes, np.float32(self.largest), dtype=np.float32))
+        alpha = self.alpha[index][..., None]
+        pixels = np.zeros(codes.shape, np.float32)
+        np.divide(codes, alpha, out=pixels, where=alpha > 0, dtype=np.float32)
+        return np.asarray(np.minimum(pixels, 1, out=pixels))

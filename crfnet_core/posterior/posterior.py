@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -11,12 +11,15 @@ import numpy as np
 from crfnet_core.posterior.evidence import Evidence
 from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.posterior.prior import Prior
-from crfnet_core.posterior.responses import SHAPE_SAMPLES, ResponseBank
+from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.types import Float32Array, Float64Array, same_fields
 
-#: The fraction of the posterior that the band holds at every irradiance, and the irradiances at which it is computed.
-BAND, BAND_KNOTS = 0.9, 65
+#: The fraction of the posterior that the band holds at every irradiance.
+BAND = 0.9
+
+#: Responses of the bank that are weighed at a time: so many in double precision fit into a core's cache.
+ROWS = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +95,7 @@ class Posterior:
         """
         ordinary = np.where(self.bank.ordinary, self.weights, 0)
         weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
-        irradiance = np.exp2(weights @ self.bank.log_irradiance)
+        irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
         irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
         uniform = np.linspace(0, 1, SAMPLES)
         return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
@@ -100,14 +103,16 @@ class Posterior:
     @cached_property
     def expected_error(self) -> float:
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
-        return float(self.weights @ np.linalg.norm(self.bank.brightness - self.curve.brightness, axis=1))
+        answer = self.curve.brightness
+        return float(_weighed(self.weights, self.bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1)))
 
     @cached_property
     def expected_shape_error(self) -> float:
         """The expected shape error of the answer, in stops."""
         codes = np.linspace(0, 1, SAMPLES)[SHAPE_SAMPLES]
-        offsets = self.bank.log_irradiance[:, SHAPE_SAMPLES] - np.log2(self.curve.inverse(codes))
-        return float(self.weights @ offsets.std(axis=1))
+        answer = np.log2(self.curve.inverse(codes))
+        shapes = self.bank.log_irradiance[:, SHAPE_SAMPLES]
+        return float(_weighed(self.weights, shapes, lambda rows: (rows - answer).std(axis=1)))
 
     @cached_property
     def mean_weights(self) -> Float64Array:
@@ -121,15 +126,22 @@ class Posterior:
 
     def band(self) -> Float64Array:
         """Return the band that holds `BAND` at every irradiance, lower and upper end, shape (2, 1024): Eq. 29."""
-        knots = np.linspace(0, SAMPLES - 1, BAND_KNOTS).round().astype(int)
-        values = self.bank.brightness[:, knots].astype(np.float64)
-        order = np.argsort(values, axis=0)
-        ordered = np.take_along_axis(values, order, axis=0)
-        cumulative = np.cumsum(self.weights[order], axis=0) - self.weights[order] / 2
+        order, ordered = self.bank.ordered
+        weights = self.weights[order]
+        cumulative = np.cumsum(weights, axis=1) - weights / 2
         levels = ((1 - BAND) / 2, (1 + BAND) / 2)
-        ends = [[np.interp(level, cumulative[:, k], ordered[:, k]) for k in range(BAND_KNOTS)] for level in levels]
+        ends = [[np.interp(level, *knot) for knot in zip(cumulative, ordered, strict=True)] for level in levels]
         uniform = np.arange(SAMPLES)
-        return np.stack([np.interp(uniform, knots, end) for end in ends])
+        return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
+
+
+def _weighed(
+    weights: Float64Array, responses: Float32Array, function: Callable[[Float64Array], Float64Array]
+) -> Float64Array:
+    """Return weights @ function(responses), computed on some rows at a time in double precision."""
+    starts = range(0, len(weights), ROWS)
+    parts = ((weights[start : start + ROWS], responses[start : start + ROWS].astype(np.float64)) for start in starts)
+    return np.asarray(sum(some @ function(rows) for some, rows in parts))
 
 
 def _log_sum(logarithms: Float64Array) -> float:

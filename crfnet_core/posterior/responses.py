@@ -12,7 +12,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.response import SAMPLES
-from crfnet_core.types import BoolArray, Float32Array, Float64Array, same_fields
+from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray, same_fields
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
 BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
@@ -22,6 +22,14 @@ STORED_STEPS = 65535
 
 #: Irradiance at which logarithms are cut off: 2^-16, below the noise of any sensor.
 LEAST_IRRADIANCE = 2.0**-16
+
+#: Positions, of 1024 uniform brightnesses, between which the shape of a response matters: see `metrics.shape_error`.
+SHAPE_SAMPLES = slice(
+    round(FIRST_SHAPE_CODE / 255 * (SAMPLES - 1)), round(LAST_SHAPE_CODE / 255 * (SAMPLES - 1)) + 1, 4
+)
+
+#: Irradiances, of 1024 uniform ones, at which the band is computed.
+BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,11 +85,14 @@ class ResponseBank:
         """Logarithms, base 2, of the inverse responses at 1024 uniform brightnesses, shape (N, 1024)."""
         codes = np.linspace(0, 1, SAMPLES)
         rising = np.linspace(0, 1e-6, SAMPLES)  # makes flat parts strictly increasing
-        inverses = [np.interp(codes, (row + rising) / (1 + 1e-6), codes) for row in self.brightness]
-        return np.log2(np.maximum(np.stack(inverses), LEAST_IRRADIANCE)).astype(np.float32)
+        logarithms = np.empty_like(self.brightness)
+        for row, into in zip(self.brightness, logarithms, strict=True):
+            into[:] = np.log2(np.maximum(np.interp(codes, (row + rising) / (1 + 1e-6), codes), LEAST_IRRADIANCE))
+        return logarithms
 
-
-#: Positions, of 1024 uniform brightnesses, between which the shape of a response matters: see `metrics.shape_error`.
-SHAPE_SAMPLES = slice(
-    round(FIRST_SHAPE_CODE / 255 * (SAMPLES - 1)), round(LAST_SHAPE_CODE / 255 * (SAMPLES - 1)) + 1, 4
-)
+    @cached_property
+    def ordered(self) -> tuple[IndexArray, Float64Array]:
+        """The order of the responses by brightness at each of `BAND_SAMPLES`, and these brightnesses, (65, N)."""
+        values = self.brightness[:, BAND_SAMPLES].T.astype(np.float64)
+        order = np.argsort(values, axis=1)
+        return order, np.take_along_axis(values, order, axis=1)

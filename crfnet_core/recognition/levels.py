@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.types import Float32Array, Float64Array
+from crfnet_core.types import Float32Array, Float64Array, Pixels
 
 #: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. So few samples below
 #: black are dead pixels; a lens puts no more above white than reflections.
@@ -21,6 +22,9 @@ BINS = 1024
 
 #: Rows and columns are skipped until no more samples than these are left; nothing is averaged.
 MOST_SAMPLES = 3_000_000
+
+#: Rows of samples counted at a time.
+ROWS = 64
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,11 +43,15 @@ class Levels:
     luma: Float64Array
 
     @classmethod
-    def of(cls, pixels: Float32Array) -> Levels:
+    def of(cls, pixels: Pixels) -> Levels:
         """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
-        step = max(1, int(np.ceil(np.sqrt(pixels.size / MOST_SAMPLES))))
-        samples = pixels[::step, ::step]
-        return cls(_histogram(samples), _histogram(samples @ LUMA))
+        step = max(1, math.ceil(math.sqrt(math.prod(pixels.shape) / MOST_SAMPLES)))
+        counts, luma, rows = np.zeros(BINS), np.zeros(BINS), ROWS * step
+        for top in range(0, pixels.shape[0], rows):
+            samples = pixels[top : top + rows : step, ::step]
+            counts += _histogram(samples)
+            luma += _histogram(samples @ LUMA)
+        return cls(counts, luma)
 
     @classmethod
     def joint(cls, levels: Sequence[Levels]) -> Levels:
@@ -84,7 +92,7 @@ class Levels:
 
 def _histogram(samples: Float32Array) -> Float64Array:
     """Return the number of samples at each code of 10 bits, shape (1024,)."""
-    codes = np.rint(samples * np.float32(BINS - 1)).astype(np.int64)
+    codes = np.rint(samples * np.float32(BINS - 1)).astype(np.uint16)
     return np.bincount(codes.ravel(), minlength=BINS).astype(np.float64)
 
 

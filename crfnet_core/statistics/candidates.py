@@ -40,12 +40,15 @@ class CandidateResponses:
         g', per code.
     log_slope, log_irradiance : ndarray
         Their natural logarithms; the irradiance of code 0 counts as that of code 1.
+    log_variance : ndarray
+        The variance of a difference of two logarithms of irradiances around a code that rounding to codes makes.
     """
 
     irradiance: Float32Array
     slope: Float32Array
     log_slope: Float32Array
     log_irradiance: Float32Array
+    log_variance: Float32Array
 
 
 @cache
@@ -59,5 +62,6 @@ def candidate_responses() -> CandidateResponses:
     irradiance = np.stack([np.interp(np.linspace(0, 1, CODES), curve, uniform) for curve in mixed], axis=1)
     slope = np.gradient(irradiance, axis=0)
     positive = np.maximum(irradiance, irradiance[1])
-    tables = (irradiance, slope, np.log(slope), np.log(positive))
+    log_variance = (slope / positive) ** 2 / 6  # two roundings of variance 1 / 12
+    tables = (irradiance, slope, np.log(slope), np.log(positive), log_variance)
     return CandidateResponses(*(table.astype(np.float32) for table in tables))

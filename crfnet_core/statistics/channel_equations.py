@@ -11,13 +11,13 @@ Least squares over all edges of a window gives normal equations A k = r, which a
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
 
 import numpy as np
 
-from crfnet_core.statistics.edges import shared_edges
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, rows_and_columns
-from crfnet_core.types import Float32Array, Float64Array, Int16Array, Uint8Array
+from crfnet_core.statistics.edges import Triples
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES
+from crfnet_core.types import Float32Array, Float64Array
 
 #: Distances between the samples of an edge.
 EQUATION_STRIDES = (1, 2, 4, 8)
@@ -34,55 +34,46 @@ MOST_RATIO_DIFFERENCE = 0.3
 SHAPES = {"channel_equations": (len(EQUATION_STRIDES), EQUATION_LEVELS + 1, EQUATION_LEVELS)}
 
 
-class _Edges(NamedTuple):
-    """Edges in one channel, arrays (M,): height c - a and rise b - a in codes, and the level of the middle."""
-
-    height: Int16Array
-    rise: Int16Array
-    level: Int16Array
-
-
-def channel_equations(planes: Uint8Array) -> Float32Array:
+def channel_equations(triples: Sequence[Triples]) -> Float32Array:
     """Return the normal equations at each stride (Eq. 12), the rows of A and below them r, shape (4, 21, 20).
 
     Parameters
     ----------
-    planes : ndarray, uint8, shape (3, N, N)
-        Codes.
+    triples : sequence of Triples
+        Those at each of `EQUATION_STRIDES`.
     """
-    return np.stack([_normal_equations(planes, stride) for stride in EQUATION_STRIDES])
+    return np.stack([_normal_equations(each) for each in triples])
 
 
-def _normal_equations(planes: Uint8Array, stride: int) -> Float32Array:
+def _normal_equations(triples: Triples) -> Float32Array:
     """Return the normal equations of all edges at one stride, shape (21, 20)."""
     equations = np.zeros((EQUATION_LEVELS + 1, EQUATION_LEVELS))
-    for row in rows_and_columns(planes, stride, 3):
-        index, is_edge = shared_edges(row, LEAST_COMPARED_HEIGHT)
-        a, b, c = (side.take(index, axis=1).astype(np.int16) for side in row)  # (3, M)
-        of_all = (c - a, b - a, (a + c) * EQUATION_LEVELS // (2 * CODES - 1))
-        for pair in CHANNEL_PAIRS:
-            chosen = np.flatnonzero(is_edge[pair[0]] & is_edge[pair[1]])
-            first, second = (_Edges(*(part[channel].take(chosen) for part in of_all)) for channel in pair)
-            _add_pair(equations, first, second)
+    is_edge = triples.are_edges(LEAST_COMPARED_HEIGHT)
+    for pair in CHANNEL_PAIRS:
+        index = np.flatnonzero(is_edge[pair[0]] & is_edge[pair[1]])
+        _add_pair(equations, *(triples.of_channel(channel, index) for channel in pair))
     return equations.astype(np.float32)
 
 
-def _add_pair(equations: Float64Array, first: _Edges, second: _Edges) -> None:
-    """Add the equations between the same edges, seen in two channels.
+def _add_pair(equations: Float64Array, *channels: tuple[Float32Array, Float32Array, Float32Array]) -> None:
+    """Add the equations between the same edges a, b, c, seen in two channels, codes (M,).
 
     An equation (Eq. 11) reads x (h1 k1 - h2 k2) = d: x = alpha (1 - alpha) / 2, and d is the difference of the encoded
     ratios. Its weight is the inverse variance of d from rounding, which goes with 1 / h1 ** 2 + 1 / h2 ** 2.
     """
-    h1, h2 = (side.height / np.float32(CODES - 1) for side in (first, second))
-    ratio1, ratio2 = (side.rise / side.height.astype(np.float32) for side in (first, second))
+    h1, h2 = (c - a for a, _, c in channels)
+    ratio1, ratio2 = ((b - a) / h for (a, b, _), h in zip(channels, (h1, h2), strict=True))
+    level1, level2 = (((a + c) * np.float32(EQUATION_LEVELS / (2 * CODES - 1))).astype(np.intp) for a, _, c in channels)
     difference, mean_ratio = ratio1 - ratio2, (ratio1 + ratio2) / 2
     x = mean_ratio * (1 - mean_ratio) / 2
-    weight = (first.height * h2) ** 2 / (h1 * h1 + h2 * h2) * (np.abs(difference) < MOST_RATIO_DIFFERENCE)
-    squared, linear = weight * x * x, weight * x * difference
-    cell = first.level * EQUATION_LEVELS + second.level
+    weight = (h1 * h2) ** 2 / (h1 * h1 + h2 * h2) * (np.abs(difference) < MOST_RATIO_DIFFERENCE)
+    x1, x2 = x * h1, x * h2
+    weighted1, weighted2 = weight * x1, weight * x2
+    cell = level1 * EQUATION_LEVELS + level2
+    products = (weighted1 * x1, weighted2 * x2, weighted1 * x2, weighted1 * difference, weighted2 * difference)
     own1, own2, cross, right1, right2 = (
         np.bincount(cell, terms, minlength=EQUATION_LEVELS**2).reshape(EQUATION_LEVELS, EQUATION_LEVELS)
-        for terms in (squared * h1 * h1, squared * h2**2, squared * h1 * h2, linear * h1, linear * h2)
+        for terms in products
     )
-    equations[:-1] += np.diag(own1.sum(axis=1) + own2.sum(axis=0)) - cross - cross.T
-    equations[-1] += right1.sum(axis=1) - right2.sum(axis=0)
+    equations[:-1] += (np.diag(own1.sum(axis=1) + own2.sum(axis=0)) - cross - cross.T) / (CODES - 1) ** 2
+    equations[-1] += (right1.sum(axis=1) - right2.sum(axis=0)) / (CODES - 1)

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from functools import cache
+from collections.abc import Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from crfnet_core.statistics.gradients import STRIDES
-from crfnet_core.statistics.sampling import CODES, Row, interpolation_weights, rows_and_columns
-from crfnet_core.types import BoolArray, Float64Array, IndexArray, Uint8Array
+from crfnet_core.statistics.sampling import Row, interpolation_weights, samples_in_a_row
+from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray, Uint8Array
 
 #: Levels that the two sides of edges are first counted on.
 EDGE_LEVELS = 64
@@ -22,7 +23,44 @@ LEAST_EDGE_HEIGHT = 6
 SHAPES = {"edges": (len(STRIDES), 2, GRID, GRID)}
 
 
-def edge_sums(planes: Uint8Array) -> Float64Array:
+class Triples(NamedTuple):
+    """Three samples a, b, c in a row of all lines, and the lower and higher of a and c, each uint8 (3, M).
+
+    Parameters
+    ----------
+    a, b, c, low : ndarray
+        Codes.
+    height, rise : ndarray
+        From low to high, and from low to b: above the height if b is not between a and c, since codes wrap around.
+    """
+
+    a: Uint8Array
+    b: Uint8Array
+    c: Uint8Array
+    low: Uint8Array
+    height: Uint8Array
+    rise: Uint8Array
+
+    @classmethod
+    def among(cls, lines: Uint8Array, stride: int) -> Triples:
+        """Return the triples of `sampled_lines` at a stride."""
+        a, b, c = samples_in_a_row(lines, stride, 3)
+        low = np.minimum(a, c)
+        return cls(a, b, c, low, np.maximum(a, c) - low, b - low)
+
+    def are_edges(self, least_height: int) -> BoolArray:
+        """Return which triples are edges higher than this, in codes: b lies between a and c."""
+        is_edge: BoolArray = self.rise <= self.height
+        is_edge &= self.height > least_height
+        return is_edge
+
+    def of_channel(self, channel: int, index: IndexArray) -> tuple[Float32Array, Float32Array, Float32Array]:
+        """Return a, b and c of one channel at some indices, each (len(index),)."""
+        a, b, c = (side[channel].take(index).astype(np.float32) for side in self[:3])
+        return a, b, c
+
+
+def edge_sums(triples: Sequence[Triples]) -> Float64Array:
     """Return the number of edges and the sum of their encoded ratios, less a half, shape (5, 2, GRID, GRID).
 
     An edge is three samples a, b, c in a row with b between a and c. Its encoded ratio is (b - low) / (high - low), of
@@ -31,26 +69,21 @@ def edge_sums(planes: Uint8Array) -> Float64Array:
 
     Parameters
     ----------
-    planes : ndarray, uint8, shape (3, N, N)
-        Codes; all channels are counted together.
+    triples : sequence of Triples
+        Those at each of `STRIDES`; all channels are counted together.
     """
-    sums = np.stack([_sums_by_level(planes, stride) for stride in STRIDES])  # (5, 2, 64, 64)
+    sums = np.stack([_sums_by_level(each) for each in triples])  # (5, 2, 64, 64)
     cells = interpolation_weights(EDGE_LEVELS, GRID)
     gathered: Float64Array = cells.T @ sums @ cells
     return gathered
 
 
-def _sums_by_level(planes: Uint8Array, stride: int) -> Float64Array:
+def _sums_by_level(triples: Triples) -> Float64Array:
     """Return the number of edges and the sum of their encoded ratios, less a half, shape (2, 64, 64)."""
-    cells, ratios = [], []
-    for plane in planes:
-        for a, b, c in rows_and_columns(plane, stride, 3):
-            low, high = np.minimum(a, c), np.maximum(a, c)
-            index = np.flatnonzero((high - low > LEAST_EDGE_HEIGHT) & (b >= low) & (b <= high))
-            low, middle, high = (side.take(index) for side in (low, b, high))
-            cells.append((low >> 2).astype(np.uint16) * EDGE_LEVELS + (high >> 2))
-            ratios.append(_encoded_ratios().take((middle - low).astype(np.uint16) << 8 | (high - low)))
-    cell, ratio = np.concatenate(cells), np.concatenate(ratios)
+    index = np.flatnonzero(triples.are_edges(LEAST_EDGE_HEIGHT))
+    low, height, rise = (part.take(index) for part in (triples.low, triples.height, triples.rise))
+    cell = ((low >> 2).astype(np.uint16) * EDGE_LEVELS + (low + height >> 2)).astype(np.intp)
+    ratio = rise / height.astype(np.float32) - np.float32(0.5)
     counts = np.bincount(cell, minlength=EDGE_LEVELS**2).astype(np.float64)
     sums = np.stack([counts, np.bincount(cell, ratio, minlength=EDGE_LEVELS**2)])
     return sums.reshape(2, EDGE_LEVELS, EDGE_LEVELS)
@@ -76,11 +109,3 @@ def shared_edges(row: Row, least_height: int) -> tuple[IndexArray, BoolArray]:
     is_edge = (high - low > least_height) & (b >= low) & (b <= high)
     index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
     return index, is_edge.take(index, axis=1)
-
-
-@cache
-def _encoded_ratios() -> Float64Array:
-    """Return the encoded ratio, less a half, of a middle i codes above the lower side of an edge j codes high."""
-    code = np.arange(CODES)
-    ratios: Float64Array = code[:, None] / np.maximum(code[None, :], 1) - 0.5
-    return ratios

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from crfnet_core.statistics.sampling import CODES, interpolation_weights, rows_and_columns
+from crfnet_core.statistics.sampling import CODES, interpolation_weights, samples_in_a_row
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
 
 #: Levels of brightness that counts over codes are gathered into.
@@ -28,24 +28,31 @@ def level_histogram(planes: Uint8Array) -> Float64Array:
     return histogram
 
 
-def gradient_sums(planes: Uint8Array) -> Float32Array:
+def gradient_sums(lines: Uint8Array) -> Float32Array:
     """Return `GRADIENT_SUMS` over the neighbours of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
 
     Both neighbours count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
     level, so the mean gradient of brightness, as a function of brightness, follows the slope of f (Eq. 9).
+
+    Parameters
+    ----------
+    lines : ndarray, uint8, shape (3, 2, N, lines)
+        See `sampled_lines`.
     """
-    sums = np.stack([_sums_by_code(planes, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
+    sums = np.stack([_sums_by_code(lines, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
     by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)
     return by_level
 
 
-def _sums_by_code(planes: Uint8Array, stride: int) -> Float32Array:
+def _sums_by_code(lines: Uint8Array, stride: int) -> Float32Array:
     """Return the sums over the neighbours of the samples of each code, shape (3, GRADIENT_SUMS, 256)."""
+    first, second = samples_in_a_row(lines, stride, 2)
+    pairs = (first.astype(np.uint16) << 8) | second
     tables, sums = _difference_tables(), np.empty((3, GRADIENT_SUMS, CODES), np.float32)
-    for plane, into in zip(planes, sums, strict=True):
-        rows = rows_and_columns(plane, stride, 2)
-        pairs = np.concatenate([(first.astype(np.uint16) << 8) | second for first, second in rows])
-        counts = np.bincount(pairs, minlength=CODES * CODES).reshape(CODES, CODES).astype(np.float32)
+    padded = np.empty((CODES, CODES + 16), np.float32)  # columns a power of two apart would share lines of a cache
+    counts = padded[:, :CODES]
+    for of_channel, into in zip(pairs, sums, strict=True):
+        counts[:] = np.bincount(of_channel, minlength=CODES * CODES).reshape(CODES, CODES)
         np.einsum("ij,kij->ki", counts + counts.T, tables, out=into)
     return sums
 

@@ -100,9 +100,10 @@ class Mixtures:
         is_isolated = np.stack([reading * change <= np.maximum(height, reading) for reading in ISOLATION])
         return cls(a, b, c, is_mixture, is_isolated)
 
-    def of_channel(self, channel: int, index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
-        """Return a, b and c of one channel at some indices, each (len(index),)."""
-        return self.a[channel].take(index), self.b[channel].take(index), self.c[channel].take(index)
+    def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
+        """Return a, b and c of two channels at some indices, each (2, len(index))."""
+        a, b, c = (np.stack([side[channel].take(index) for channel in pair]) for side in (self.a, self.b, self.c))
+        return a, b, c
 
 
 def mixing_parts(planes: Uint8Array) -> dict[str, Float32Array]:
@@ -147,13 +148,13 @@ def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
         index = evenly_spread(mixtures.is_mixture[first] & mixtures.is_mixture[second], MOST_SUMMED)
         is_isolated = (mixtures.is_isolated[:, first] & mixtures.is_isolated[:, second]).take(index, axis=1)
         classes = np.concatenate([np.ones((1, len(index))), is_isolated]).astype(np.float32)
-        for channel in (first, second):
-            a, b, c = mixtures.of_channel(channel, index)
-            ratio, height = mixing_ratio(a, b, c)  # (len(index), CANDIDATE_COUNT)
-            log_density = log_slope.take(b, axis=0) - np.log(np.abs(height))
-            brighter = np.where((c > a)[:, None], ratio, 1 - ratio) - np.float32(0.5)
-            sums += np.stack([classes @ part for part in (log_density, brighter, brighter**2)], axis=1)
-            counts += classes.sum(axis=1)
+        a, b, c = mixtures.of_channels((first, second), index)
+        ratio, height = mixing_ratio(a, b, c)  # (2, len(index), CANDIDATE_COUNT)
+        log_density = log_slope.take(b, axis=0) - np.log(np.abs(height))
+        centered = ratio - np.float32(0.5)
+        brighter = centered * np.sign(c - a).astype(np.float32)[..., None]
+        sums += np.stack([(classes @ part).sum(axis=0) for part in (log_density, brighter, centered**2)], axis=1)
+        counts += 2 * classes.sum(axis=1)
     sums[:, 0] -= sums[:, 0].mean(axis=1, keepdims=True)
     return sums, counts[:, None, None]
 
@@ -179,30 +180,29 @@ def disagreement_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
         is_isolated = mixtures.is_isolated[0, first] & mixtures.is_isolated[0, second]
         for number, is_chosen in enumerate((is_compared, is_compared & is_isolated)):
             index = evenly_spread(is_chosen, MOST_COMPARED)
-            sides = [mixtures.of_channel(channel, index) for channel in (first, second)]
-            bands = _level_bands((sides[0][1] + sides[1][1]) >> 1)
-            sums[number] += bands @ _disagreement(*sides)
+            a, b, c = mixtures.of_channels((first, second), index)
+            bands = _level_bands((b[0] + b[1]) >> 1)
+            sums[number] += bands @ _disagreement(a, b, c)
             counts[number] += bands.sum(axis=1)
     return sums - sums.mean(axis=2, keepdims=True), counts[..., None]
 
 
 def mixing_ratio(a: Int16Array, b: Int16Array, c: Int16Array) -> tuple[Float32Array, Float32Array]:
-    """Return alpha = (g(b) - g(a)) / (g(c) - g(a)) of codes (M,), and g(c) - g(a), each (M, CANDIDATE_COUNT): Eq. 2."""
+    """Return alpha = (g(b) - g(a)) / (g(c) - g(a)) of codes (2, M), and g(c) - g(a), (2, M, CANDIDATE_COUNT): Eq. 2."""
     irradiance = candidate_responses().irradiance
     start = irradiance.take(a, axis=0)
     height = irradiance.take(c, axis=0) - start
     return (irradiance.take(b, axis=0) - start) / height, height
 
 
-def _disagreement(*sides: tuple[Int16Array, Int16Array, Int16Array]) -> Float32Array:
-    """Return how much two channels, each a, b and c, disagree on alpha, from 0 to 1, shape (M, CANDIDATE_COUNT).
+def _disagreement(a: Int16Array, b: Int16Array, c: Int16Array) -> Float32Array:
+    """Return how much two channels, codes (2, M), disagree on alpha, from 0 to 1, shape (M, CANDIDATE_COUNT).
 
     It is the Geman-McClure penalty d^2 / (d^2 + s^2 + r) of the difference d (Eq. 5), with s `RATIO_NOISE` and r the
     variance from rounding: 1 / 6 squared codes in each channel, half of it from b and at most half from a and c.
     """
-    slope = candidate_responses().slope
-    ratios, heights = zip(*(mixing_ratio(*side) for side in sides), strict=True)
-    rounding = [(slope.take(b, axis=0) / height) ** 2 for (_, b, _), height in zip(sides, heights, strict=True)]
+    ratios, heights = mixing_ratio(a, b, c)
+    rounding = (candidate_responses().slope.take(b, axis=0) / heights) ** 2
     squared = (ratios[0] - ratios[1]) ** 2
     variance = (rounding[0] + rounding[1]) / np.float32(6)
     disagreement: Float32Array = squared / (squared + variance + np.float32(RATIO_NOISE**2))

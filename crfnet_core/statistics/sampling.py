@@ -34,6 +34,24 @@ def half_resolution(planes: Uint8Array) -> Uint8Array:
     return means
 
 
+def sampled_lines(planes: Uint8Array) -> Uint8Array:
+    """Return every second row and every second column of planes (3, N, N), the channels first, shape (3, 2, N, lines).
+
+    The samples of a line are in the third axis: those in a row of all lines are whole blocks of memory.
+    """
+    return np.stack([planes[:, ::2].transpose(0, 2, 1), planes[:, :, ::2]], axis=1)
+
+
+def samples_in_a_row(lines: Uint8Array, stride: int, count: int) -> Row:
+    """Return `count` samples in a row, `stride` apart, of `sampled_lines`, each array of shape (3, M).
+
+    At large strides fewer lines are looked at: the same as in `rows_and_columns`, in another order.
+    """
+    size, skip = lines.shape[2] - (count - 1) * stride, max(1, stride // 8)
+    starts = range(0, count * stride, stride)
+    return tuple(lines[:, :, start : start + size, ::skip].reshape(len(lines), -1) for start in starts)
+
+
 def rows_and_columns(planes: Uint8Array, stride: int, count: int) -> tuple[Row, Row]:
     """Return `count` samples in a row, `stride` apart, along the rows and along the columns of planes (..., N, N).
 

@@ -6,11 +6,13 @@ of docs/METHOD.md). How far it is from equal is summed for each of the candidate
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, both_directions, evenly_spread
-from crfnet_core.types import BoolArray, Float32Array, IndexArray, Uint8Array
+from crfnet_core.types import Float32Array, Uint8Array
 
 #: Ranges in codes of the difference between two samples: weak shading, and strong.
 LITTLE, MUCH = (4, 24), (24, 80)
@@ -36,12 +38,38 @@ SHAPES = {"shading": (len(SHADING), CANDIDATE_COUNT), "shading_counts": (len(SHA
 
 def shading_parts(planes: Uint8Array) -> dict[str, Float32Array]:
     """Return how much the channels of planes (3, N, N) disagree on shading, and of how many pairs: see `SHAPES`."""
-    rows = {stride: both_directions(planes, stride, 2) for stride in dict(SHADING)}
-    sums, counts = zip(*(shading_sums(rows[stride], change) for stride, change in SHADING), strict=True)
+    pairs = {stride: Pairs.among(both_directions(planes, stride, 2)) for stride in dict(SHADING)}
+    sums, counts = zip(*(shading_sums(pairs[stride], change) for stride, change in SHADING), strict=True)
     return {"shading": np.stack(sums), "shading_counts": np.stack(counts)}
 
 
-def shading_sums(row: Row, change: tuple[int, int]) -> tuple[Float32Array, Float32Array]:
+@dataclass(frozen=True)
+class Pairs:
+    """Two samples of all channels in a row, codes (3, M), and whether shading can be seen in them.
+
+    Parameters
+    ----------
+    first, second : ndarray, uint8, shape (3, M)
+        The samples.
+    difference : ndarray, uint8, shape (M,)
+        The largest difference of a channel, in codes; 0 where a sample is gray, black or clipped.
+    """
+
+    first: Uint8Array
+    second: Uint8Array
+    difference: Uint8Array
+
+    @classmethod
+    def among(cls, row: Row) -> Pairs:
+        """Return the pairs of two samples in a row, each uint8 (3, M)."""
+        first, second = row
+        low, high = np.minimum(first, second), np.maximum(first, second)
+        is_seen = (low.min(axis=0) > DARKEST) & (high.max(axis=0) < BRIGHTEST)
+        is_seen &= first.max(axis=0) - first.min(axis=0) > LEAST_CHROMA
+        return cls(first, second, (high - low).max(axis=0) * is_seen)
+
+
+def shading_sums(pairs: Pairs, change: tuple[int, int]) -> tuple[Float32Array, Float32Array]:
     """Return how much the channels disagree on shading at each candidate, (CANDIDATE_COUNT,), and of how many pairs.
 
     The disagreement of a pair of channels is the Geman-McClure penalty d^2 / (d^2 + r) of the difference d of their
@@ -50,33 +78,21 @@ def shading_sums(row: Row, change: tuple[int, int]) -> tuple[Float32Array, Float
 
     Parameters
     ----------
-    row : tuple of two ndarrays, uint8, shape (3, M)
-        Two samples in a row, of all channels.
+    pairs : Pairs
+        Pairs of samples.
     change : tuple of int
-        Codes between the samples, least and most.
+        Codes between the samples, least and most; above 0.
     """
     responses = candidate_responses()
-    index = _shaded(row, change)
-    ratios, variances = [], []
-    for a, b in zip(*row, strict=True):  # of one channel, (M,)
-        first, second = a.take(index), b.take(index)
-        ratios.append(responses.log_irradiance.take(first, axis=0) - responses.log_irradiance.take(second, axis=0))
-        relative_slope = responses.slope.take(first, axis=0) / responses.irradiance.take(first, axis=0)
-        variances.append(relative_slope**2 / np.float32(6))  # two roundings of variance 1 / 12
-    sums = np.zeros(CANDIDATE_COUNT, np.float32)
+    is_shading = (pairs.difference >= change[0]) & (pairs.difference <= change[1])
+    index = evenly_spread(is_shading, MOST_COMPARED)
+    first, second = pairs.first.take(index, axis=1), pairs.second.take(index, axis=1)  # (3, len(index))
+    logarithms = responses.log_irradiance
+    ratios = logarithms.take(first, axis=0) - logarithms.take(second, axis=0)  # (3, len(index), CANDIDATE_COUNT)
+    explained = responses.log_variance.take(first, axis=0) + np.float32(OTHER_CHANGE**2 / 2) * ratios**2
+    explained += np.float32(5e-7)
+    sums, ones = np.zeros(CANDIDATE_COUNT, np.float32), np.ones(len(index), np.float32)
     for i, j in CHANNEL_PAIRS:
         squared = (ratios[i] - ratios[j]) ** 2  # (len(index), CANDIDATE_COUNT)
-        other = np.float32(OTHER_CHANGE**2 / 2) * (ratios[i] ** 2 + ratios[j] ** 2)
-        sums += (squared / (squared + variances[i] + variances[j] + other + np.float32(1e-6))).sum(axis=0)
+        sums += ones @ (squared / (squared + explained[i] + explained[j]))
     return sums - sums.mean(), np.array([len(CHANNEL_PAIRS) * len(index)], np.float32)
-
-
-def _shaded(row: Row, change: tuple[int, int]) -> IndexArray:
-    """Return the indices of coloured samples, neither black nor clipped, that differ by as much as shading does."""
-    a, b = row
-    low, high = np.minimum(a, b), np.maximum(a, b)
-    most = (high - low).max(axis=0)
-    is_shading: BoolArray = (most >= change[0]) & (most <= change[1])
-    is_shading &= (low.min(axis=0) > DARKEST) & (high.max(axis=0) < BRIGHTEST)
-    is_colored = a.max(axis=0) - a.min(axis=0) > LEAST_CHROMA
-    return evenly_spread(is_shading & is_colored, MOST_COMPARED)

@@ -8,11 +8,11 @@ Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 213
 
 from __future__ import annotations
 
+import html
 import re
 from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
-from xml.sax.saxutils import escape
 
 import numpy as np
 
@@ -47,7 +47,7 @@ def write_clf(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None
     depth = 'inBitDepth="32f" outBitDepth="32f"'
     lines = ['<?xml version="1.0" encoding="UTF-8"?>']
     lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{lut.identity}" compCLFversion="3.0">')
-    lines += [f"    <Description>{escape(comment)}</Description>" for comment in lut.comments]
+    lines += [f"    <Description>{html.escape(comment, quote=False)}</Description>" for comment in lut.comments]
     if lut.domain != (0.0, 1.0):
         ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)
         lines += [f"    <Range {depth}>", *(f"        <{key}>{end:.9g}</{key}>" for key, end in ends), "    </Range>"]

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response import BLOCK, ResponseCurve
 from crfnet_core.types import Float64Array
 from ocio.defaults import LUT_LENGTH
 
@@ -103,15 +103,27 @@ class Lut1D:
             Outputs between the first and the last value.
         """
         inputs = _floating(pixels)
+        outputs = np.empty(inputs.shape, inputs.dtype)
+        values = self.values.astype(inputs.dtype)
+        source, target, steps = inputs.reshape(-1), outputs.reshape(-1), np.diff(values)
+        for start in range(0, source.size, BLOCK):
+            block = np.s_[start : start + BLOCK]
+            position = self._position(source[block])
+            below = np.minimum(position, values.size - 2).astype(np.intp)
+            position -= below.astype(position.dtype)
+            position *= steps.take(below)
+            np.add(values.take(below), position, out=target[block])
+        return outputs
+
+    def _position(self, inputs: NDArray[np.floating]) -> NDArray[np.floating]:
+        """Return where inputs lie among the entries, from 0 to the last; NaN at 0."""
         kind, last = inputs.dtype.type, self.values.size - 1
         low, high = self.domain
-        position = inputs
         if self.domain != (0.0, 1.0):
-            position = position * kind(1 / (high - low)) + kind(-low / (high - low))
-        position = np.fmin(np.fmax(position * kind(last), 0), last)  # unlike np.clip, fmax gives 0 for NaN
-        below = np.minimum(position.astype(np.int32), last - 1)
-        values = self.values.astype(kind)
-        return np.asarray(values[below] + (position - below.astype(kind)) * np.diff(values)[below], dtype=kind)
+            inputs = inputs * kind(1 / (high - low)) + kind(-low / (high - low))
+        position = inputs * kind(last)
+        np.fmax(position, 0, out=position)  # unlike np.clip, it gives 0 for NaN
+        return np.fmin(position, last, out=position)
 
     def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the input that gives every pixel, clamped to the domain; NaN gives the low end of the domain.

@@ -84,8 +84,8 @@ def _candidates(part: Sequence[int], key_numbers: Sequence[int]) -> list[int]:
 
 def _glimpse(photo: Photo) -> Float32Array:
     """Return a coarse pick of a frame's brightness, the mean of the channels, shape (h, w)."""
-    step = max(1, max(photo.pixels.shape[:2]) // SAMPLES)
-    glimpse: Float32Array = photo.pixels[::step, ::step].mean(axis=2)
+    step = max(1, max(photo.shape[:2]) // SAMPLES)
+    glimpse: Float32Array = photo[::step, ::step].mean(axis=2)
     return glimpse
 
 

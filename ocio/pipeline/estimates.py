@@ -183,7 +183,7 @@ def estimate_photographs(
                 settings.append(CameraSettings.of(photo.metadata))
                 if not previews:
                     stride = _stride(facts[0])
-                    previews.append(photo.pixels[::stride, ::stride].copy())
+                    previews.append(photo[::stride, ::stride].copy())
                 if index == 0:
                     tags.append(photo.metadata.color if photo.metadata else ColorTags())
                     plates.append(plate)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -155,23 +156,29 @@ def write_estimate(
     CRFNetError
         If a file cannot be written, or a photograph has changed or gone.
     """
-    for path in files.luts:
-        write_lut(path, light.lut)
-    if files.forward:
-        forward = forward_lut(light.lut)
-        for path in files.forward:
-            write_lut(path, forward)
-    if files.linear:
-        # Each photograph is read again: see `estimate_photographs`.
-        for plate, linear in zip(estimated.plates, files.linear, strict=True):
-            linearize_plates(plate, (linear,), light.lut, plates)
-    if files.sheet:
-        _write_sheet(files.sheet, estimated)
+    with ThreadPoolExecutor(1) as pool:  # OpenEXR compresses without Python, which draws the sheet meanwhile
+        linear = pool.submit(_write_linear, files, estimated, light, plates) if files.linear else None
+        for path in files.luts:
+            write_lut(path, light.lut)
+        if files.forward:
+            forward = forward_lut(light.lut)
+            for path in files.forward:
+                write_lut(path, forward)
+        if files.sheet:
+            _write_sheet(files.sheet, estimated)
+        if linear:
+            linear.result()
     document = estimate_document(estimated.estimate, estimated.facts, files, light)
     document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
     atomic_write_text(files.report, json_text(document), error=PlateError)
     return document
+
+
+def _write_linear(files: OutputFiles, estimated: PhotographEstimate, light: PlateLight, plates: PlateOptions) -> None:
+    """Write the linear plates; each photograph is read again: see `estimate_photographs`."""
+    for plate, linear in zip(estimated.plates, files.linear, strict=True):
+        linearize_plates(plate, (linear,), light.lut, plates)
 
 
 def _write_sheet(path: Path, estimated: PhotographEstimate) -> None:

@@ -37,7 +37,7 @@ class PhotoFacts:
     @classmethod
     def of(cls, photo: Photo) -> PhotoFacts:
         """Return the facts of a photograph."""
-        height, width = photo.pixels.shape[:2]
+        height, width = photo.shape[:2]
         has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
         return cls(photo.path.name, width, height, photo.bit_depth, has_gain_map)
 

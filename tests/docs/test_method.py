@@ -9,7 +9,7 @@ import pytest
 
 from crfnet_core import emor, response, windows
 from crfnet_core.network import pooling
-from crfnet_core.posterior import Family, ResponseBank, evidence, posterior, verdict
+from crfnet_core.posterior import Family, ResponseBank, evidence, posterior, responses, verdict
 from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
 from ocio.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
 
@@ -149,7 +149,7 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"holds {len(ResponseBank.load().families)} responses in seven families",
         f"| film | {ResponseBank.load().families.count(Family.FILM)} |",
         f"with a probability of {posterior.BAND:.0%}".replace("%", " %"),
-        f"at {posterior.BAND_KNOTS} irradiances",
+        f"at {len(responses.BAND_SAMPLES)} irradiances",
         f"or $u_{{stops}}$ is above {verdict.USABLE_STOPS:g}",
         f"$u_{{stops}}$ is at most {verdict.GOOD_STOPS:g} and $u$ at most {verdict.GOOD_ERROR:g}",
         f"at {signature(inverse_response_lut).parameters['length'].default} uniform brightnesses",
