@@ -15,6 +15,7 @@ from ocio.luts.files import READERS
 from ocio.luts.rgb_lut import AnyLut
 from ocio.movies.frames import MovieFrames
 from ocio.movies.source import find_source
+from ocio.movies.stream import check_progressive
 from ocio.output_files import check_folder, output_folder
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
@@ -23,6 +24,8 @@ from ocio.plates.linear import linear_targets, linearize_plates
 def run(arguments: argparse.Namespace) -> None:
     """Write plates as linear EXR through a LUT, or through a response estimated from several of the frames."""
     sequence = find_source(arguments.plates, arguments.frames)
+    if isinstance(sequence, MovieFrames):
+        check_progressive(sequence.movie)
     targets = linear_targets(arguments.out, sequence)
     folder = Path(arguments.out).parent
     check_folder(folder)

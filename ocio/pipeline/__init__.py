@@ -24,6 +24,7 @@ from ocio.pipeline.estimates import (
     load_network,
     load_prior,
     response_lut,
+    sampled_photographs,
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
 from ocio.pipeline.manifest import MANIFEST, PhotographRecord
@@ -49,6 +50,7 @@ __all__ = [
     "plan_outputs",
     "response_lut",
     "response_to_compare",
+    "sampled_photographs",
     "write_calibration",
     "write_outputs",
 ]
