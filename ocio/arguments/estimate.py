@@ -6,7 +6,7 @@ from pathlib import Path
 
 import shtab
 
-from ocio.arguments.parts import Commands, add_command, add_network, add_plate, count, positive
+from ocio.arguments.parts import Commands, add_command, add_frames, add_network, add_plate, count, positive
 from ocio.defaults import LUT_LENGTH, WINDOWS
 
 EXAMPLES = """examples:
@@ -15,6 +15,7 @@ EXAMPLES = """examples:
   crfnet estimate cam_a.jpg cam_b.jpg --each --out look        one response each
   crfnet estimate photographs/ --each --no-sheet --no-linear --out responses        a whole folder; can be continued
   crfnet estimate clip.mp4 --out look               a movie: some of its frames, one response
+  crfnet estimate shot.%04d.dpx --frames 1001-1100 --out look        a sequence: some of these frames
   crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
 
 For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
@@ -25,11 +26,16 @@ def add(commands: Commands) -> None:
     """Add `crfnet estimate`."""
     parser = add_command(commands, "estimate", "estimate the response of the camera that took a photograph", EXAMPLES)
     photos = parser.add_argument(
-        "photos", nargs="+", type=Path, metavar="PHOTO", help="JPEG, HEIC, PNG, TIFF, DPX and others, or a movie"
+        "photos",
+        nargs="+",
+        type=Path,
+        metavar="PHOTO",
+        help="JPEG, HEIC, PNG, TIFF, DPX and others, a movie, or a sequence",
     )
     photos.complete = shtab.FILE  # type: ignore[attr-defined]
     out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    add_frames(parser)
     parser.add_argument(
         "--each", action="store_true", help="one response per photograph, not one for all; PHOTO may be a folder"
     )

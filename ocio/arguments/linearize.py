@@ -6,7 +6,7 @@ from pathlib import Path
 
 import shtab
 
-from ocio.arguments.parts import Commands, add_command, add_network, add_plate
+from ocio.arguments.parts import Commands, add_command, add_frames, add_network, add_plate
 
 EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
@@ -37,7 +37,7 @@ def add(commands: Commands) -> None:
         help="the response: a LUT (.spi1d, .cube, .clf, .csp, .3dl), or as crfnet convert reads it",
     )
     lut.complete = shtab.FILE  # type: ignore[attr-defined]
-    parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
+    add_frames(parser)
     parser.add_argument(
         "--encoded", action="store_true", help="OpenEXR plates that do not say it hold encoded values, not linear ones"
     )

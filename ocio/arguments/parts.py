@@ -107,6 +107,11 @@ def add_plate(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
 
 
+def add_frames(parser: argparse.ArgumentParser) -> None:
+    """Add --frames."""
+    parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
+
+
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Add --json."""
     parser.add_argument("--json", action="store_true", help="print one JSON document instead of words")

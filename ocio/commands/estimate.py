@@ -31,11 +31,13 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.each:
         _run_each(arguments, options, outputs)
         return
-    photos: list[Path] = arguments.photos
+    photos = pipeline.sampled_photographs(arguments.photos, arguments.frames)
     plan = pipeline.plan_outputs(arguments.out, photos, plate_options(arguments), outputs)
     prior, network = pipeline.load_prior(options), pipeline.load_network(options)
     with progress_bar("windows") as progress:
-        estimated = pipeline.estimate_photographs(photos, network, prior, options, progress=progress)
+        estimated = pipeline.estimate_photographs(
+            photos, network, prior, options, frames=arguments.frames, progress=progress
+        )
     document = pipeline.write_outputs(plan, estimated)
     if arguments.json:
         print_json({"folder": str(arguments.out), "estimates": [document]})
@@ -45,6 +47,8 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: OutputOptions) -> None:
     """Estimate one response of each photograph; those that fail are named at the end."""
+    if arguments.frames:
+        raise PhotoError("--frames chooses the frames of one response, --each wants one of each photograph; drop one")
     photographs = pipeline.find_photographs(arguments.photos)
     tasks = pipeline.plan_each(arguments.out, photographs, options, plate_options(arguments), outputs)
     with progress_bar("photographs") as progress:

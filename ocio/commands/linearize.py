@@ -16,6 +16,7 @@ from ocio.luts.files import READERS
 from ocio.luts.rgb_lut import AnyLut
 from ocio.movies.frames import MovieFrames
 from ocio.movies.source import find_source
+from ocio.movies.stream import check_progressive
 from ocio.output_files import check_folder, output_folder
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
@@ -26,6 +27,8 @@ def run(arguments: argparse.Namespace) -> None:
     if arguments.lut and arguments.camera:
         raise CameraError("--lut and --camera both name a response; give one of them")
     sequence = find_source(arguments.plates, arguments.frames)
+    if isinstance(sequence, MovieFrames):
+        check_progressive(sequence.movie)
     targets = linear_targets(arguments.out, sequence)
     folder = Path(arguments.out).parent
     check_folder(folder)

@@ -49,10 +49,12 @@ def is_movie(path: Path) -> bool:
     )
 
 
-def ffmpeg_line(path: Path) -> str:
+def ffmpeg_line(path: Path, *, filters: str = "") -> str:
     """Return the command line by which FFmpeg makes PNG files of all frames, at full depth, each frame once."""
     pattern = path.with_name(path.stem.replace("%", "_") + ".%04d.png")
-    return f"ffmpeg -i {shlex.quote(str(path))} -vsync passthrough -pix_fmt rgb48be {shlex.quote(str(pattern))}"
+    filtered = ["-vf", filters] if filters else []
+    command = ["ffmpeg", "-i", str(path), *filtered, "-vsync", "passthrough", "-pix_fmt", "rgb48be", str(pattern)]
+    return shlex.join(command)
 
 
 @contextmanager

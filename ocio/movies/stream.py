@@ -17,7 +17,7 @@ from crfnet_core.metadata.color_tags import ColorTags
 from ocio.movies.color import Coding
 from ocio.movies.conversion import bit_depth
 from ocio.movies.index import FrameIndex, read_index
-from ocio.movies.library import opened, undecodable
+from ocio.movies.library import ffmpeg_line, opened, undecodable
 from ocio.movies.log_tags import log_curve
 from ocio.movies.timecode import Timecode
 
@@ -91,9 +91,24 @@ class MovieStream:
             f"tagged {self.color.transfer}" if self.color.transfer else "",
             f"timecode {self.timecode}" if self.timecode else "",
             *(f"the stream {assumption}" for assumption in self.coding.assumptions),
-            "interlaced: deinterlace it first, its frames mix two moments" if self.is_interlaced else "",
+            "interlaced: its frames mix two moments, so deinterlace it for linear plates" if self.is_interlaced else "",
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
+
+
+def check_progressive(movie: MovieStream) -> None:
+    """Refuse a movie whose frames hold two fields: how they become one picture is the user's to choose.
+
+    Raises
+    ------
+    PlateError
+        If it is interlaced, with the line by which FFmpeg deinterlaces it.
+    """
+    if movie.is_interlaced:
+        raise PlateError(
+            f"{movie.path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
+            f" {ffmpeg_line(movie.path, filters='bwdif=send_frame')} (without -vf, if both fields show the same moment)"
+        )
 
 
 def read_stream(path: Path) -> MovieStream:

@@ -26,6 +26,7 @@ from ocio.pipeline.estimates import (
     load_prior,
     model_label,
     response_lut,
+    sampled_photographs,
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
 from ocio.pipeline.manifest import MANIFEST, PhotographRecord
@@ -53,6 +54,7 @@ __all__ = [
     "plan_outputs",
     "response_lut",
     "response_to_compare",
+    "sampled_photographs",
     "write_calibration",
     "write_outputs",
 ]

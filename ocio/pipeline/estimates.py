@@ -28,7 +28,7 @@ from ocio.movies.frames import MovieFrames
 from ocio.movies.library import is_movie
 from ocio.movies.selection import chosen_photos
 from ocio.options import EstimateOptions
-from ocio.plates.frames import FrameSequence, sample_frames
+from ocio.plates.frames import FramePattern, FrameSequence, find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -134,12 +134,36 @@ def model_label(model: Path | None) -> str:
     return ModelConfig.read(model_folder(model) / "model.json").label
 
 
+def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> list[Path]:
+    """Return the files to estimate one response from: of a sequence some frames, spread over it, and all else as it is.
+
+    Parameters
+    ----------
+    names : sequence of Path
+        Photographs, movies, and sequences of frames as `find_frames` knows them.
+    frames : str or None
+        The frames of a sequence to choose from, as in `parse_frames`; all by default. Those of a movie are chosen in
+        `estimate_photographs`.
+
+    Raises
+    ------
+    PlateError
+        If a sequence has no such frames, or `frames` is malformed or given for a single photograph.
+    """
+    found: list[Path] = []
+    for name in names:
+        is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
+        found += [name] if is_single or is_movie(name) else sample_frames(find_frames(name, frames))
+    return found
+
+
 def estimate_photographs(
     paths: Sequence[Path],
     network: ResponseNetwork,
     prior: Prior,
     options: EstimateOptions,
     *,
+    frames: str | None = None,
     progress: Progress | None = None,
 ) -> PhotographEstimate:
     """Read photographs one by one and estimate the response that they have in common.
@@ -159,6 +183,8 @@ def estimate_photographs(
         See `load_prior`.
     options : EstimateOptions
         Windows, seed, and whether metadata counts.
+    frames : str or None
+        The frames of a movie to choose from, as in `ocio.plates.frames.parse_frames`; all by default.
     progress : callable or None
         Called with (done, total) after every window.
 
@@ -177,7 +203,7 @@ def estimate_photographs(
 
     def photos() -> Iterator[Photo]:
         for path in paths:
-            source = MovieFrames.find(path) if is_movie(path) else FrameSequence((path,))
+            source = MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
             for index, (plate, photo) in enumerate(_photos(source)):
                 facts.append(PhotoFacts.of(photo))
                 settings.append(CameraSettings.of(photo.metadata))

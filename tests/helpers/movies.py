@@ -32,6 +32,10 @@ CODECS = {
 }
 
 
+#: Options by which FFmpeg encodes two fields a frame.
+INTERLACED = "-vf interlace -c:v libx264 -preset ultrafast -flags +ildct+ilme -pix_fmt yuv420p"
+
+
 def run_ffmpeg(*arguments: object) -> bytes:
     """Run FFmpeg and return what it writes to its standard output; skip the test where it, or an encoder, is absent."""
     if shutil.which("ffmpeg") is None:

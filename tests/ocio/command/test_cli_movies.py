@@ -1,6 +1,7 @@
 """`crfnet` on movies: what it writes, says and refuses."""
 
 import json
+import re
 import shlex
 import signal
 import subprocess
@@ -16,7 +17,7 @@ from ocio.configs.files import load_config
 from ocio.luts.files import read_lut
 from ocio.movies import decoding
 from tests.helpers.folders import listed, tree
-from tests.helpers.movies import make_movie, run_ffmpeg
+from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
 from tests.helpers.plates import read_exr
 from tests.helpers.processes import start_interruptible
 
@@ -241,6 +242,24 @@ def test_the_printed_line_makes_all_frames_like_the_one_that_was_written(crfnet,
     assert dict(zip(words[7::2], words[8::2], strict=True)) == dict(zip(chosen[::2], chosen[1::2], strict=True))
     config = load_config(tmp_path / "look" / "config.ocio")
     assert config.getColorSpaceFromFilepath(words[6].replace("%04d", "0001"))[0] == "ACEScg"
+
+
+@needs_av
+def test_an_interlaced_movie_is_estimated_from_but_linearized_after_deinterlacing(
+    crfnet, fixed_model, look, tmp_path, monkeypatch
+):
+    monkeypatch.chdir(tmp_path)
+    make_movie(tmp_path / "clip.mp4", INTERLACED, source="testsrc2=size=320x240:rate=24:duration={seconds}")
+    done = crfnet("estimate", "clip.mp4", "--out", "look", "--model", fixed_model, "--no-sheet")
+    assert (done.code, "; interlaced: its frames mix two moments" in done.out) == (0, True)
+    done = crfnet("linearize", "clip.mp4", "--lut", look / "plate.spi1d", "--out", "linear/clip.%04d.exr")
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+    assert "clip.mp4: is interlaced" in done.err
+    run_ffmpeg(*shlex.split(re.search(r"ffmpeg (-i .*\.png) \(without", done.err)[1]))
+    frames = listed(tmp_path)
+    assert {"clip.0001.png", "clip.0003.png"} <= set(frames)
+    done = crfnet("linearize", "clip.%04d.png", "--lut", look / "plate.spi1d", "--out", "linear/clip.%04d.exr")
+    assert (done.code, listed(tmp_path / "linear")[:1]) == (0, ["clip.0001.exr"])
 
 
 @needs_av

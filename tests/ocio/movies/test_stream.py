@@ -13,9 +13,9 @@ from ocio.movies import log_tags
 from ocio.movies.frames import MovieFrames
 from ocio.movies.header import frame_header, movie_metadata
 from ocio.movies.library import is_movie
-from ocio.movies.stream import read_stream
+from ocio.movies.stream import check_progressive, read_stream
 from tests.helpers.images import write_image
-from tests.helpers.movies import make_movie, run_ffmpeg
+from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
 
@@ -215,5 +215,11 @@ def test_sound_alone_is_refused(tmp_path):
 
 
 def test_interlaced_movies_are_named(tmp_path):
-    options = "-vf interlace -c:v libx264 -preset ultrafast -flags +ildct+ilme -pix_fmt yuv420p"
-    assert "interlaced: deinterlace it first" in str(read_stream(make_movie(tmp_path / "a.mp4", options)))
+    found = read_stream(make_movie(tmp_path / "a.mp4", INTERLACED))
+    assert "; interlaced: its frames mix two moments" in str(found)
+    with pytest.raises(PlateError, match="is interlaced"):
+        check_progressive(found)
+
+
+def test_progressive_movies_pass(movie):
+    check_progressive(read_stream(movie))

@@ -1,0 +1,60 @@
+"""The code at which a camera clips: found where it lies below the largest, and not where it does not."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.calibration import calibrate_stack
+from crfnet_core.calibration.frames import read_frames, white_level
+from crfnet_core.metrics import scale_error
+from tests.helpers.images import write_image
+from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
+
+#: Scenes: large flat parts, and detail in which JPEG rings.
+SCENES = ("interior", "forest", "courtyard")
+
+
+@pytest.fixture
+def white_of(root, tmp_path):
+    """The white that is found of a stack: white_of("forest", white=251 / 255) -> code."""
+
+    def found(scene, **options):
+        light = light_of(root / "tests" / "data" / "lights" / f"{scene}.exr")[::2, ::2]
+        paths = make_stack(tmp_path, light, emor_response(100), StackOptions(frames=6, **options))
+        return 255 * white_level(read_frames(paths))
+
+    return found
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize("code", [240, 251])
+@pytest.mark.parametrize("quality", [0, 92])
+def test_a_camera_that_clips_below_the_largest_code_is_found(white_of, scene, code, quality):
+    assert white_of(scene, white=code / 255, quality=quality) == pytest.approx(code)
+
+
+@pytest.mark.parametrize("scene", SCENES)
+@pytest.mark.parametrize(
+    "options",
+    [{"quality": 0}, {"quality": 75, "shot_noise": 1e-3}, {"brightest": 97, "ceiling": 0.5}, {"step": 1}],
+    ids=["PNG", "noisy", "white unseen", "third stops"],
+)
+def test_a_camera_that_clips_at_the_largest_code_is_left_alone(white_of, scene, options):
+    assert white_of(scene, **options) == 255
+
+
+def test_an_even_surface_in_one_frame_is_no_white(tmp_path):
+    """A wall is at code 245 in one frame, and at another code in the next."""
+    wall = np.random.default_rng(0).integers(0, 236, (64, 64, 3), dtype=np.uint8)
+    paths = []
+    for index, code in enumerate((120, 180, 245, 250)):
+        wall[:20] = code
+        paths.append(write_image(tmp_path / f"{index}.png", wall, ExposureTime=2.0**index))
+    assert white_level(read_frames(paths)) == 1
+
+
+def test_the_scale_of_a_detailed_stack_that_clips_at_code_251_is_right(root, tmp_path):
+    """JPEG's ringing hid that white, and the scale was off by stops without a warning."""
+    light, response = light_of(root / "tests" / "data" / "lights" / "forest.exr"), emor_response(100)
+    found = calibrate_stack(make_stack(tmp_path, light, response, StackOptions(white=251 / 255)))
+    assert abs(scale_error(response, found.curve)) < 0.05
+    assert "white is 251 of 255 codes: the response ends there" in found.warnings

@@ -1,0 +1,77 @@
+"""`crfnet estimate --frames`: a response from some frames of a sequence or of a movie."""
+
+import json
+import shutil
+
+import pytest
+
+from ocio.arguments.parts import BAD_INPUT
+from tests.helpers.folders import listed
+from tests.helpers.movies import make_movie
+
+
+@pytest.fixture
+def estimated(crfnet, fixed_model, tmp_path):
+    """Estimate from a name with options, and return the names of the photographs in the document."""
+
+    def names(name, *more):
+        arguments = ("--out", tmp_path / "look", "--model", fixed_model, "--no-sheet", "--no-linear", "--json", *more)
+        done = crfnet("estimate", name, *arguments)
+        assert (done.code, done.err) == (0, "")
+        return [photo["name"] for photo in json.loads(done.out)["estimates"][0]["photographs"]]
+
+    return names
+
+
+@pytest.fixture
+def shot(plate, tmp_path):
+    """A sequence of the bundled photograph, frames 1001 to 1012."""
+    folder = tmp_path / "shot"
+    folder.mkdir()
+    for number in range(1001, 1013):
+        shutil.copy(plate, folder / f"shot.{number}.jpg")
+    return folder
+
+
+def frames(*numbers):
+    return [f"shot.{number}.jpg" for number in numbers]
+
+
+def test_a_sequence_gives_some_of_its_frames(estimated, shot, tmp_path):
+    assert estimated(shot / "shot.%04d.jpg") == frames(1001, 1003, 1004, 1006, 1007, 1009, 1010, 1012)
+    assert "shot.1001.spi1d" in listed(tmp_path / "look")
+
+
+@pytest.mark.parametrize("name", ["shot.####.jpg", ""], ids=["pattern", "folder"])
+def test_frames_of_a_sequence_are_chosen(estimated, shot, name):
+    assert estimated(shot / name, "--frames", "1002-1010x4") == frames(1002, 1006, 1010)
+
+
+def test_a_pattern_may_name_its_frames(estimated, shot):
+    assert estimated(shot / "shot.[1003-1004].jpg") == frames(1003, 1004)
+
+
+def test_frames_of_a_movie_are_chosen(estimated, tmp_path):
+    pytest.importorskip("av", reason="needs PyAV: the extra video")
+    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
+    movie = make_movie(tmp_path / "clip.mp4", "-c:v libx264 -preset ultrafast -g 1", seconds=1, source=source)
+    found = estimated(movie, "--frames", "10-12")
+    assert set(found) <= {f"clip.mp4 frame {number}" for number in (10, 11, 12)}
+    assert found
+
+
+@pytest.mark.parametrize(
+    ("name", "more", "says"),
+    [
+        ("shot.%04d.jpg", ("--frames", "1-9"), "there are 1001-1012; check the name and the frames"),
+        ("shot.%04d.jpg", ("--frames", "a"), "is no frame or range"),
+        ("shot.1001.jpg", ("--frames", "1001"), "is a single file, which has no frames to choose from"),
+        ("shot.1001.jpg", ("--frames", "1001", "--each"), "--frames chooses the frames of one response"),
+        ("other.%04d.jpg", (), "there is no frame of this name"),
+    ],
+)
+def test_what_has_no_such_frames_is_refused(crfnet, fixed_model, shot, tmp_path, name, more, says):
+    done = crfnet("estimate", shot / name, "--out", tmp_path / "look", "--model", fixed_model, *more)
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+    assert says in done.err
+    assert not (tmp_path / "look").exists()
