@@ -14,7 +14,8 @@ import bpy
 from .work.errors import AddonError
 
 #: What comes as wheels with the add-on, and what comes with Blender.
-_IN_WHEELS, _IN_BLENDER = ("crfnet_core", "ocio", "onnxruntime"), ("OpenImageIO", "PyOpenColorIO", "numpy")
+_IN_WHEELS = ("crfnet_core", "ocio", "onnxruntime", "platformdirs")
+_IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 
 def load(module: str) -> ModuleType:

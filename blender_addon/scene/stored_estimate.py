@@ -109,6 +109,12 @@ def warnings(datablock: Datablock) -> list[str]:
     return datablock[KEY]["warnings"].splitlines()
 
 
+def camera_models(datablock: Datablock) -> list[str]:
+    """Return make and model of the cameras that a plate's photographs name."""
+    origins = json.loads(datablock[KEY].get("metadata", "[]"))
+    return [origin["camera"] for origin in origins if origin["camera"]]
+
+
 def curve_and_band(datablock: Datablock) -> Float64Array:
     """Return the stored response and the lower and upper end of its band, shape (3, 1024)."""
     entries = datablock[KEY]

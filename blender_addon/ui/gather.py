@@ -63,6 +63,7 @@ def gather_job(
                 threads=preferences().threads,
                 prior=_prior(chosen, is_needed=not is_estimated),
                 use_metadata=not chosen["ignore_metadata"],
+                camera=chosen["camera"].strip() or None,
             ),
             is_forced=chosen["force"],
             stored=stored_estimate.restored(datablock) if is_estimated else None,

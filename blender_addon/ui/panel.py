@@ -160,12 +160,13 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
 
 
 def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw what few plates need, closed at first: which responses to expect, metadata, and log or linear plates."""
+    """Draw what few plates need, closed at first: a stored camera, what to expect, metadata, log or linear plates."""
     header, body = layout.panel("CRF_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
         return
     column = _split_column(body)
+    column.prop(settings, "camera")
     column.prop(settings, "prior")
     if settings.prior == "file":
         column.prop(settings, "prior_file")

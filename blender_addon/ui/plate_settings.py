@@ -1,9 +1,13 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The settings of one plate, stored on its image or clip and so in the .blend file."""
 
+from contextlib import suppress
+
 import bpy
 
+from .. import lazy_import
 from ..scene import stored_estimate
+from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
 
@@ -36,6 +40,16 @@ _MODES = {number: name for name, number in _NUMBERS.items()}
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
+
+
+def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
+    """Return the stored cameras that hold a text, those of the plate's model first; none without the wheels."""
+    datablock = chosen.id_data
+    models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
+    with suppress(AddonError):
+        found: list[tuple[str, str]] = lazy_import.load(".work.cameras").stored_cameras(text, models)
+        return found
+    return []
 
 
 class PlateChoices:
@@ -76,6 +90,11 @@ class PlateChoices:
         name="Estimate Anyway",
         description="Estimate even if the color space or the metadata says that the plate is logarithmic or linear, and"
         " take OpenEXR files for encoded that do not say what they hold",
+    )
+    camera: bpy.props.StringProperty(
+        name="Camera",
+        description="A camera of the library of crfnet camera, whose response is used. Empty: estimated from the plate",
+        search=_stored_cameras,
     )
     prior: bpy.props.EnumProperty(
         name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS

@@ -28,6 +28,7 @@ _IN_BLENDER = {
     "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
     "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
     ", or say with --primaries which all have": "",
+    "crfnet camera list shows them": "choose another Camera under Advanced, or none",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
     "pip install 'av', or save it": "save it",
 }

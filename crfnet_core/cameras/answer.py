@@ -19,10 +19,10 @@ from crfnet_core.types import Float64Array
 #: Deviations of a normal distribution within which 90 % of it lies.
 BAND_DEVIATIONS = 1.645
 
-#: A photograph disagrees if its own estimate is farther away than so many times the E_est that is expected of both:
-#: from a measured response, and from another estimate, which is nearer because it begins at the same prior. At these
-#: 5 % and 0 % of real photographs disagree with their own camera, and 22 % and 40 % with another (docs/CAMERAS.md).
-MEASURED_LIMIT, ESTIMATED_LIMIT = 1.5, 0.6
+#: A photograph disagrees if its own estimate is farther away than so many times the error that is expected of both, in
+#: shape or in E_est: from a measured response, and from another estimate, which is nearer because it begins at the same
+#: prior. docs/CAMERAS.md has the shares of real photographs that disagree with their own camera and with another.
+MEASURED_LIMIT, ESTIMATED_LIMIT = 2.0, 0.7
 
 
 def camera_estimate(camera: Camera, *, model: str, prior: Prior | None = None) -> ResponseEstimate:
@@ -56,15 +56,17 @@ def camera_estimate(camera: Camera, *, model: str, prior: Prior | None = None) -
 def compared(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = None) -> CameraAnswer:
     """Return how far photographs' own estimate is from a camera's response; parameters and errors of `with_camera`."""
     other = camera_estimate(camera, model=own.model, prior=prior)
-    error = estimation_error(other.curve, own.curve)
+    stops, error = shape_error(other.curve, own.curve), estimation_error(other.curve, own.curve)
     limit = MEASURED_LIMIT if camera.measured else ESTIMATED_LIMIT
+    has_shape = stops <= limit * float(np.hypot(own.shape_uncertainty, other.shape_uncertainty))
+    has_curve = error <= limit * float(np.hypot(own.uncertainty, other.uncertainty))
     return CameraAnswer(
         camera.name,
         camera.measured is not None,
         camera.basis,
-        difference_stops=shape_error(other.curve, own.curve),
+        difference_stops=stops,
         difference=error,
-        agrees=error <= limit * float(np.hypot(own.uncertainty, other.uncertainty)),
+        agrees=has_shape and has_curve,
     )
 
 

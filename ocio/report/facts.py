@@ -84,7 +84,7 @@ def camera_words(camera: CameraAnswer) -> str:
 def agreement(camera: CameraAnswer) -> str:
     """Return how far the photographs that were compared with a stored camera are from it."""
     more = "" if camera.agrees else ", more than usual"
-    return f"{camera.difference_stops:.2f} stop and E_est {camera.difference:.2f} away{more}"
+    return f"{camera.difference_stops:.2f} stop (E_est {camera.difference:.2f}) away{more}"
 
 
 def agreeing(estimate: ResponseEstimate) -> str:

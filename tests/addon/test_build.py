@@ -39,8 +39,12 @@ def pythons(wheels):
 
 
 def each_for(*versions):
-    """Our own wheel for every version of Python, the others for each of these."""
-    return {"crfnet": ["py3"], **{each: list(versions) for each in ("onnxruntime", "pi_heif", "pillow")}}
+    """What is pure Python for every version of it, the others for each of these."""
+    return {
+        "crfnet": ["py3"],
+        "platformdirs": ["py3"],
+        **{each: list(versions) for each in ("onnxruntime", "pi_heif", "pillow")},
+    }
 
 
 def test_the_version_is_the_projects(root, manifest):
@@ -83,7 +87,7 @@ def test_intel_macs_have_one_for_the_last_blender_there(manifest):
 def test_one_zip_is_for_the_pythons_of_linux_distributions(manifest):
     wheels = build.platform_wheels(manifest["wheels"], *build.ZIPS["linux-x64-any-python"])
     assert pythons(wheels) == each_for("cp311", "cp312", "cp313", "cp314")
-    assert all("manylinux" in name for name in names(wheels) if not name.startswith("crfnet"))
+    assert all("manylinux" in name for name in names(wheels) if not name.endswith("-any.whl"))
 
 
 def test_a_zips_manifest_lists_what_is_in_it(manifest, manifest_text):

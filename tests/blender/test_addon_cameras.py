@@ -1,0 +1,66 @@
+"""A stored camera in Blender: listed, used, remembered, and refused if it is not there."""
+
+import numpy as np
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def image(addon, plate_file):
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def curve(monkeypatch, tmp_path):
+    """The response of the stored camera "mine"."""
+    from crfnet_core import ResponseCurve
+    from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
+
+    monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
+    curve = ResponseCurve.gamma(2.0)
+    settings = CameraSettings("SONY", "ILCE-7M3")
+    add_measured(CameraLibrary.of_user(), "mine", MeasuredResponse(curve, 0.05, 0.1, "6 exposures", settings))
+    return curve
+
+
+def test_a_chosen_camera_is_the_answer_and_is_remembered(image, curve):
+    from blender_addon.scene.stored_estimate import lines, restored
+
+    bpy.ops.crf.estimate_response(image=image.name, camera="mine")
+    found = restored(image)
+    np.testing.assert_array_equal(found.curve.brightness, curve.brightness)
+    assert (found.camera.name, found.camera.is_measured) == ("mine", True)
+    assert image.camera_response_settings.camera == "mine"
+    assert any("mine" in line for line in lines(image))
+
+
+def test_without_one_the_response_is_estimated(image, curve):
+    from blender_addon.scene.stored_estimate import restored
+
+    bpy.ops.crf.estimate_response(image=image.name)
+    assert restored(image).camera is None
+
+
+def test_a_camera_that_is_not_there_is_told(image, curve):
+    with pytest.raises(RuntimeError, match="choose another Camera under Advanced, or none"):
+        bpy.ops.crf.estimate_response(image=image.name, camera="nobody")
+    assert "camera_response" not in image
+
+
+def test_the_stored_cameras_are_suggested(image, curve):
+    from blender_addon.ui.plate_settings import _stored_cameras
+
+    assert ("mine", "measured from 6 exposures") in _stored_cameras(image.camera_response_settings, bpy.context, "MI")
+
+
+def test_without_the_wheels_none_are_suggested_and_nothing_breaks(image, monkeypatch):
+    from blender_addon import lazy_import
+    from blender_addon.ui.plate_settings import _stored_cameras
+    from blender_addon.work.errors import AddonError
+
+    def fail(module):
+        raise AddonError("crfnet_core cannot be loaded")
+
+    monkeypatch.setattr(lazy_import, "load", fail)
+    assert _stored_cameras(image.camera_response_settings, bpy.context, "") == []

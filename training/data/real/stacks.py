@@ -1,0 +1,130 @@
+"""The exposure stacks of DATA/real_bodies that were measured on the camera's own files, and the settings of its bodies.
+
+Left out are stacks that a program developed or edited, because their response is the program's; those of grade C, whose
+scale is off by half a stop; and bodies of unknown make and model. No file says in which picture mode it was taken: two
+stacks of a body are taken for one setting of it unless their responses differ by more than `SAME_SETTING` standard
+deviations.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.cameras import CameraSettings, MeasuredResponse
+from crfnet_core.cameras.answer import brightness_per_stop
+from crfnet_core.metrics import estimation_error
+from crfnet_core.response import ResponseCurve
+from training.data.real.case_metadata import metadata_of_case
+from training.data.real.file_origin import Editing, editing
+from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
+
+#: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
+SAME_SETTING = 2.0
+
+#: Standard deviation of the shape of the measured responses of DATA/real_bodies, in stops, as its README states it.
+SHAPE_STOPS = 0.05
+
+#: Decimals of the responses: their least step is 1e-7.
+DECIMALS = 8
+
+#: How the names of bodies begin whose make and model nobody knows.
+UNKNOWN_BODY = "unknown"
+
+
+@dataclass(frozen=True)
+class Stack:
+    """A measured exposure stack.
+
+    Parameters
+    ----------
+    measured : Path
+        The file of its response.
+    settings : CameraSettings
+        What its files say.
+    curve : ResponseCurve
+        Its response.
+    error : float
+        Standard deviation of its E_est.
+    frames : int
+        How many frames it has.
+    grade : str
+        A or B.
+    caution : str
+        Why it is less certain, or nothing.
+    """
+
+    measured: Path
+    settings: CameraSettings
+    curve: ResponseCurve
+    error: float
+    frames: int
+    grade: str
+    caution: str
+
+    def is_like(self, other: Stack) -> bool:
+        """Return whether two stacks may be of one setting."""
+        expected = float(np.hypot(self.error, other.error))
+        return estimation_error(self.curve, other.curve) <= SAME_SETTING * expected
+
+
+def settings_of_bodies(data: Path) -> dict[str, list[list[Stack]]]:
+    """Return make and model -> the stacks of each setting, the most certain first.
+
+    Parameters
+    ----------
+    data : Path
+        The data folder.
+    """
+    folder = data / REAL_BODIES
+    stacks = {row["stack"]: _stack(folder, row) for row in case_rows(folder) if _is_taken(row)}
+    bodies: dict[str, list[list[Stack]]] = {}
+    for stack in sorted(stacks.values(), key=lambda stack: (stack.settings.camera, stack.error)):
+        settings = bodies.setdefault(stack.settings.camera, [])
+        like = next((others for others in settings if others[0].is_like(stack)), None)
+        if like is None:
+            settings.append([stack])
+        else:
+            like.append(stack)
+    return bodies
+
+
+def measured_response(stacks: Sequence[Stack]) -> MeasuredResponse:
+    """Return the response of a setting: that of the first of its stacks, with the sensitivities of all."""
+    first = stacks[0]
+    total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
+    shape = min(SHAPE_STOPS, total)
+    best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
+    iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
+    return MeasuredResponse(
+        curve=ResponseCurve(first.curve.brightness.round(DECIMALS)),
+        shape_stops=round(shape, 3),
+        scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
+        source=f"{first.frames} exposures (grade {first.grade}{best})",
+        settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
+        warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
+    )
+
+
+def _is_taken(row: Mapping[str, str]) -> bool:
+    """Return whether the stack of a row is one of the library: see the head of the module."""
+    is_edited = editing(row["exif_software"], use=row["use"]) is Editing.EDITED
+    is_known = not row["body"].startswith(UNKNOWN_BODY)
+    return is_known and row["grade"] in TRUSTED_GRADES and not is_edited
+
+
+def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
+    """Return the stack of a row."""
+    settings = CameraSettings.of(metadata_of_case(row))
+    return Stack(
+        measured=folder / row["gt"],
+        settings=settings if settings.camera else replace(settings, model=row["body"]),
+        curve=read_measured(folder / row["gt"]),
+        error=float(row["uncertainty_L2"]),
+        frames=int(row["n_frames"]),
+        grade=row["grade"],
+        caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
+    )
