@@ -95,8 +95,9 @@ def _fail(problem: BaseException) -> int:
     if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BAD_INPUT
-    text = UNEXPLAINED.get(type(problem), str(problem))
-    _print_error(f"crfnet: error: {' '.join(text.split())}")
+    from crfnet_core.errors import one_line  # as above
+
+    _print_error(f"crfnet: error: {one_line(UNEXPLAINED.get(type(problem), str(problem)))}")
     return BAD_INPUT
 
 

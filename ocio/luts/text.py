@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.errors import LutError
+from crfnet_core.files import read_bytes
 from ocio.luts.lut1d import first_fault, single_precision
 from ocio.luts.rgb_lut import AnyLut, lut_of_columns
 
@@ -28,12 +29,9 @@ class LutText:
         """Return the text of `path`; raise a LutError if it is absent, empty, too large or no text."""
         path = Path(path)
         try:
-            size = path.stat().st_size
-            content = path.read_bytes() if size <= MAX_FILE_SIZE else b""
+            content = read_bytes(path, most=MAX_FILE_SIZE)
         except OSError as problem:
             raise LutError(f"{path}: cannot be read ({problem.strerror}); check the name of the LUT") from problem
-        if size > MAX_FILE_SIZE:
-            raise LutError(f"{path}: has {size // 2**20} MiB, more than any 1D LUT; check the name of the LUT")
         text = content.decode("utf-8-sig", errors="replace")
         if "\0" in text:
             raise LutError(f"{path}: is no text file; give a .spi1d, .cube or .clf LUT")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +11,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CalibrationError, CurveError, PlateError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, read_json
 from crfnet_core.response import ResponseCurve
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
@@ -128,7 +127,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)
     try:
-        samples = json.loads(path.read_text(encoding="utf-8"))["response"]["brightness"]
+        samples = read_json(path)["response"]["brightness"]
         return ResponseCurve.from_samples(samples)
     except OSError as problem:
         raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem
