@@ -48,7 +48,7 @@ class LutText:
         numbers = []
         for token in text.split():
             try:
-                number = float(token)
+                number = float(token.replace("_", " ") if token.isascii() else "")  # Python alone reads 1_0
             except ValueError:
                 remedy = "decimals need a point, not a comma" if "," in token else "the file is damaged"
                 raise self.error(f"{token[:24]!r} is no number; {remedy}: write the LUT again", line=line) from None
@@ -67,6 +67,7 @@ class LutText:
         channels: float,
         domain: tuple[float, float],
         comments: Sequence[str],
+        scale: int = 1,
     ) -> AnyLut:
         """Return the LUT of a table, for each channel if its columns differ.
 
@@ -80,6 +81,8 @@ class LutText:
             The first and the last input.
         comments : sequence of str
             Provenance.
+        scale : int
+            What stands for 1 in the file.
 
         Raises
         ------
@@ -97,12 +100,12 @@ class LutText:
             raise self.error(f"holds {len(entries)} entries and announces {length:g}; the file is cut or altered")
         table = np.reshape(entries, (-1, int(channels)))
         for column in table.T:
-            fault = first_fault(single_precision(column))
+            fault = first_fault(single_precision(column / scale))
             if fault is not None:
                 message = f"{column[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
                 raise self.error(message, line=lines[fault])
         try:
-            return lut_of_columns(table, domain=domain, comments=comments)
+            return lut_of_columns(table / scale, domain=domain, comments=comments)
         except LutError as problem:
             raise self.error(str(problem)) from problem
 
