@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import io
 import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
-from pathlib import Path
-from typing import TextIO
 
 import shtab
 
 from ocio.arguments import calibrate, completion, config, convert, estimate, info, linearize
 from ocio.arguments.parts import BAD_INPUT, Parser
 from ocio.interruption import interruptible
+from ocio.streams import complete_streams, own_stderr
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -28,9 +26,9 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code: 0, `BAD_INPUT`, or 128 and the number of the signal that ended it."""
-    _complete_streams()
+    complete_streams()
     arguments = build_parser().parse_args(argv)
-    with interruptible() as interruption:
+    with own_stderr(), interruptible() as interruption:
         try:
             return _run(arguments, sys.argv if argv is None else argv)
         except BaseException as problem:  # an interrupted import raises all sorts of errors
@@ -74,20 +72,6 @@ def _run_subcommand(arguments: argparse.Namespace) -> None:
         sys.stdout.write(shtab.complete(build_parser(), shell=arguments.shell) + "\n")
         return
     import_module(f"ocio.commands.{arguments.command}").run(arguments)
-
-
-def _complete_streams() -> None:
-    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
-    sys.stdout = sys.stdout or _nowhere()
-    sys.stderr = sys.stderr or _nowhere()
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
-def _nowhere() -> TextIO:
-    """Return a stream that takes everything and keeps nothing."""
-    return Path(os.devnull).open("w", encoding="utf-8")
 
 
 def _fail(problem: BaseException) -> int:

@@ -67,7 +67,7 @@ def _is_same_table(table: OCIO.Lut1DTransform, lut: AnyLut) -> bool:
 
 def _ends(steps: list[OCIO.Transform], domain: tuple[float, float]) -> Float64Array:
     """Return what the steps before the table make of the ends of a domain, shape (2, 3)."""
-    pixels = np.repeat(np.float32(domain), 3)
+    pixels = np.repeat(np.array(domain, dtype=np.float32), 3)
     if steps:
         processor = OCIO.Config.CreateRaw().getProcessor(OCIO.GroupTransform(steps))
         processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)

@@ -37,11 +37,14 @@ class CalibrationPlan:
         The config of the folder, with the camera's colour space.
     lut_length : int
         Entries of the LUTs.
+    overwrite : bool
+        Whether existing files may be replaced.
     """
 
     files: OutputFiles
     config: OCIO.Config
     lut_length: int
+    overwrite: bool = False
 
 
 def plan_calibration(
@@ -78,7 +81,7 @@ def plan_calibration(
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length)
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite)
 
 
 def write_calibration(
@@ -103,7 +106,7 @@ def write_calibration(
     lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
     folder = plan.files.report.parent
     document = calibration_document(calibration, plan.files, comparison)
-    with output_folder(folder), staged_files(folder) as staged:
+    with output_folder(folder), staged_files(folder, overwrite=plan.overwrite) as staged:
         files = plan.files.in_folder(staged)
         for path in files.luts:
             write_lut(path, lut)
