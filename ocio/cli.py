@@ -27,10 +27,9 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code: 0, `BAD_INPUT`, or 128 and the number of the signal that ended it."""
     complete_streams()
-    arguments = build_parser().parse_args(argv)
     with own_stderr(), interruptible() as interruption:
         try:
-            return _run(arguments, sys.argv if argv is None else argv)
+            return _run(build_parser().parse_args(argv), sys.argv if argv is None else argv)
         except BaseException as problem:  # an interrupted import raises all sorts of errors
             if interruption.signal is None and not isinstance(problem, KeyboardInterrupt):
                 raise

@@ -69,7 +69,9 @@ class Session:
         options.log_severity_level = _FATAL
         options.add_session_config_entry("session.load_model_format", "ONNX")  # not what its first bytes call it
         try:
-            self._session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+            self._session = onnxruntime.InferenceSession(
+                graph, options, providers=["CPUExecutionProvider"], enable_fallback=0
+            )
         except _PROBLEMS as problem:
             raise ModelError(
                 f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"

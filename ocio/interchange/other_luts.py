@@ -34,8 +34,9 @@ def read_other_lut(path: Path) -> ResponseFile:
     LutError
         If OpenColorIO refuses the file, it holds a 3D LUT or a matrix, or it falls somewhere.
     """
-    lines = [line.strip() for line in LutText.read(path).lines]  # absent, too large or no text is refused here
-    if "BEGIN METADATA" in lines and "END METADATA" not in lines:  # OpenColorIO would look for it for ever
+    lines = LutText.read(path).lines  # absent, too large or no text is refused here
+    marks = [line.strip(" \t\r\f\v").upper().partition(" METADATA")[0] for line in lines]
+    if "BEGIN" in marks and "END" not in marks[marks.index("BEGIN") :]:  # OpenColorIO would look for it for ever
         raise LutError(f"{path}: has no line END METADATA; the file is cut or altered")
     steps = opencolorio_steps(path)
     mixing = next((type(step).__name__ for step in steps if not isinstance(step, _PER_CHANNEL)), None)

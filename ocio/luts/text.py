@@ -37,7 +37,7 @@ class LutText:
             raise LutError(f"{path}: is no text file; give a .spi1d, .cube or .clf LUT")
         if not text.strip():
             raise LutError(f"{path}: is empty; write the LUT again")
-        return cls(path, tuple(text.splitlines()))
+        return cls(path, tuple(text.replace("\r\n", "\n").removesuffix("\n").split("\n")))
 
     def error(self, problem: str, *, line: int | None = None) -> LutError:
         """Return the error that names the file, the line and the problem."""

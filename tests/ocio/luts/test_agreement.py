@@ -61,7 +61,7 @@ def test_the_plain_files_are_read(tmp_path, make):
         ("a.cube", "DOMAIN_SHAPE 1\n" + cube(), "DOMAIN_SHAPE"),
         ("a.cube", "LUT_1D_INPUT_RANGE 0 2\nDOMAIN_MIN -1 -1 -1\n" + cube(), "no LUT"),
         ("a.cube", cube(head="") + "LUT_1D_SIZE 5\n", "no LUT"),
-        ("a.cube", cube().replace("\n", "\r"), "no LUT"),
+        ("a.cube", cube().replace("\n", "\r"), "found 16 number"),
         ("a.cube", "\ufeff" + cube(), "no LUT"),
         ("a.spi1d", spi1d(head="Version 2\n"), "Only format version 1 supported"),
         ("a.spi1d", spi1d(head=""), "no LUT"),
