@@ -6,6 +6,7 @@ BPY ?=
 BLENDER ?=
 ONLY ?=
 PIP_OPTIONS ?=
+SECONDS_EACH ?= 400
 
 TAG := $(shell $(PYTHON) -c 'import sys; print("%d.%d" % sys.version_info[:2])')
 PLOT := .venvs/plot-$(TAG)
@@ -27,7 +28,7 @@ comma := ,
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo addon test test-training test-blender test-blender-window blender-pictures check format model docs bench clean
+.PHONY: help demo addon test fuzz hardness test-training test-blender test-blender-window blender-pictures check format model docs bench clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 28
@@ -41,6 +42,12 @@ addon: $(ADDON)/ready  ## the Blender extension, one zip per platform and one fo
 
 test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as skipped
 	$(TEST)/bin/python -m pytest
+
+fuzz: $(TEST)/ready  ## damaged files for an hour (SECONDS_EACH=400 of every test), before a release
+	CRFNET_FUZZ_SECONDS=$(SECONDS_EACH) $(TEST)/bin/python -m pytest tests/fuzz
+
+hardness: $(TEST)/ready  ## kills, full disks, two runs at once, many runs and fuzzing, before a release; writes docs/RELIABILITY.md
+	$(TEST)/bin/python -m benchmarks.hardness
 
 test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)
 	$(TRAIN)/bin/python -m pytest tests/training
@@ -84,7 +91,7 @@ bench: $(PLOT)/ready  ## time and memory of `crfnet estimate` beside oiiotool, 2
 
 clean:  ## remove everything that make made
 	rm -rf .venvs $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
-	find crfnet_core ocio training tests blender_addon -name __pycache__ -type d -prune -exec rm -rf {} +
+	find benchmarks crfnet_core ocio training tests blender_addon -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # $(call install,extras[,requirement]): a virtual environment, complete or absent.
 define install

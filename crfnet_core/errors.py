@@ -45,6 +45,7 @@ class PlateError(CRFNetError):
     """A plate or frame sequence that cannot be found, read or written."""
 
 
-def one_line(problem: Exception) -> str:
-    """Return the text of another library's error on one line."""
-    return " ".join(str(problem).split())
+def one_line(problem: BaseException | str) -> str:
+    """Return an error's text on one line; control characters, as a damaged file may bring, become question marks."""
+    text = " ".join(str(problem).split())
+    return "".join(character if character.isprintable() else "?" for character in text)

@@ -1,20 +1,61 @@
-"""Write a file whole or not at all; a document as text."""
+"""Read a file of bounded size; write one whole or not at all; a document as text."""
 
 from __future__ import annotations
 
+import errno
 import json
+import math
 import os
 import re
+import stat
 import tempfile
 import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Any
+from typing import Any, NoReturn
 
 from crfnet_core.errors import CRFNetError
 
+#: Size in bytes of the largest JSON file that is read.
+MAX_JSON_SIZE = 16 * 2**20
+
 _UMASK_LOCK = threading.Lock()
+
+
+def read_bytes(path: Path, *, most: int) -> bytes:
+    """Return the content of a regular file of at most `most` bytes.
+
+    Pipes and devices, which may have no end, are not opened.
+
+    Raises
+    ------
+    OSError
+        If the file cannot be read, is no regular file, or is larger.
+    """
+    if not stat.S_ISREG(path.stat().st_mode):
+        raise OSError(errno.EINVAL, "it is no regular file", str(path))
+    with path.open("rb") as file:
+        content = file.read(most + 1)
+    if len(content) > most:
+        raise OSError(errno.EFBIG, f"it has more than {most // 2**20} MiB", str(path))
+    return content
+
+
+def read_json(path: Path) -> Any:
+    """Return what a JSON file of at most `MAX_JSON_SIZE` bytes holds; its numbers are finite.
+
+    Raises
+    ------
+    OSError
+        As `read_bytes`.
+    ValueError
+        If it is no JSON, holds NaN or an infinity, or is nested too deeply.
+    """
+    try:
+        return json.loads(read_bytes(path, most=MAX_JSON_SIZE), parse_constant=_refused, parse_float=_finite)
+    except RecursionError:
+        raise ValueError("is nested too deeply") from None
 
 
 def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError) -> Path:
@@ -97,6 +138,16 @@ def json_text(document: Mapping[str, Any]) -> str:
     """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
     text = json.dumps(document, indent=1, ensure_ascii=False)
     return re.sub(r"\[\n[-+\d.eE,\s]+\]", lambda row: " ".join(row[0].split()), text) + "\n"
+
+
+def _refused(constant: str) -> NoReturn:
+    """Refuse what Python takes for a number and JSON does not: NaN and the infinities."""
+    raise ValueError(f"{constant} is no number of JSON")
+
+
+def _finite(text: str) -> float:
+    """Return the number in a text, which must not be too large."""
+    return number if math.isfinite(number := float(text)) else _refused(text)
 
 
 def _umask() -> int:

@@ -223,7 +223,8 @@ def _check_version(document: Mapping[str, Any]) -> None:
     if version is None:
         raise EstimateError("this is no document of an estimate: it lacks 'schema_version'")
     if version != SCHEMA_VERSION:
-        raise EstimateError(f"the estimate has schema_version {version}, this crfnet reads {SCHEMA_VERSION}: update it")
+        found = f"{version!a:.20}"
+        raise EstimateError(f"the estimate has schema_version {found}, this crfnet reads {SCHEMA_VERSION}: update it")
 
 
 def _window_document(estimate: WindowEstimate) -> dict[str, Any]:

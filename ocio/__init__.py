@@ -4,6 +4,7 @@ cli           the command: exit codes and error lines
 arguments     the arguments of its subcommands, which need no numpy
 commands      the work of its subcommands: arguments to options, pipeline, output
 interruption  signals that end a run
+streams       what the command prints to
 defaults      constants that several modules share
 options       typed options of the pipeline
 pipeline      the one way from photographs to files, for the command and for the add-on

@@ -3,21 +3,19 @@
 from __future__ import annotations
 
 import argparse
-import io
 import os
 import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 from importlib.metadata import version
-from pathlib import Path
-from typing import TextIO
 
 import shtab
 
 from ocio.arguments import calibrate, camera, completion, config, convert, estimate, info, linearize
 from ocio.arguments.parts import BAD_INPUT, Parser
 from ocio.interruption import interruptible
+from ocio.streams import complete_streams, own_stderr
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -28,11 +26,10 @@ UNEXPLAINED: dict[type[BaseException], str] = {
 
 def main(argv: Sequence[str] | None = None) -> int:
     """Run the command and return its exit code: 0, `BAD_INPUT`, or 128 and the number of the signal that ended it."""
-    _complete_streams()
-    arguments = build_parser().parse_args(argv)
-    with interruptible() as interruption:
+    complete_streams()
+    with own_stderr(), interruptible() as interruption:
         try:
-            return _run(arguments, sys.argv if argv is None else argv)
+            return _run(build_parser().parse_args(argv), sys.argv if argv is None else argv)
         except BaseException as problem:  # an interrupted import raises all sorts of errors
             if interruption.signal is None and not isinstance(problem, KeyboardInterrupt):
                 raise
@@ -76,27 +73,14 @@ def _run_subcommand(arguments: argparse.Namespace) -> None:
     import_module(f"ocio.commands.{arguments.command}").run(arguments)
 
 
-def _complete_streams() -> None:
-    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
-    sys.stdout = sys.stdout or _nowhere()
-    sys.stderr = sys.stderr or _nowhere()
-    for stream in (sys.stdout, sys.stderr):
-        if isinstance(stream, io.TextIOWrapper):
-            stream.reconfigure(errors="backslashreplace")
-
-
-def _nowhere() -> TextIO:
-    """Return a stream that takes everything and keeps nothing."""
-    return Path(os.devnull).open("w", encoding="utf-8")
-
-
 def _fail(problem: BaseException) -> int:
     """Print the problem on one line and return the exit code."""
     if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BAD_INPUT
-    text = UNEXPLAINED.get(type(problem), str(problem))
-    _print_error(f"crfnet: error: {' '.join(text.split())}")
+    from crfnet_core.errors import one_line  # as above
+
+    _print_error(f"crfnet: error: {one_line(UNEXPLAINED.get(type(problem), str(problem)))}")
     return BAD_INPUT
 
 

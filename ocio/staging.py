@@ -20,10 +20,10 @@ _PREFIX = ".crfnet-"
 
 
 @contextmanager
-def staged_files(folder: Path) -> Iterator[Path]:
+def staged_files(folder: Path, *, overwrite: bool = True) -> Iterator[Path]:
     """Yield a temporary folder in `folder`; if the block succeeds, its files take their names in `folder` together.
 
-    Files of these names are replaced: check before whether they may be. If the block fails, or one of the names cannot
+    Check before whether files of these names may be replaced. If the block fails, or one of the names cannot
     be taken (a file that is locked, a full disk), `folder` is as it was. Temporary folders that a killed run left there
     are removed once they are `STALE_SECONDS` old.
 
@@ -31,6 +31,8 @@ def staged_files(folder: Path) -> Iterator[Path]:
     ----------
     folder : Path
         The folder of the files; it must exist.
+    overwrite : bool
+        Whether files of these names are replaced; if not, those that another process has written meanwhile are kept.
 
     Raises
     ------
@@ -41,16 +43,18 @@ def staged_files(folder: Path) -> Iterator[Path]:
     temporary = Path(tempfile.mkdtemp(prefix=_PREFIX, dir=folder))
     try:
         yield temporary
-        _publish(temporary, folder)
+        _publish(temporary, folder, overwrite=overwrite)
     except CRFNetError as problem:
         raise type(problem)(str(problem).replace(str(temporary), str(folder))) from problem
     finally:
         shutil.rmtree(temporary, ignore_errors=True)
 
 
-def _publish(temporary: Path, folder: Path) -> None:
+def _publish(temporary: Path, folder: Path, *, overwrite: bool) -> None:
     """Move the files of one folder into another, or none of them; earlier files of these names are gone then."""
     files = sorted(path for path in temporary.iterdir())
+    if not overwrite and (there := [path.name for path in files if os.path.lexists(folder / path.name)]):
+        raise PlateError(f"{folder / there[0]}: was written by another process meanwhile; choose another folder")
     earlier = temporary / "earlier"
     earlier.mkdir()
     taken: list[Path] = []

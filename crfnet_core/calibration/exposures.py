@@ -12,11 +12,15 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import CalibrationError
+from crfnet_core.files import read_bytes
 from crfnet_core.types import Float64Array
 
 #: Steps of cameras, as parts of a stop, and how far at most a label is from the exposure that it stands for, in stops:
 #: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
 STEPS = {3: 0.13, 2: 0.18}
+
+#: Size of the largest table of exposure times.
+_MOST_BYTES = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -112,7 +116,9 @@ def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
         If the file cannot be read, a row holds no name and time, or a frame has no row.
     """
     try:
-        rows = [row for row in csv.reader(path.read_text(encoding="utf-8-sig").splitlines()) if any(row)]
+        rows = [
+            row for row in csv.reader(read_bytes(path, most=_MOST_BYTES).decode("utf-8-sig").splitlines()) if any(row)
+        ]
     except (OSError, UnicodeDecodeError, csv.Error) as problem:
         raise CalibrationError(f"{path}: cannot be read as CSV ({problem}); give rows such as IMG_1.jpg,1/60") from None
     found: dict[str, float] = {}

@@ -31,6 +31,9 @@ _RAW_BRAND = b"crx "
 #: Suffixes of Truevision TGA, which has no signature.
 TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
 
+#: Suffixes for which OpenImageIO invents a picture, whatever is in the file.
+_NULL_SUFFIXES = (".null", ".nul")
+
 _WANTED = "JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP or TGA"
 _HEAD = 12
 
@@ -70,6 +73,8 @@ def _check_kind(path: Path, head: bytes, brands: bytes) -> None:
     is_raw_movie = head[4:8] == b"ftyp" and _RAW_BRAND in _split(brands)
     if is_raw_name(path) or is_raw_movie or is_raw_content(path, head):
         raise problems.camera_raw(path)
+    if path.suffix.lower() in _NULL_SUFFIXES:
+        raise PhotoError(f"{path}: OpenImageIO reads no file of the suffix {path.suffix}; rename it")
     for kind, signatures in LINEAR_SIGNATURES.items():
         if head.startswith(signatures):
             raise problems.linear(path, kind)

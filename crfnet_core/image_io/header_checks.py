@@ -8,7 +8,7 @@ from typing import Any
 from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import problems
 
-#: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 4 GB of memory.
+#: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000
 
 #: TIFF's PhotometricInterpretation: the two of camera raw, and what is neither gray, RGB, palette nor YCbCr.

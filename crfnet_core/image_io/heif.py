@@ -36,7 +36,7 @@ _TURNS = {
 }
 
 #: What the decoders raise for damaged files.
-_DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, SyntaxError, ValueError)
+_DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
 #: Boxes that tell of the main picture stand within so many bytes.
 _HEAD_BYTES = 1 << 20
@@ -75,6 +75,8 @@ def read_heif(path: Path, kind: str) -> CodeValues:
     with path.open("rb") as file:
         properties = heif_properties(file.read(_HEAD_BYTES))
     check_size(path, properties.width, properties.height)
+    if not properties.has_named_items:
+        raise problems.damaged(path, kind, "the type of an item is no text")
     try:
         picture = _heic(path) if kind == "HEIC" else _avif(path, properties.bit_depth)
     except ImportError as problem:

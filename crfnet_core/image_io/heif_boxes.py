@@ -32,6 +32,8 @@ class HeifProperties:
         Colour primaries, transfer characteristics, matrix coefficients and full range flag, by ITU-T H.273.
     has_gain_map : bool
         Whether the file holds a gain map beside the picture, to make an HDR picture of both.
+    has_named_items : bool
+        Whether the types of all items are text; pi-heif 1.4 ends the whole process where one is not.
     """
 
     width: int = 0
@@ -39,6 +41,7 @@ class HeifProperties:
     bit_depth: int = 0
     cicp: tuple[int, int, int, int] | None = None
     has_gain_map: bool = False
+    has_named_items: bool = True
 
 
 def heif_properties(content: bytes) -> HeifProperties:
@@ -60,6 +63,7 @@ def heif_properties(content: bytes) -> HeifProperties:
         height=height,
         bit_depth=max((_bits(name, body) for name, body in properties), default=0),
         cicp=cicp,
+        has_named_items=all(map(_is_named, _items(content))),
         has_gain_map=any(mark in part for mark in _GAIN_MAPS for part in (meta, top.get(b"ftyp", b""))),
     )
 
@@ -82,6 +86,24 @@ def _boxes(content: bytes) -> Iterator[Box]:
 def _children(name: bytes, body: bytes) -> Iterator[Box]:
     """Yield the boxes inside a box."""
     return _boxes(body[_CHILDREN_AT[name] :])
+
+
+def _items(content: bytes) -> Iterator[bytes]:
+    """Yield the bodies of all boxes `infe`, one of each item."""
+    metas = (body for name, body in _boxes(content) if name == b"meta")
+    lists = (body for meta in metas for name, body in _children(b"meta", meta) if name == b"iinf")
+    for body in lists:
+        count_size = 4 if body[:1] > b"\0" else 2
+        yield from (entry for name, entry in _boxes(body[4 + count_size :]) if name == b"infe")
+
+
+def _is_named(entry: bytes) -> bool:
+    """Return whether the type and the texts of an item, behind its numbers, are UTF-8."""
+    try:
+        entry[10 if entry[:1] > b"\2" else 8 :].decode()
+    except UnicodeDecodeError:
+        return False
+    return True
 
 
 def _main_properties(meta: dict[bytes, bytes]) -> Iterator[Box]:

@@ -12,6 +12,8 @@ from crfnet_core.errors import PhotoError
 
 def damaged(path: Path, kind: str, problem: str) -> PhotoError:
     """Return the error of a file that cannot be decoded, with the first line of the decoder's message."""
+    if kind == "TIFF" and any(words in problem for words in ("support is not configured", "is not implemented")):
+        return PhotoError(f"{path}: has a compression that is not read ({first_line(problem)}); save it with another")
     return PhotoError(f"{path}: this {kind} file is damaged or cut short ({first_line(problem)}); copy it again")
 
 

@@ -122,5 +122,8 @@ def _read_base_image(path: Path) -> CodeValues:
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "base.jpg")
         copy.write_bytes(base)
-        values = read_codes(copy)
+        try:
+            values = read_codes(copy)
+        except PhotoError as problem:
+            raise PhotoError(str(problem).replace(str(copy), str(path))) from None
     return replace(values, metadata=replace(values.metadata, has_gain_map=True))

@@ -12,23 +12,12 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.errors import ModelError, one_line
-from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_model_file
-from crfnet_core.network.runtime import onnxruntime
+from crfnet_core.errors import ModelError
+from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_graph
+from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
 from crfnet_core.types import Float32Array, Progress
-
-_PROBLEMS = onnxruntime.capi.onnxruntime_pybind11_state
-
-#: What onnxruntime raises for a graph that it cannot load.
-_UNLOADABLE = (
-    _PROBLEMS.Fail,
-    _PROBLEMS.InvalidArgument,
-    _PROBLEMS.InvalidGraph,
-    _PROBLEMS.InvalidProtobuf,
-    _PROBLEMS.NotImplemented,
-)
 
 
 @dataclass(frozen=True)
@@ -54,9 +43,7 @@ class ResponseNetwork:
     `multiprocessing` or joblib, it is loaded from its folder again, which must still hold the same model.
     """
 
-    def __init__(
-        self, config: ModelConfig, session: onnxruntime.InferenceSession, *, folder: Path, threads: int
-    ) -> None:
+    def __init__(self, config: ModelConfig, session: Session, *, folder: Path, threads: int) -> None:
         self.config = config
         self._session = session
         self._folder = folder
@@ -88,16 +75,17 @@ class ResponseNetwork:
         Raises
         ------
         ModelError
-            If a file is absent or does not match the other, or the number of threads is negative.
+            If a file is absent or does not match the other, the graph holds what is refused (see
+            `crfnet_core.network.graph`), or the number of threads is negative.
         """
         if threads < 0:
             raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
         folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")
-        graph = read_model_file(folder / "model.onnx")
+        graph = read_graph(folder / "model.onnx")
         if hashlib.sha256(graph).hexdigest() != config.sha256:
             raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
-        return cls(config, _session(folder, graph, config), folder=folder, threads=threads)
+        return cls(config, Session(folder, graph, config), folder=folder, threads=threads)
 
     def inputs(self, windows: Float32Array, *, progress: Progress | None = None) -> Float32Array:
         """Return what the network reads of `windows`: their statistics, or the windows themselves.
@@ -138,9 +126,14 @@ class ResponseNetwork:
             See `inputs`; not changed.
         progress : callable, optional
             Called with (done, total) after every window that goes through the network by itself.
+
+        Raises
+        ------
+        ModelError
+            If the network fails, or answers with numbers that are not finite or of another shape than evidence.
         """
         if self.config.reads_statistics:
-            outputs = self._run(inputs)
+            outputs = self._session.run(inputs)
         else:
             rows = self._run_each(inputs, progress)
             outputs = [np.concatenate(column) for column in zip(*rows, strict=True)]
@@ -152,20 +145,13 @@ class ResponseNetwork:
         rows = []
         pool = ThreadPoolExecutor(self._threads or os.cpu_count() or 1)
         try:
-            for number, row in enumerate(pool.map(self._run, windows[:, None]), start=1):
+            for number, row in enumerate(pool.map(self._session.run, windows[:, None]), start=1):
                 rows.append(row)
                 if progress is not None:
                     progress(number, len(windows))
         finally:
             pool.shutdown(cancel_futures=True)
         return rows
-
-    def _run(self, inputs: Float32Array) -> list[Float32Array]:
-        """Return the network's outputs for some rows."""
-        outputs: list[Float32Array] = self._session.run(
-            list(self.config.output_names), {self.config.input_name: inputs}
-        )
-        return outputs
 
 
 def _load_same(place: str, sha256: str, threads: int) -> ResponseNetwork:
@@ -179,20 +165,3 @@ def _load_same(place: str, sha256: str, threads: int) -> ResponseNetwork:
 def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:
     """Return the evidence in a network's locations (N, 5), factors (N, 5, 5) and log-odds (N, 3)."""
     return tuple(Evidence(*parts) for parts in zip(*(output.astype(np.float64) for output in outputs), strict=True))
-
-
-def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:
-    """Return the session of a graph on one thread of the CPU, or say why there is none."""
-    options = onnxruntime.SessionOptions()
-    options.intra_op_num_threads = 1
-    try:
-        session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
-    except _UNLOADABLE as problem:
-        raise ModelError(
-            f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"
-        ) from None
-    found = {node.name for node in (*session.get_inputs(), *session.get_outputs())}
-    absent = {config.input_name, *config.output_names} - found
-    if absent:
-        raise ModelError(f"{folder}: model.onnx has no {', '.join(sorted(absent))}; export the model again")
-    return session

@@ -3,18 +3,24 @@
 from __future__ import annotations
 
 import json
+import re
+from collections.abc import Callable
 from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import ModelError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, read_bytes, read_json
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
 MODELS = Path(__file__).parents[1] / "models"
 DEFAULT_MODEL = MODELS / "photograph-statistics-2.1"
+
+#: Size in bytes of the largest model.onnx that is read, and characters of the longest text in a model.json.
+MAX_GRAPH_SIZE = 256 * 2**20
+MAX_TEXT = 200
 
 
 @dataclass(frozen=True)
@@ -71,12 +77,15 @@ class ModelConfig:
         Raises
         ------
         ModelError
-            If the file is absent, is no JSON, lacks an entry, or describes a network of another kind.
+            If the file is absent, is no JSON, lacks an entry or has one of another type, or describes a network of
+            another kind.
         """
         entries = _read_json(path)
         missing = [field.name for field in fields(cls) if field.name not in entries]
         if missing:
             raise ModelError(f"{path}: lacks {', '.join(missing)}; export the model again")
+        if unfit := [name for name, is_fit in _FIT.items() if not is_fit(entries[name])]:
+            raise ModelError(f"{path}: {', '.join(unfit)} cannot be what a model has; export the model again")
         entries["output_names"] = tuple(entries["output_names"])
         config = cls(**{field.name: entries[field.name] for field in fields(cls)})
         if (config.basis, config.components, config.window_size) != ("emor", EVIDENCE_WEIGHTS, WINDOW_SIZE):
@@ -124,20 +133,69 @@ def _version(folder: Path) -> tuple[int, ...]:
     return tuple(map(int, folder.name.rpartition("-")[2].split(".")))
 
 
-def read_model_file(path: Path) -> bytes:
-    """Return a model file's bytes, or say which file is absent."""
+def read_graph(path: Path) -> bytes:
+    """Return a model.onnx's bytes, or say why it cannot be read."""
     try:
-        return path.read_bytes()
+        return read_bytes(path, most=MAX_GRAPH_SIZE)
     except OSError as problem:
-        raise ModelError(f"{path}: cannot be read ({problem.strerror}); a model is a folder with both files") from None
+        raise _unreadable(path, problem) from None
 
 
 def _read_json(path: Path) -> dict[str, Any]:
     """Return the object in a JSON file."""
     try:
-        entries = json.loads(read_model_file(path))
+        entries = read_json(path)
+    except OSError as problem:
+        raise _unreadable(path, problem) from None
     except ValueError:
         raise ModelError(f"{path}: is not JSON; restore it") from None
     if not isinstance(entries, dict):
         raise ModelError(f"{path}: holds no JSON object; restore it")
     return entries
+
+
+def _unreadable(path: Path, problem: OSError) -> ModelError:
+    """Return the error of a model file that cannot be read."""
+    return ModelError(f"{path}: cannot be read ({problem.strerror}); a model is a folder with both files")
+
+
+def _is_text(value: object) -> bool:
+    """Return whether a value can be printed on one line."""
+    return isinstance(value, str) and 0 < len(value) <= MAX_TEXT and value.isprintable()
+
+
+def _is_count(value: object) -> bool:
+    """Return whether a value is an integer, which True is not."""
+    return type(value) is int
+
+
+def _are_outputs(value: object) -> bool:
+    """Return whether a value is a list of different names."""
+    return isinstance(value, list) and all(map(_is_text, value)) and 0 < len(value) == len({*value})
+
+
+def _are_figures(value: object) -> bool:
+    """Return whether a value holds numbers by protocol and name."""
+    return isinstance(value, dict) and all(
+        _is_text(protocol)
+        and isinstance(figures, dict)
+        and all(_is_text(name) and isinstance(figure, int | float) for name, figure in figures.items())
+        for protocol, figures in value.items()
+    )
+
+
+#: Entry of model.json -> whether a value is fit for it. The file is untrusted input, whose texts are printed and drawn.
+_FIT: dict[str, Callable[[Any], bool]] = {
+    "name": _is_text,
+    "sha256": lambda value: isinstance(value, str) and re.fullmatch("[0-9a-f]{64}", value) is not None,
+    "basis": _is_text,
+    "components": _is_count,
+    "window_size": _is_count,
+    "input_name": lambda value: value in ("windows", "statistics"),
+    "output_names": _are_outputs,
+    "normalization": _is_text,
+    "opset": _is_count,
+    "training_commit": _is_text,
+    "training": lambda value: isinstance(value, dict),
+    "accuracy": _are_figures,
+}

@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PriorError
+from crfnet_core.files import read_json
 from crfnet_core.posterior.families import Family
 
 #: The packaged priors, and the one that is used unless another is asked for.
@@ -53,7 +53,7 @@ class Prior:
         path = PRIORS / f"{wanted}.json"
         path = path if path.is_file() else Path(wanted)
         try:
-            entries = json.loads(path.read_text(encoding="utf-8"))
+            entries = read_json(path)
         except OSError as problem:
             names = ", ".join(packaged_priors())
             raise PriorError(f"{wanted}: no prior ({problem.strerror}); give {names} or a JSON file") from None

@@ -10,7 +10,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from crfnet_core.errors import ConfigError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, read_json
 from ocio.defaults import CONFIG_NAME
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
@@ -53,7 +53,7 @@ def own_folder(config: Path) -> Path:
 def read_record(config: Path) -> InstallationRecord | None:
     """Return what was done to a config, or None if nothing was or the record is damaged."""
     try:
-        entries = json.loads((own_folder(config) / RECORD_NAME).read_text(encoding="utf-8"))
+        entries = read_json(own_folder(config) / RECORD_NAME)
         folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
         return InstallationRecord(entries["sha256"], entries["backup"], folders, plates)
     except (OSError, ValueError, KeyError, TypeError):

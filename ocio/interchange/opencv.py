@@ -10,18 +10,19 @@ Source: OpenCV, `modules/photo/src/calibrate.cpp` (what the values mean, and the
 from __future__ import annotations
 
 import re
+from io import BytesIO
 from pathlib import Path
 from tokenize import TokenError
 
 import numpy as np
 
 from crfnet_core.errors import LutError
-from crfnet_core.files import atomic_write, atomic_write_text
+from crfnet_core.files import atomic_write, atomic_write_text, read_bytes
 from crfnet_core.types import Float64Array
 from ocio.interchange.calibration import calibrated_response, codes_table
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import LutText
+from ocio.luts.text import MAX_FILE_SIZE, LutText
 
 #: Codes of a response.
 CODES = 256
@@ -90,10 +91,12 @@ def _read_npy(path: Path) -> Float64Array:
     """Return the array in a .npy file."""
     try:
         with np.errstate(invalid="ignore"):  # a NaN of another kind stays a NaN
-            return np.asarray(np.load(path, allow_pickle=False), dtype=np.float64)
+            return np.asarray(
+                np.load(BytesIO(read_bytes(path, most=MAX_FILE_SIZE)), allow_pickle=False), dtype=np.float64
+            )
     except OSError as problem:
         raise LutError(f"{path}: cannot be read ({problem.strerror or problem}); check the name") from problem
-    except (ValueError, TypeError, EOFError, SyntaxError, TokenError) as problem:
+    except (ValueError, TypeError, EOFError, MemoryError, SyntaxError, TokenError) as problem:
         raise LutError(f"{path}: is no .npy file of numbers; save OpenCV's response with numpy.save") from problem
 
 

@@ -11,9 +11,10 @@ from pathlib import Path
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import LutError, one_line
+from crfnet_core.errors import LutError
 from crfnet_core.types import Float64Array
 from ocio.interchange.response_file import ResponseFile, described, from_lut
+from ocio.luts.agreement import opencolorio_steps
 from ocio.luts.lut1d import MAX_LENGTH, strictly_increasing
 from ocio.luts.rgb_lut import lut_of_columns
 from ocio.luts.text import LutText
@@ -33,10 +34,11 @@ def read_other_lut(path: Path) -> ResponseFile:
     LutError
         If OpenColorIO refuses the file, it holds a 3D LUT or a matrix, or it falls somewhere.
     """
-    lines = [line.strip() for line in LutText.read(path).lines]  # absent, too large or no text is refused here
-    if "BEGIN METADATA" in lines and "END METADATA" not in lines:  # OpenColorIO would look for it for ever
+    lines = LutText.read(path).lines  # absent, too large or no text is refused here
+    marks = [line.strip(" \t\r\f\v").upper().partition(" METADATA")[0] for line in lines]
+    if "BEGIN" in marks and "END" not in marks[marks.index("BEGIN") :]:  # OpenColorIO would look for it for ever
         raise LutError(f"{path}: has no line END METADATA; the file is cut or altered")
-    steps = _steps(path)
+    steps = opencolorio_steps(path)
     mixing = next((type(step).__name__ for step in steps if not isinstance(step, _PER_CHANNEL)), None)
     if mixing or not steps:
         what = {"Lut3DTransform": "a 3D LUT, which mixes the channels"}.get(mixing or "", mixing or "no table")
@@ -50,19 +52,6 @@ def read_other_lut(path: Path) -> ResponseFile:
     notes = [f"{flat} steps are level in the file, and rise by the least that float32 can hold"] if flat else []
     lut = lut_of_columns(np.stack([strictly_increasing(column) for column in table.T], axis=1))
     return described(path, from_lut(lut, f"LUT of the format {path.suffix.lower()}"), notes)
-
-
-def _steps(path: Path) -> list[OCIO.Transform]:
-    """Return the steps of a file as OpenColorIO reads it."""
-    OCIO.ClearAllCaches()
-    transform = OCIO.FileTransform(src=str(path.absolute()), interpolation=OCIO.INTERP_LINEAR)
-    try:
-        return list(OCIO.Config.CreateRaw().getProcessor(transform).createGroupTransform())
-    except UnicodeDecodeError:  # OpenColorIO's message quotes the file
-        raise LutError(f"{path}: OpenColorIO reads no LUT from it; write the LUT again") from None
-    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
-        said = one_line(problem).partition(" All formats")[0].replace(str(path.absolute()), path.name)
-        raise LutError(f"{path}: OpenColorIO reads no LUT from it ({said}); write the LUT again") from None
 
 
 def _table(steps: list[OCIO.Transform]) -> Float64Array:

@@ -9,5 +9,6 @@ cube      the .cube format of Adobe and Resolve
 clf       the Academy's Common LUT Format
 response  the response of a LUT of its inverse
 exposure  the stops that put white at 1 or 18 % gray at 0.18
+agreement whether OpenColorIO reads the same in a file
 files     read or write a LUT file of any of these formats, by its suffix
 """

@@ -14,11 +14,9 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-import numpy as np
-
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
-from ocio.luts.rgb_lut import AnyLut, lut_of_columns
+from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText, table_rows
 
 #: The factor of the values in a file, by the bit depth that the file declares.
@@ -81,12 +79,8 @@ def read_clf(path: str | Path) -> AnyLut:
         raise source.error("is a LUT over half floats; give one with uniform inputs", line=_line(source, "LUT1D"))
     length, channels = source.numbers(_array(source, table).get("dim", ""), _line(source, "Array"), count=2)
     rows = _rows(source, _array(source, table), one_column=channels == 1)
-    lut = source.lut(rows, length=length, channels=channels, domain=domain, comments=comments)
     scale = _scale(source, table, "outBitDepth", "LUT1D")
-    if scale == 1:
-        return lut
-    columns = np.stack([channel.values for channel in lut.channels], axis=1)
-    return lut_of_columns(columns / scale, domain=lut.domain, comments=lut.comments)
+    return source.lut(rows, length=length, channels=channels, domain=domain, comments=comments, scale=scale)
 
 
 def _steps(source: LutText) -> tuple[list[ElementTree.Element], list[str]]:

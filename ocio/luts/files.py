@@ -6,6 +6,7 @@ from collections.abc import Callable
 from pathlib import Path
 
 from crfnet_core.errors import LutError
+from ocio.luts.agreement import check_agreement
 from ocio.luts.clf import read_clf, write_clf
 from ocio.luts.cube import read_cube, write_cube
 from ocio.luts.rgb_lut import AnyLut
@@ -19,7 +20,7 @@ WRITERS: dict[str, Callable[..., None]] = {".spi1d": write_spi1d, ".cube": write
 
 
 def read_lut(path: str | Path) -> AnyLut:
-    """Return the LUT in a .spi1d, .cube or .clf file.
+    """Return the LUT in a .spi1d, .cube or .clf file, as OpenColorIO reads it too.
 
     Parameters
     ----------
@@ -29,9 +30,12 @@ def read_lut(path: str | Path) -> AnyLut:
     Raises
     ------
     LutError
-        If the suffix is another one, and as the reader of the format raises it.
+        If the suffix is another one, as the reader of the format raises it, and if OpenColorIO refuses the file or
+        reads another table in it.
     """
-    return READERS[_known_suffix(path)](path)
+    lut = READERS[_known_suffix(path)](path)
+    check_agreement(Path(path), lut)
+    return lut
 
 
 def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:

@@ -23,6 +23,9 @@ MAX_END_SLOPE = 8.0
 #: Characters kept of a comment; OpenColorIO reads each line of a .spi1d file into a buffer of 4096 bytes.
 MAX_COMMENT = 500
 
+#: Largest difference between two values, or the ends of the domain; float32 has room for a thousand times as much.
+LARGEST_SPAN = 1e35
+
 #: The bit pattern of the largest subnormal float32.
 BELOW_NORMAL = 0x007FFFFF
 
@@ -47,7 +50,8 @@ class Lut1D:
     Raises
     ------
     LutError
-        If the values are not finite, do not increase strictly as float32, or the domain is no finite interval.
+        If the values are not finite, do not increase strictly as float32, the domain is no finite interval, or either
+        spans more than `LARGEST_SPAN`.
     """
 
     values: Float64Array
@@ -64,6 +68,8 @@ class Lut1D:
         entry = first_fault(values)
         if entry is not None:
             raise LutError(f"entry {entry} of the LUT, {values[entry]:.9g}, is not finite or not above the one before")
+        if max(high - low, values[-1] - values[0]) > LARGEST_SPAN:
+            raise LutError(f"the LUT spans more than {LARGEST_SPAN:g}, too much to compute with in single precision")
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "domain", (low, high))

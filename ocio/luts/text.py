@@ -9,6 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.errors import LutError
+from crfnet_core.files import read_bytes
 from ocio.luts.lut1d import first_fault, single_precision
 from ocio.luts.rgb_lut import AnyLut, lut_of_columns
 
@@ -28,18 +29,15 @@ class LutText:
         """Return the text of `path`; raise a LutError if it is absent, empty, too large or no text."""
         path = Path(path)
         try:
-            size = path.stat().st_size
-            content = path.read_bytes() if size <= MAX_FILE_SIZE else b""
+            content = read_bytes(path, most=MAX_FILE_SIZE)
         except OSError as problem:
             raise LutError(f"{path}: cannot be read ({problem.strerror}); check the name of the LUT") from problem
-        if size > MAX_FILE_SIZE:
-            raise LutError(f"{path}: has {size // 2**20} MiB, more than any 1D LUT; check the name of the LUT")
         text = content.decode("utf-8-sig", errors="replace")
         if "\0" in text:
             raise LutError(f"{path}: is no text file; give a .spi1d, .cube or .clf LUT")
         if not text.strip():
             raise LutError(f"{path}: is empty; write the LUT again")
-        return cls(path, tuple(text.splitlines()))
+        return cls(path, tuple(text.replace("\r\n", "\n").removesuffix("\n").split("\n")))
 
     def error(self, problem: str, *, line: int | None = None) -> LutError:
         """Return the error that names the file, the line and the problem."""
@@ -50,7 +48,7 @@ class LutText:
         numbers = []
         for token in text.split():
             try:
-                number = float(token)
+                number = float(token.replace("_", " ") if token.isascii() else "")  # Python alone reads 1_0
             except ValueError:
                 remedy = "decimals need a point, not a comma" if "," in token else "the file is damaged"
                 raise self.error(f"{token[:24]!r} is no number; {remedy}: write the LUT again", line=line) from None
@@ -69,6 +67,7 @@ class LutText:
         channels: float,
         domain: tuple[float, float],
         comments: Sequence[str],
+        scale: int = 1,
     ) -> AnyLut:
         """Return the LUT of a table, for each channel if its columns differ.
 
@@ -82,6 +81,8 @@ class LutText:
             The first and the last input.
         comments : sequence of str
             Provenance.
+        scale : int
+            What stands for 1 in the file.
 
         Raises
         ------
@@ -99,12 +100,12 @@ class LutText:
             raise self.error(f"holds {len(entries)} entries and announces {length:g}; the file is cut or altered")
         table = np.reshape(entries, (-1, int(channels)))
         for column in table.T:
-            fault = first_fault(single_precision(column))
+            fault = first_fault(single_precision(column / scale))
             if fault is not None:
                 message = f"{column[fault]:.9g} is not above the value before it; a LUT that can be inverted increases"
                 raise self.error(message, line=lines[fault])
         try:
-            return lut_of_columns(table, domain=domain, comments=comments)
+            return lut_of_columns(table / scale, domain=domain, comments=comments)
         except LutError as problem:
             raise self.error(str(problem)) from problem
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -12,7 +11,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CalibrationError, CurveError, PlateError
-from crfnet_core.files import atomic_write_text, json_text
+from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.response import ResponseCurve
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
@@ -38,11 +37,14 @@ class CalibrationPlan:
         The config of the folder, with the camera's colour space.
     lut_length : int
         Entries of the LUTs.
+    overwrite : bool
+        Whether existing files may be replaced.
     """
 
     files: OutputFiles
     config: OCIO.Config
     lut_length: int
+    overwrite: bool = False
 
 
 def plan_calibration(
@@ -79,7 +81,7 @@ def plan_calibration(
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length)
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite)
 
 
 def write_calibration(
@@ -104,7 +106,7 @@ def write_calibration(
     lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
     folder = plan.files.report.parent
     document = calibration_document(calibration, plan.files, comparison)
-    with output_folder(folder), staged_files(folder) as staged:
+    with output_folder(folder), staged_files(folder, overwrite=plan.overwrite) as staged:
         files = plan.files.in_folder(staged)
         for path in files.luts:
             write_lut(path, lut)
@@ -128,7 +130,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)
     try:
-        samples = json.loads(path.read_text(encoding="utf-8"))["response"]["brightness"]
+        samples = read_json(path)["response"]["brightness"]
         return ResponseCurve.from_samples(samples)
     except OSError as problem:
         raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem

@@ -97,7 +97,7 @@ def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, 
     light = estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
     config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
     folder = plan.files.report.parent
-    with output_folder(folder), staged_files(folder) as staged:
+    with output_folder(folder), staged_files(folder, overwrite=plan.plates.overwrite) as staged:
         files = plan.files.in_folder(staged)
         document = write_estimate(files, estimated, light, plan.plates)
         write_config(files.config, config, check={files.color_space: light.lut.channels[0]})

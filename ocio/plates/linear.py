@@ -113,7 +113,8 @@ def linearize_plates(
 
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
     unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure or space is
-    refused then. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
+    refused then. So is what another process finishes meanwhile. Temporary files of a killed run are removed once they
+    are `STALE_SECONDS` old.
     Missing frames are only reported, and a frame that fails does not stop the others. Only the frames that are worked
     on are in memory.
 
@@ -152,6 +153,7 @@ def linearize_plates(
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
     _remove_leftovers(pending)
     failures: dict[Path, CRFNetError] = {}
+    elsewhere: list[Path] = []  # finished by another process meanwhile
     loaders = sequence.loaders([*pending.values()])
     plates = (
         SourceFrame.of(sequence, position, load) for position, load in zip(pending.values(), loaders, strict=True)
@@ -163,11 +165,16 @@ def linearize_plates(
             try:
                 future.result()
             except CRFNetError as problem:
-                failures[target] = problem
+                if options.overwrite or not target.exists():
+                    failures[target] = problem
+                else:
+                    elsewhere.append(target)
             show_progress(progress, done, len(targets))
     if failures:
         raise PlateError(_failure(failures, targets, sequence))
-    return PlateReport(tuple(pending), skipped, sequence.missing, light)
+    check_finished(elsewhere, light)
+    written = tuple(target for target in pending if target not in elsewhere)
+    return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
 
 
 @dataclass(frozen=True, eq=False)

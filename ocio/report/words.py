@@ -87,13 +87,19 @@ def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any])
     target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
     is_converted = "white" in primaries and linear["name"] != f"linear {primaries['name']}"
     is_more = is_converted or document["exposure"]["stops"] != 0
-    lut, config, plate = (shlex.quote(str(path)) for path in (files.spi1d, files.config, photo))
+    lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.spi1d, files.config, photo))
     space = shlex.quote(files.color_space)
+    oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
     return [
-        f"oiiotool {plate} --ociofiletransform {lut} -d half -o linear.exr",
-        f"oiiotool --colorconfig {config} {plate} --colorconvert {space} {target} -d half -o linear.exr",
+        f"{oiiotool} {plate} --ociofiletransform {lut} -d half -o linear.exr",
+        f"{oiiotool} --colorconfig {config} {plate} --colorconvert {space} {target} -d half -o linear.exr",
         *([f"(The LUT alone adds no exposure, and does not convert {primaries['name']}.)"] * is_more),
     ]
+
+
+def _as_argument(path: Path) -> str:
+    """Return a file's name, which oiiotool must not take for an option."""
+    return f"./{path}" if str(path).startswith("-") else str(path)
 
 
 def light_lines(document: Mapping[str, Any]) -> list[str]:

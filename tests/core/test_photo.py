@@ -10,6 +10,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import read_codes, read_photo
 from tests.helpers.crafted_files import jpeg, png, png_chunk, tiff
 from tests.helpers.images import read_image, write_image
@@ -165,6 +166,21 @@ def test_ultra_hdr_gives_the_standard_image(tmp_path):
     photo = read_photo(path)
     assert (photo.bit_depth, photo.path) == (8, path)
     np.testing.assert_array_equal(photo.pixels, read_image(plain, kind="uint8") / np.float32(255))
+
+
+def test_a_damaged_ultra_hdr_photograph_is_named_itself(tmp_path):
+    noise = np.random.default_rng(0).random((64, 64, 3), np.float32).astype(np.float16)
+    path = tmp_path / "a.jpg"
+    write_image(path, noise, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
+    if str(oiio.ImageBuf(str(path)).spec().format) == "uint8":
+        pytest.skip("this OpenImageIO has no Ultra HDR writer or reader")
+    whole = path.read_bytes()
+    middle = (whole.index(b"\xff\xda") + whole.index(b"\xff\xd9")) // 2
+    path.write_bytes(whole[:middle] + b"\xff\xd9" + whole[middle + 2 :])
+    with pytest.raises(PhotoError) as caught:
+        read_photo(path)
+    assert str(caught.value).startswith(f"{path}: this JPEG file is damaged")
+    assert "base.jpg" not in str(caught.value)
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")

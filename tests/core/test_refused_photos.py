@@ -89,6 +89,16 @@ def signed_tiff(path):
     path.write_bytes(tiff(2, 2, kind=2, content=bytes(12)))
 
 
+def exotic_tiff(path):
+    scheme = struct.pack("<HHII", 259, 3, 1, 1)
+    path.write_bytes(tiff(2, 2, content=bytes(12)).replace(scheme, struct.pack("<HHII", 259, 3, 1, 34926)))
+
+
+def plain_jpeg(path):
+    jpeg(path.with_suffix(".jpg"))
+    path.with_suffix(".jpg").rename(path)
+
+
 def long_tiff(path):
     path.write_bytes(tiff(2, 2, bits=32, content=bytes(48)))
 
@@ -161,6 +171,8 @@ FOUR_INKS = _four_inks()
         (cmyk_jpeg, "a.jpg", "holds CMYK", "give the RGB"),
         (lab_tiff, "a.tif", "holds CIE L*a*b*", "give the RGB"),
         (signed_tiff, "a.tif", "8-bit int8 samples", "convert it"),
+        (exotic_tiff, "a.tif", "has a compression that is not read", "save it with another"),
+        (plain_jpeg, "a.null", "reads no file of the suffix .null", "rename it"),
         (long_tiff, "a.tif", "32-bit uint samples", "convert it"),
         (bilevel_tiff, "a.tif", "1-bit uint8 samples", "convert it"),
         (huge_jpeg, "a.jpg", "claims 50000 x 50000 pixels; at most 250 megapixels", "crop it"),

@@ -68,3 +68,15 @@ def test_old_temporary_folders_are_removed_and_recent_ones_are_not(tmp_path):
     with staged_files(tmp_path):
         pass
     assert sorted(path.name for path in tmp_path.iterdir()) == [".crfnet-recent"]
+
+
+def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path):
+    def write_beside():
+        with staged_files(tmp_path, overwrite=False) as staged:
+            (staged / "a.txt").write_text("new")
+            (staged / "b.txt").write_text("new")
+            (tmp_path / "b.txt").write_text("theirs")
+
+    with pytest.raises(PlateError, match=r"b\.txt: was written by another process meanwhile"):
+        write_beside()
+    assert content(tmp_path) == {"b.txt": "theirs"}

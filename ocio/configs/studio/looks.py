@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -11,6 +10,7 @@ import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, CRFNetError, LutError
+from crfnet_core.files import read_json
 from crfnet_core.image_io import oiio_message
 from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 from ocio.configs.files import load_config, plate_exposure
@@ -108,7 +108,7 @@ def _inverse_response(path: Path) -> Lut1D:
 def _document(path: Path) -> dict[str, Any] | None:
     """Return the document of an estimate, or None if the file is absent or something else."""
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = read_json(path)
         names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         float(document["exposure"]["stops"])

@@ -192,6 +192,22 @@ def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_pat
     assert not any("\n" in message for message in refusals)
 
 
+def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
+    """They would end the process in pi-heif 1.4."""
+    content = (heif / "phone.heic").read_bytes()
+    assert content.count(b"Exif\0\0\0\0\x0epitm") == 1
+    (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
+    with pytest.raises(PhotoError, match="the type of an item is no text"):
+        read_photo(tmp_path / "a.heic")
+
+
+def test_a_film_without_pictures_is_refused(heif, monkeypatch):
+    av = pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
+    monkeypatch.setattr(av.container.InputContainer, "decode", lambda *_, **__: iter(()), raising=False)
+    with pytest.raises(PhotoError, match="damaged or cut short"):
+        read_photo(heif / "limited10.avif")
+
+
 def test_a_huge_size_is_refused_before_decoding(heif, tmp_path):
     content = (heif / "rgb8.heic").read_bytes()
     assert content.count(struct.pack(">II", 64, 64)) == 1, "x265 fills the height of 48 up to 64"

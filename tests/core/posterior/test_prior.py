@@ -54,7 +54,7 @@ def test_factors_shift_the_shares():
         ({"shares": {"phone": 1}, "evidence": 1, "lookalikes": 1}, "lookalikes is a share of all photographs, below 1"),
         ({"shares": {"phone": 0, "log": 0}, "evidence": 1}, "one share is above 0"),
         ({"shares": {}, "evidence": 1}, "one share is above 0"),
-        ('{"shares": {"phone": NaN}, "evidence": 1}', "numbers from 0 to 1"),
+        ('{"shares": {"phone": NaN}, "evidence": 1}', "is not JSON"),
     ],
 )
 def test_a_file_that_is_no_prior_is_refused_in_one_line(tmp_path, entries, said):

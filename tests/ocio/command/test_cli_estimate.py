@@ -1,7 +1,10 @@
 """`crfnet estimate`: what it writes and what it says."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path, PurePosixPath
 
 import numpy as np
@@ -258,3 +261,18 @@ def test_exposure_goes_into_the_plate_and_the_config(estimate, plate, tmp_path, 
     convert = ("--colorconvert", "CRF plate", "scene_linear")
     oiiotool("--colorconfig", config, plate, *convert, "-d", "float", "-o", converted)
     np.testing.assert_allclose(read_image(converted), brighter, atol=4 * tolerance.plate)
+
+
+@pytest.mark.parametrize("name", ["-dash.jpg", "--out.jpg", "{a}.jpg", "${x}.jpg", "it's.jpg", "a:b.jpg", r"a\b.jpg"])
+def test_the_printed_oiiotool_lines_run_whatever_the_photograph_is_called(
+    crfnet, plate, fixed_model, tmp_path, monkeypatch, name
+):
+    shutil.copy(plate, tmp_path / name)
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}")
+    done = crfnet("estimate", f"--model={fixed_model}", "--out=look", "--no-sheet", "--no-linear", "--", name)
+    assert done.err == ""
+    lines = [line.strip() for line in done.out.splitlines() if line.strip().startswith("oiiotool ")]
+    assert len(lines) == 2
+    for line in lines:
+        subprocess.run(line, shell=True, check=True, capture_output=True)

@@ -141,7 +141,7 @@ class TestFiles:
             (b"", "is empty"),
             (b"\xff\xd8\xff\xe0\x00\x10JFIF", "is no text file"),
             (b"Version 1\x00\n", "is no text file"),
-            (b"0 " * (33 * 2**20), "has 66 MiB, more than any 1D LUT"),
+            (b"0 " * (33 * 2**20), "it has more than 64 MiB"),
         ],
     )
     def test_what_is_no_text_is_refused(self, tmp_path, suffix, content, message):

@@ -107,6 +107,21 @@ def test_bad_frames_are_named_and_the_others_written(tmp_path, out):
     assert len(linearize(pattern, out / "a.%d.exr", LUT).written) == 2
 
 
+def test_frames_that_another_process_finishes_meanwhile_are_left_alone(tmp_path, out):
+    pattern = write_sequence(tmp_path, (1, 2, 3))
+    linearize(pattern, tmp_path / "other_####.exr", LUT)
+    finished = tmp_path / "other_0002.exr"
+
+    def appear(done, total):
+        if done == 0:
+            shutil.copy(finished, out / "a_0002.exr")
+
+    report = linearize(pattern, out / "a_####.exr", LUT, progress=appear)
+    assert [path.name for path in report.written] == ["a_0001.exr", "a_0003.exr"]
+    assert [path.name for path in report.skipped] == ["a_0002.exr"]
+    assert (out / "a_0002.exr").read_bytes() == finished.read_bytes()
+
+
 def test_gaps_are_named_although_a_frame_failed(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 4, 9))
     (tmp_path / "plate.0002.png").write_bytes(b"\x89PNG\r\n\x1a\n")

@@ -1,0 +1,1 @@
+"""What is measured again and again: runs that take too long for the tests."""

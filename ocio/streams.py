@@ -1,0 +1,49 @@
+"""The streams of the command: complete, able to show every name, and stderr for its own lines alone."""
+
+from __future__ import annotations
+
+import io
+import os
+import sys
+from collections.abc import Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import TextIO
+
+
+def complete_streams() -> None:
+    """Give a process whose output is closed somewhere to print to, and escape what an output cannot show."""
+    sys.stdout = sys.stdout or _nowhere()
+    sys.stderr = sys.stderr or _nowhere()
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors="backslashreplace")
+
+
+@contextmanager
+def own_stderr() -> Iterator[None]:
+    """Let nothing but this program print on stderr during a block.
+
+    Libraries in C print there by themselves what an error says already, as libpng does for a damaged file. They print
+    to the process's file, which leads nowhere meanwhile; `sys.stderr` has a copy of its own.
+    """
+    process_stderr = sys.stderr
+    if process_stderr is not sys.__stderr__ or not isinstance(process_stderr, io.TextIOWrapper):
+        yield
+        return
+    number = process_stderr.fileno()
+    copy = io.FileIO(os.dup(number), "w")  # without a buffer, which could fail once more when it is closed
+    sys.stderr = io.TextIOWrapper(copy, process_stderr.encoding, process_stderr.errors, write_through=True)
+    try:
+        with Path(os.devnull).open("wb") as nowhere:
+            os.dup2(nowhere.fileno(), number)
+        yield
+    finally:
+        os.dup2(copy.fileno(), number)
+        sys.stderr = process_stderr
+        copy.close()
+
+
+def _nowhere() -> TextIO:
+    """Return a stream that takes everything and keeps nothing."""
+    return Path(os.devnull).open("w", encoding="utf-8")

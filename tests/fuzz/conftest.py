@@ -1,0 +1,82 @@
+"""Fuzzing: every test tries damaged files for a while, from seed 0 on, and names the seeds that found something.
+
+`CRFNET_FUZZ_SECONDS` says how long each test goes on; `make fuzz` gives them an hour together. `CRFNET_FUZZ_SEED` is
+another seed to begin with, to try one again. A single case that hangs ends everything with a traceback.
+"""
+
+import faulthandler
+import os
+import sys
+import time
+import traceback
+import warnings
+from itertools import count
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import CRFNetError
+
+#: The first seed; seconds of each test, and of a single case.
+FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED", "0"))
+SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "6"))
+MOST_SECONDS = 20.0
+
+#: Bytes of memory beyond those at the start.
+MOST_MEMORY = 2 * 2**30
+
+
+@pytest.fixture
+def fuzz(record_property, capsys):
+    """Call a case with a generator of every seed until the time is up: fuzz(case)."""
+
+    def run(case):
+        failures, begin, memory = [], time.monotonic(), peak_memory()
+        for seed in count(FIRST_SEED):
+            if (began := time.monotonic()) > begin + SECONDS:
+                break
+            faulthandler.dump_traceback_later(3 * MOST_SECONDS, exit=True, file=sys.__stderr__)
+            try:
+                with warnings.catch_warnings():
+                    warnings.simplefilter("error")
+                    case(np.random.default_rng(seed))
+                assert time.monotonic() - began < MOST_SECONDS, "took too long"
+                assert peak_memory() - memory < MOST_MEMORY, "took too much memory"
+                assert capsys.readouterr() == ("", ""), "printed something"
+            except Exception as problem:  # noqa: BLE001 - whatever is raised is a finding
+                place = traceback.extract_tb(problem.__traceback__)[-1]
+                failures.append(f"seed {seed}: {type(problem).__name__} in {place.name}, {place.filename}: {problem}")
+        faulthandler.cancel_dump_traceback_later()
+        record_property("cases", seed - FIRST_SEED)
+        record_property("failures", len(failures))
+        assert seed > FIRST_SEED
+        assert not failures, f"{len(failures)} of {seed}:\n" + "\n".join(failures[:20])
+
+    return run
+
+
+@pytest.fixture
+def refused():
+    """Whether reading a file is refused in one line that names it; other errors pass through: refused(read, path)."""
+
+    def is_refused(read, path):
+        try:
+            read(path)
+        except CRFNetError as problem:
+            line = str(problem)
+        else:
+            return False
+        assert str(path) in line, f"does not name the file: {line}"
+        assert line.isprintable(), f"is no plain line: {line!r}"
+        return True
+
+    return is_refused
+
+
+def peak_memory():
+    """Return the most memory that this process has had, in bytes; 0 where the system does not say."""
+    try:
+        import resource
+    except ImportError:
+        return 0
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss * 1024

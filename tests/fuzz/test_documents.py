@@ -1,0 +1,94 @@
+"""Model folders and JSON documents: whatever is in them, the answer is one line."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.posterior import Prior
+from crfnet_core.posterior.prior import PRIORS
+from crfnet_core.response_estimate import ResponseEstimate
+from ocio.configs.studio.looks import read_looks
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import Lut1D
+from ocio.pipeline.calibrations import response_to_compare
+from tests.helpers.hostile_models import evidence_graph, model, write_model
+from tests.helpers.mutations import mutated, mutated_text, mutated_value
+
+WINDOWS = np.full((1, 227, 227, 3), 0.5, np.float32)
+
+
+def damaged_json(document, generator):
+    """A document with another value, or its text with other words or bytes."""
+    text = json.dumps(document, indent=1)
+    match generator.integers(4):
+        case 0:
+            return mutated(text.encode(), generator)
+        case 1:
+            return mutated_text(text, generator, ("[" * 5000, "NaN", "{", "}")).encode(errors="surrogatepass")
+        case _:
+            return json.dumps(mutated_value(document, generator)).encode()
+
+
+def test_damaged_models_are_run_or_refused(fuzz, refused, fixed_model, tmp_path):
+    """The hash in model.json is right, as that of a hostile model would be."""
+    graphs = [(fixed_model / "model.onnx").read_bytes(), model(evidence_graph())]
+
+    def run(folder):
+        ResponseNetwork.load(folder).predict(WINDOWS)
+
+    def case(generator):
+        graph = mutated(graphs[generator.integers(2)], generator)
+        refused(run, write_model(tmp_path / "m", graph))
+
+    fuzz(case)
+
+
+def test_damaged_descriptions_of_models_are_refused(fuzz, refused, fixed_model, tmp_path):
+    folder = shutil.copytree(fixed_model, tmp_path / "m")
+    document = json.loads((folder / "model.json").read_text())
+
+    def case(generator):
+        (folder / "model.json").write_bytes(damaged_json(document, generator))
+        refused(ResponseNetwork.load, folder)
+
+    fuzz(case)
+
+
+@pytest.fixture(scope="module")
+def document(root):
+    """The document of an estimate, as the sample in docs/ has it."""
+    return json.loads((root / "docs" / "sample" / "plate.json").read_text())
+
+
+def test_damaged_documents_are_read_or_refused(fuzz, refused, document, tmp_path):
+    prior = json.loads((PRIORS / "camera.json").read_text())
+    write_lut(tmp_path / "plate.spi1d", Lut1D([0, 0.2, 1]))
+
+    def case(generator):
+        path = tmp_path / "prior.json"
+        path.write_bytes(damaged_json(prior, generator))
+        refused(Prior.load, path)
+        path = tmp_path / "plate.json"
+        path.write_bytes(damaged_json(document, generator))
+        refused(response_to_compare, path)
+        refused(lambda folder: read_looks(folder / "plate.json"), tmp_path)
+
+    fuzz(case)
+
+
+def test_damaged_estimates_are_read_or_refused(fuzz, document):
+    def case(generator):
+        damaged = mutated_value(document, generator)
+        try:
+            ResponseEstimate.from_dict(damaged)
+        except CRFNetError as problem:
+            line = str(problem)
+        else:
+            return
+        assert line.isprintable(), line
+
+    fuzz(case)

@@ -1,0 +1,73 @@
+"""Image files: whatever is damaged, a reader answers with samples or with one line, soon and in little memory."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from crfnet_core.image_io import read_photo
+from ocio.plates.frame_files import read_frame
+from tests.helpers.images import write_image
+from tests.helpers.mutations import mutated
+
+#: Name of a seed, how many bits its samples have, and attributes with which it is written.
+SEEDS = {
+    "plain.jpg": (8, {}),
+    "progressive.jpg": (8, {"jpeg__progressive": 1}),
+    "exif.jpg": (8, {"Make": "A", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "ImageDescription": "x"}),
+    "gray.jpg": (8, {}),
+    "8.png": (8, {"Comment": "text"}),
+    "16.png": (16, {}),
+    "8.tif": (8, {"compression": "none"}),
+    "lzw.tif": (8, {"compression": "lzw"}),
+    "zip.tif": (16, {"compression": "zip"}),
+    "tiled.tif": (16, {"tile_width": 16, "tile_height": 16}),
+    "8.dpx": (8, {}),
+    "10.dpx": (16, {"oiio__BitsPerSample": 10}),
+    "lossy.webp": (8, {"compression": "webp:80"}),
+    "lossless.webp": (8, {"compression": "lossless"}),
+    "8.jp2": (8, {}),
+    "8.jxl": (8, {}),
+    "8.bmp": (8, {}),
+    "8.tga": (8, {"compression": "rle"}),
+    "half.exr": (0, {"compression": "zip", "owner": "a"}),
+    "piz.exr": (0, {"compression": "piz"}),
+}
+
+
+@pytest.fixture(scope="module")
+def seeds(tmp_path_factory, root):
+    """The content of a small file of each kind, by name; kinds that this OpenImageIO cannot write are left out."""
+    folder = tmp_path_factory.mktemp("seeds")
+    rows, columns = np.mgrid[:48, :64] / 64
+    smooth = np.stack([rows, columns, rows * columns], axis=2) + np.random.default_rng(0).random((48, 64, 3)) / 16
+    for name, (bits, attributes) in SEEDS.items():
+        channels = smooth[..., :1] if name.startswith("gray") else smooth
+        samples = (channels * (2**bits - 1) / 2).astype(f"uint{bits}") if bits else channels.astype(np.float16)
+        try:
+            write_image(folder / name, samples, **attributes)
+        except AssertionError:
+            (folder / name).unlink(missing_ok=True)
+    ultra = (smooth * 4).astype(np.float16)
+    write_image(folder / "ultra_hdr.jpg", ultra, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
+    for path in (root / "tests" / "data" / "heif").glob("*.[ah][ve]i[fc]"):
+        shutil.copy(path, folder)
+    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+
+
+def read_encoded(path):
+    return read_frame(path, is_encoded=True)
+
+
+@pytest.mark.parametrize("read", [read_photo, read_encoded])
+def test_damaged_images_are_read_or_refused_in_one_line(fuzz, refused, seeds, tmp_path, read):
+    names = list(seeds)
+    assert len(names) > 20
+
+    def case(generator):
+        name = names[generator.integers(len(names))]
+        path = tmp_path / name
+        path.write_bytes(mutated(seeds[name], generator))
+        refused(read, path)
+
+    fuzz(case)

@@ -1,0 +1,118 @@
+"""LUT files: what is read, OpenColorIO reads too, and both make the same of every value."""
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from ocio.interchange.files import READERS, SEVERAL, read_response, write_response
+from ocio.luts.files import WRITERS, read_lut, write_lut
+from ocio.luts.lut1d import Lut1D, strictly_increasing
+from ocio.luts.rgb_lut import RgbLut1D
+from tests.helpers.mutations import mutated, mutated_text
+
+#: Words of each format that are put into its files, with bars between.
+KEYWORDS = {
+    ".cube": "LUT_1D_SIZE|LUT_3D_SIZE|LUT_1D_INPUT_RANGE|LUT_IN_VIDEO_RANGE|DOMAIN_MIN -1 -1 -1|DOMAIN_MAX|TITLE|#"
+    "|\ufeff",
+    ".spi1d": "Version|From|Length|Components|{|}|#|Version 2|\ufeff",
+    ".clf": 'halfDomain="true"|rawHalfs="true"|hueAdjust="dw3"|interpolation="cubic"|interpolation="linear"'
+    '|bypass="true"|inBitDepth="10i"|outBitDepth="8i"|outBitDepth="16f"|compCLFversion="9.0"|style="noClamp"|<!--|-->|&#48;|junk'
+    "|<![CDATA[0.5]]>|<Range>|</Range>|<Description>|<minInValue>-1</minInValue>",
+}
+
+
+def random_lut(generator, *, most=4096):
+    """A LUT of any length, scale and domain, of one table or three."""
+    length = int(2 ** generator.uniform(1, np.log2(most)))
+    steps = generator.exponential(size=(length, 3)) ** generator.integers(1, 5)
+    scale = 10 ** generator.uniform(-3, 3)
+    tables = (np.cumsum(steps, axis=0) / steps.sum(axis=0) - generator.choice([0, 0, 0.1])) * scale
+    domain = ((0, 1), (0, 1), (-0.125, 1.125), (0, 10 ** generator.uniform(-2, 4)), (-1, 3))[generator.integers(5)]
+    luts = tuple(Lut1D(strictly_increasing(column), domain) for column in tables.T)
+    return RgbLut1D(luts) if generator.random() < 0.5 else luts[0]
+
+
+def assert_opencolorio_agrees(path, lut):
+    """The two agree on colours within and beyond the domain, but for float32's rounding of the place in the table."""
+    OCIO.ClearAllCaches()
+    processor = OCIO.Config.CreateRaw().getProcessor(OCIO.FileTransform(src=str(path)))
+    low, high = lut.domain
+    inputs = np.linspace(low - 0.5 * (high - low), high + 0.5 * (high - low), 999).astype(np.float32).reshape(-1, 3)
+    found = inputs.copy()
+    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(found)
+    expected = lut.apply(inputs)
+    steepest = max(np.diff(channel.values).max() for channel in lut.channels) * len(lut.values)
+    place = float(np.finfo(np.float32).eps) * 4 * (1 + max(abs(low), abs(high)) / (high - low))
+    tolerance = 1e-6 * max(1, np.abs(lut.values).max()) + steepest * place * (lut.domain != (0, 1))
+    assert np.abs(found - expected).max() <= tolerance, f"{np.abs(found - expected).max()} above {tolerance}"
+
+
+def test_random_luts_are_read_back_and_opencolorio_agrees(fuzz, tmp_path):
+    def case(generator):
+        path = tmp_path / f"a{generator.choice(list(WRITERS))}"
+        lut = random_lut(generator)
+        write_lut(path, lut, overwrite=True)
+        assert read_lut(path) == lut
+        assert_opencolorio_agrees(path, lut)
+
+    fuzz(case)
+
+
+def test_of_damaged_luts_those_are_read_that_opencolorio_reads_alike(fuzz, refused, tmp_path):
+    """At least one in 50 is still read, so that there is something to compare."""
+    read = []
+
+    def case(generator):
+        path = tmp_path / f"a{generator.choice(list(WRITERS))}"
+        write_lut(path, random_lut(generator, most=24), overwrite=True)
+        if generator.random() < 0.8:
+            text = mutated_text(path.read_text(), generator, KEYWORDS[path.suffix].split("|"))
+            path.write_bytes(text.encode(errors="surrogatepass"))
+        else:
+            path.write_bytes(mutated(path.read_bytes(), generator))
+        if not refused(read_lut, path):
+            assert_opencolorio_agrees(path, read_lut(path))
+        read.append(not refused(read_lut, path))
+
+    fuzz(case)
+    assert np.mean(read) > 0.02
+
+
+CSP = (
+    "CSPLUTV100\n1D\n\nBEGIN METADATA\nby hand\nEND METADATA\n\n"
+    "2\n0 1\n0 1\n2\n0 1\n0 1\n2\n0 1\n0 1\n\n3\n0 0 0\n.2 .2 .2\n1 1 1\n"
+)
+DL3 = "0 64 128 192 256 320 384 448 512 576 640 704 768 832 896 960 1023\n"
+HOUDINI = (
+    "Version 1\nFormat any\nType C\nFrom 0 1\nTo 0 1\nBlack 0\nWhite 1\nLength 3\nLUT:\nPreL {\n0\n.5\n1\n}\n"
+    "R {\n0\n.3\n1\n}\nG {\n0\n.3\n1\n}\nB {\n0\n.3\n1\n}\n"
+)
+
+
+@pytest.fixture
+def responses(tmp_path):
+    """A file of each format of other programs, by suffix."""
+    lut = Lut1D(np.linspace(0, 1, 300) ** 2.2)
+    texts = {".csp": CSP, ".3dl": DL3, ".lut": HOUDINI, ".pto": 'i w640 h480 Ra1.5 Rb0 Rc0 Rd0 Re0 n"a.jpg"\n'}
+    for suffix in (*READERS, *SEVERAL):
+        path = tmp_path / f"seed{suffix}"
+        if suffix in texts:
+            path.write_text(texts[suffix])
+        else:
+            write_response(path, lut)
+    return {path.suffix: path.read_bytes() for path in tmp_path.iterdir()}
+
+
+def test_damaged_responses_of_other_programs_are_read_or_refused(fuzz, refused, responses, tmp_path):
+    suffixes = sorted(responses)
+
+    def case(generator):
+        suffix = suffixes[generator.integers(len(suffixes))]
+        path = tmp_path / f"a{suffix}"
+        if suffix == ".npy" or generator.random() < 0.4:
+            path.write_bytes(mutated(responses[suffix], generator))
+        else:
+            path.write_text(mutated_text(responses[suffix].decode(), generator), encoding="utf-8")
+        refused(read_response, path)
+
+    fuzz(case)
