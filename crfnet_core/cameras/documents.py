@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Mapping
 from dataclasses import asdict
 from pathlib import Path
@@ -13,6 +12,7 @@ import numpy as np
 from crfnet_core.analysis import THUMBNAIL, AnalyzedPhotograph
 from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse, checked_name
 from crfnet_core.errors import CameraError, CRFNetError
+from crfnet_core.files import read_json
 from crfnet_core.metadata import FileOrigin
 from crfnet_core.posterior import STATED_ODDS, Evidence
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
@@ -92,10 +92,10 @@ def read_calibration(path: Path) -> MeasuredResponse:
 def _read_object(path: Path) -> dict[str, Any]:
     """Return the object in a JSON file."""
     try:
-        document = json.loads(path.read_text(encoding="utf-8"))
+        document = read_json(path)
     except OSError as problem:
         raise CameraError(f"{path}: cannot be read ({problem.strerror}); check its name") from None
-    except (ValueError, RecursionError):
+    except ValueError:
         raise CameraError(f"{path}: is not JSON; restore or remove it") from None
     return document if isinstance(document, dict) else {}
 
