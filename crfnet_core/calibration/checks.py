@@ -126,7 +126,7 @@ def check_measurement(found: Measurement, names: Sequence[str]) -> None:
             f"only {len(found.seen.block)} flat places are seen well in two frames, {LEAST_SAMPLES} are needed; take"
             " more frames, closer together, or a scene with even surfaces"
         )
-    left_out = [name for name, is_used in zip(names, found.frames, strict=True) if not is_used]
+    used, left_out = _names(found, names)
     is_moved = found.frames.sum() < LEAST_FRAMES or found.outliers > MOST_OUTLIERS
     if found.residual > MOST_RESIDUAL:
         is_moved = is_moved or scatter(found.seen, found.exposures) > MOST_SCATTER
@@ -136,7 +136,7 @@ def check_measurement(found: Measurement, names: Sequence[str]) -> None:
             f"the frames do not show the same: {which} differ from what the rest says, even if shifted; the camera or"
             " the scene has moved, so use a tripod and a still scene, or leave these frames out"
         )
-    _check_offsets(found, [name for name, is_used in zip(names, found.frames, strict=True) if is_used])
+    _check_offsets(found, used)
     if found.residual > MOST_RESIDUAL:
         raise CalibrationError(
             f"no single curve explains the frames: they are off by {found.residual:.1f} codes (RMS), at most"
@@ -164,9 +164,8 @@ def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, 
     white : float
         The code of white as a part of the largest code.
     """
-    frames = list(zip(names, found.frames, strict=True))
-    warnings = [f"{name} does not fit the other frames and was left out" for name, is_used in frames if not is_used]
-    used = [name for name, is_used in frames if is_used]
+    used, left_out = _names(found, names)
+    warnings = [f"{name} does not fit the other frames and was left out" for name in left_out]
     offsets = zip(used, off_trend(found), strict=True)
     warnings += [
         f"{name} is {off:+.2f} stop from its exposure label" for name, off in offsets if abs(off) > NOTABLE_OFFSET
@@ -225,6 +224,12 @@ def off_trend(found: Measurement) -> Float64Array:
     slope = np.median((offsets[second] - offsets[first])[apart] / distance[apart])
     rest = offsets - slope * found.exposures
     return np.asarray(rest - np.median(rest), dtype=np.float64)
+
+
+def _names(found: Measurement, names: Sequence[str]) -> tuple[list[str], list[str]]:
+    """Return the names of the frames that are used, and of those that are left out."""
+    frames = list(zip(names, found.frames, strict=True))
+    return [name for name, is_used in frames if is_used], [name for name, is_used in frames if not is_used]
 
 
 def _check_offsets(found: Measurement, names: Sequence[str]) -> None:
