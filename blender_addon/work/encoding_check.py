@@ -11,7 +11,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from crfnet_core.errors import ConfigError
-from crfnet_core.image_io import read_codes
+from crfnet_core.image_io import read_metadata
 from crfnet_core.recognition import tag_refusal
 from ocio.configs.files import load_config
 
@@ -74,7 +74,7 @@ def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
 
 def is_tagged(files: Iterable[Path]) -> bool:
     """Return whether the estimator refuses one of the files for its metadata; a CRFNetError if one cannot be read."""
-    return any(tag_refusal(read_codes(file).metadata.color) for file in files)
+    return any(tag_refusal(read_metadata(file).color) for file in files)
 
 
 def is_log_or_linear(color_space: str, encoding: str = "") -> bool:

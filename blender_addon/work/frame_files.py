@@ -15,7 +15,7 @@ import OpenImageIO as oiio
 
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
-from ocio.plates.frame_files import read_frame
+from ocio.plates.frame_files import read_color_tags
 from ocio.plates.frames import FramePattern, FrameSequence, find_frames, pattern_frames, sample_frames
 from ocio.plates.primaries import plate_primaries
 
@@ -60,7 +60,7 @@ def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = Fa
         return REC709
     with frame_reader(plate) as read:
         (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1]), None).paths
-        return plate_primaries(read_frame(path, is_encoded=is_encoded).color).primaries or REC709
+        return plate_primaries(read_color_tags(path, is_encoded=is_encoded)).primaries or REC709
 
 
 def sample(sequence: FrameSequence) -> FrameSequence:

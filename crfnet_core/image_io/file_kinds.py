@@ -34,6 +34,15 @@ TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
 #: Suffixes for which OpenImageIO invents a picture, whatever is in the file.
 _NULL_SUFFIXES = (".null", ".nul")
 
+#: Suffixes of HEIC and AVIF.
+HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
+
+#: How the names of photographs usually end, for a folder that is searched for them.
+PHOTOGRAPH_SUFFIXES = (
+    *(".jpg", ".jpeg", *HEIF_SUFFIXES, ".png", ".tif", ".tiff", ".webp", ".jxl", ".jp2", ".j2k", ".dpx", ".bmp"),
+    ".tga",
+)
+
 _WANTED = "JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP or TGA"
 _HEAD = 12
 

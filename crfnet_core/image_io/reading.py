@@ -1,8 +1,10 @@
-"""Read a photograph's code values, and nothing else done to them."""
+"""Read a photograph's code values, and nothing else done to them; or its metadata alone."""
 
 from __future__ import annotations
 
 import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -23,6 +25,9 @@ from crfnet_core.photo import CodeValues, Photo
 
 #: Rows read at a time.
 _ROWS = 256
+
+#: The formats that OpenImageIO does not read.
+HEIF_KINDS = ("HEIC", "AVIF")
 
 
 def read_photo(path: str | Path) -> Photo:
@@ -52,19 +57,45 @@ def read_photo(path: str | Path) -> Photo:
 def read_codes(path: str | Path) -> CodeValues:
     """Return the integer samples of the file; accepts, ignores and raises as `read_photo`, which builds on it."""
     path = Path(path)
+    with _named_errors(path):
+        kind = file_kind(path)
+        return read_heif(path, kind) if kind in HEIF_KINDS else _read(path, kind)
+
+
+def read_metadata(path: str | Path) -> FileMetadata:
+    """Return what a file says beside its pixels, which are decoded of HEIC and AVIF only.
+
+    Raises as `read_photo` does, but does not see damage among the pixels.
+    """
+    path = Path(path)
+    with _named_errors(path):
+        kind = file_kind(path)
+        if kind in HEIF_KINDS:
+            return read_heif(path, kind).metadata
+        jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
+        with _opened(path, kind) as source:
+            header = _header(source, path, kind)
+            if _has_gain_map(header, kind):
+                return _read_base_image(path).metadata
+            checked_bit_depth(path, header)
+            return metadata_of_header(header, kind, jpeg)
+
+
+@contextmanager
+def _named_errors(path: Path) -> Iterator[None]:
+    """Turn what the system refuses about a file, in the block, into a PhotoError."""
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
-        kind = file_kind(path)
-        return read_heif(path, kind) if kind in ("HEIC", "AVIF") else _read(path, kind)
+        yield
     except UnicodeEncodeError as problem:
         raise PhotoError(f"{str(path)!a}: the name is not UTF-8; rename the file or its folder") from problem
     except OSError as problem:
         raise PhotoError(f"{path}: cannot be opened ({problem.strerror}); check its name and permissions") from problem
 
 
-def _read(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of a file of a known format."""
-    jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
+@contextmanager
+def _opened(path: Path, kind: str) -> Iterator[Any]:
+    """Yield a file of a known format as an OpenImageIO.ImageInput, or refuse it as damaged."""
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # colour as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
@@ -72,14 +103,31 @@ def _read(path: Path, kind: str) -> CodeValues:
     if source is None:
         raise problems.damaged(path, kind, problem)
     try:
-        header = with_color_chunks(source.spec(), path) if kind == "PNG" else source.spec()
-        if kind == "JPEG" and str(header.format) == "half":
+        yield source
+    finally:
+        source.close()
+
+
+def _header(source: Any, path: Path, kind: str) -> Any:
+    """Return the header of an open file."""
+    return with_color_chunks(source.spec(), path) if kind == "PNG" else source.spec()
+
+
+def _has_gain_map(header: Any, kind: str) -> bool:
+    """Return whether OpenImageIO would make an HDR picture of an Ultra HDR JPEG."""
+    return kind == "JPEG" and str(header.format) == "half"
+
+
+def _read(path: Path, kind: str) -> CodeValues:
+    """Return the integer samples of a file of a known format."""
+    jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
+    with _opened(path, kind) as source:
+        header = _header(source, path, kind)
+        if _has_gain_map(header, kind):
             return _read_base_image(path)
         bit_depth = checked_bit_depth(path, header)
         values = _samples(source, header)
         problem = problems.oiio_message(source)
-    finally:
-        source.close()
     if values is None or problem:
         raise problems.damaged(path, kind, problem)
     return _code_values(values, bit_depth, header, metadata_of_header(header, kind, jpeg))

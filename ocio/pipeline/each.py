@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import CRFNetError, PlateError, one_line
+from crfnet_core.image_io import PHOTOGRAPH_SUFFIXES
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress, show_progress
@@ -29,25 +30,6 @@ from ocio.staging import staged_files
 #: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
 #: build it grows with the square.
 MAX_COLOR_SPACES = 1000
-
-#: How the names of photographs end, in a folder that is searched for them.
-PHOTOGRAPH_SUFFIXES = (
-    ".jpg",
-    ".jpeg",
-    ".heic",
-    ".heif",
-    ".png",
-    ".tif",
-    ".tiff",
-    ".webp",
-    ".avif",
-    ".jxl",
-    ".jp2",
-    ".j2k",
-    ".dpx",
-    ".bmp",
-    ".tga",
-)
 
 
 @dataclass(frozen=True)

@@ -1,8 +1,9 @@
-"""Read one frame of a plate: its encoded samples, its alpha and its header."""
+"""Read one frame of a plate: its encoded samples, its alpha and its header; or its colour tags alone."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
@@ -12,7 +13,7 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PlateError
-from crfnet_core.image_io import MAX_PIXELS, first_line, oiio_message, read_codes
+from crfnet_core.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.metadata.header_colors import header_color_tags
 from crfnet_core.types import Float32Array
@@ -95,19 +96,34 @@ def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
     return EncodedFrame(samples, values.largest, alpha, values.header, values.metadata.color)
 
 
-def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
-    """Return the encoded values in an OpenEXR file, divided by its alpha."""
+def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
+    """Return what the header of a frame says of its colours; it takes and refuses what `read_frame` does."""
+    if path.suffix.lower() != ".exr":
+        return read_metadata(path).color
+    with _opened_exr(path, is_encoded=is_encoded) as source:
+        return header_color_tags(source.spec(), "OpenEXR")
+
+
+@contextmanager
+def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
+    """Yield an OpenEXR file as an OpenImageIO.ImageInput, or refuse it."""
     source = oiio.ImageInput.open(str(path))
     problem = oiio_message()
     if source is None:
         raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
     try:
-        header = source.spec()
-        _check_encoded_exr(path, header, is_encoded=is_encoded)
-        values = source.read_image(0, 0, 0, header.nchannels, "float")
-        problem = oiio_message(source)
+        _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
+        yield source
     finally:
         source.close()
+
+
+def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
+    """Return the encoded values in an OpenEXR file, divided by its alpha."""
+    with _opened_exr(path, is_encoded=is_encoded) as source:
+        header = source.spec()
+        values = source.read_image(0, 0, 0, header.nchannels, "float")
+        problem = oiio_message(source)
     if values is None or problem:
         raise PlateError(f"{path}: this EXR file is damaged or cut short ({first_line(problem)}); write it again")
     gray = next(index for index, name in enumerate(header.channelnames) if name != "A")

@@ -140,3 +140,15 @@ def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     modules |= {path.parent.name for path in (addon_folder / room).glob("*/__init__.py")}
     text = ast.get_docstring(ast.parse((addon_folder / room / "__init__.py").read_text(encoding="utf-8")))
     assert {line.split()[0] for line in text.split("\n\n")[1].splitlines()} == modules
+
+
+def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(root):
+    from crfnet_core.image_io import HEIF_SUFFIXES
+
+    plates = ast.parse((root / "blender_addon" / "scene" / "plates.py").read_text(encoding="utf-8"))
+    values = {
+        node.targets[0].id: node.value
+        for node in plates.body
+        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
+    }
+    assert ast.literal_eval(values["HEIF_SUFFIXES"]) == HEIF_SUFFIXES

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_photo
+from crfnet_core.image_io import read_metadata, read_photo
 from crfnet_core.metadata import family_factors, file_origin
 from crfnet_core.metadata.jpeg import (
     ANNEX_K_CHROMA,
@@ -195,3 +195,36 @@ def test_annex_k():
     assert ANNEX_K_LUMA[:3] == (16, 11, 12)
     assert (len(ANNEX_K_LUMA), sum(ANNEX_K_LUMA), ANNEX_K_LUMA[-1]) == (64, 3688, 99)
     assert (len(ANNEX_K_CHROMA), sum(ANNEX_K_CHROMA)) == (64, 5505)
+
+
+@pytest.mark.parametrize("name", ["a.jpg", "a.png", "a.tif", "a.webp", "a.dpx"])
+def test_metadata_alone_is_that_of_the_photograph(tmp_path, name):
+    path = write_image(tmp_path / name, np.full((16, 16, 3), 128, np.uint8), **EXIF)
+    assert read_metadata(path) == read_photo(path).metadata
+
+
+@pytest.mark.parametrize("name", ["phone.heic", "limited10.avif"])
+def test_metadata_alone_of_heic_and_avif_is_that_of_the_photograph(root, name):
+    pytest.importorskip("av", reason="AVIF of 10 bits needs PyAV")
+    path = root / "tests" / "data" / "heif" / name
+    assert read_metadata(path) == read_photo(path).metadata
+
+
+def test_metadata_alone_is_read_without_the_pixels(tmp_path):
+    noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
+    path = write_image(tmp_path / "a.png", noise, Make="Canon")
+    path.write_bytes(path.read_bytes()[:-4000])
+    assert read_metadata(path).make == "Canon"
+    with pytest.raises(PhotoError, match="damaged or cut short"):
+        read_photo(path)
+
+
+@pytest.mark.parametrize("content", [b"", b"no picture", b"II*\0"])
+def test_metadata_alone_is_refused_as_the_photograph_is(tmp_path, content):
+    path = tmp_path / "a.png"
+    path.write_bytes(content)
+    with pytest.raises(PhotoError) as photo:
+        read_photo(path)
+    with pytest.raises(PhotoError) as metadata:
+        read_metadata(path)
+    assert str(metadata.value) == str(photo.value)

@@ -6,7 +6,7 @@ import pytest
 
 from crfnet_core.errors import PhotoError, PlateError
 from crfnet_core.metadata.color_tags import DISPLAY_P3, ColorTags
-from ocio.plates.frame_files import read_frame
+from ocio.plates.frame_files import read_color_tags, read_frame
 from tests.helpers.images import write_image
 
 
@@ -87,6 +87,17 @@ def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):
     pixels = np.full((4, 4, 3), 0.5, np.float32)
     path = write_image(tmp_path / "a.exr", pixels, colorInteropID="srgb_p3d65_scene")
     assert read_frame(path).color == ColorTags(DISPLAY_P3, source="colorInteropID")
+    assert read_color_tags(path) == ColorTags(DISPLAY_P3, source="colorInteropID")
+
+
+def test_the_tags_alone_are_refused_where_the_frame_is(tmp_path):
+    pixels = np.full((4, 4, 3), 0.5, np.float32)
+    for space, message in (("lin_rec709_scene", "is scene-linear already"), ("", "--encoded")):
+        path = write_image(tmp_path / "a.exr", pixels, colorInteropID=space)
+        for read in (read_frame, read_color_tags):
+            with pytest.raises(PlateError, match=message):
+                read(path)
+    assert read_color_tags(path, is_encoded=True).primaries is None
 
 
 def test_a_damaged_exr_with_bytes_that_are_no_text_is_refused_in_one_printable_line(tmp_path):
