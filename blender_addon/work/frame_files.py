@@ -16,7 +16,8 @@ import OpenImageIO as oiio
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
 from ocio.plates.frame_files import read_color_tags
-from ocio.plates.frames import FramePattern, FrameSequence, find_frames, pattern_frames, sample_frames
+from ocio.plates.frame_pattern import FramePattern
+from ocio.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
 from ocio.plates.primaries import plate_primaries
 
 from .decoding import running_decoder

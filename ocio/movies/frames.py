@@ -18,7 +18,7 @@ from ocio.movies.header import frame_header, movie_metadata
 from ocio.movies.library import ffmpeg_line
 from ocio.movies.stream import MovieStream, read_stream
 from ocio.plates.frame_files import EncodedFrame, FrameLoader
-from ocio.plates.frames import format_frames, parse_frames
+from ocio.plates.frame_numbers import format_frames, parse_frames
 
 if TYPE_CHECKING:
     from av import VideoFrame

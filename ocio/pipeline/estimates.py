@@ -28,7 +28,8 @@ from ocio.movies.frames import MovieFrames
 from ocio.movies.library import is_movie
 from ocio.movies.selection import chosen_photos
 from ocio.options import EstimateOptions
-from ocio.plates.frames import FramePattern, FrameSequence, find_frames, sample_frames
+from ocio.plates.frame_pattern import FramePattern
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -184,7 +185,7 @@ def estimate_photographs(
     options : EstimateOptions
         Windows, seed, and whether metadata counts.
     frames : str or None
-        The frames of a movie to choose from, as in `ocio.plates.frames.parse_frames`; all by default.
+        The frames of a movie to choose from, as in `ocio.plates.frame_numbers.parse_frames`; all by default.
     progress : callable or None
         Called with (done, total) after every window.
 

@@ -1,6 +1,8 @@
 """Plates: the frames of a sequence, and the linear EXR files made of them.
 
-frames        names, patterns and sequences of frames: find the files, choose some of them
+frames        the frames that a name stands for: find the files, choose some of them
+frame_pattern names with a placeholder for the frame number
+frame_numbers ranges of frame numbers, read and written
 frame_files   read one frame: its encoded samples, its alpha and its header; what a source of frames is
 first_frame   the first frame of a source that can be read
 primaries     the primaries of an encoded plate: by its tags, as given, or by convention

@@ -1,41 +1,21 @@
-"""The frames of a sequence such as `plate.%04d.png` or `plate.####.png`: find their files, choose some of them.
+"""The frames that a name stands for: find their files, choose some of them.
 
-Fileseq reads ranges of frames and finds the sequences of a folder. It is imported only there: what the Blender add-on
-calls does without it, so the add-on need not bring it. Fileseq's own reader of file names is not used: it refuses
-`a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in `v1####.png` for a frame.
+Fileseq finds the sequence of a folder, and is imported only there: see `frame_numbers`.
 """
 
 from __future__ import annotations
 
-import re
-from collections.abc import Collection, Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from functools import partial
-from operator import index
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PlateError
 from ocio.defaults import FRAMES_ANALYZED
 from ocio.plates.frame_files import FrameLoader, read_frame
-
-#: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
-MAX_FRAMES = 1_000_000
-
-_END = r"--?[0-9]{1,9}(?:x[0-9]{1,9})?"
-
-#: Frames in a name: ranges with a step or without, separated by commas; the first of them is no single frame.
-_RANGES = rf"-?[0-9]{{1,9}}{_END}(?:,-?[0-9]{{1,9}}(?:{_END})?)*"
-
-#: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
-#: Before the placeholder may be the frames, as in shot.1001-1100#.png; shot.[1001-1100].png is the frames alone.
-_PLACEHOLDERS = (
-    *(
-        re.compile(rf"(?:(?<![^._ ])(?P<frames>{_RANGES}))?(?P<mark>{mark})")
-        for mark in ("%(?:0[0-9]{1,2})?d", r"\$F[0-9]{0,2}(?![A-Z])", "#+", "@+")
-    ),
-    re.compile(rf"\[(?P<frames>{_RANGES})\](?P<mark>)"),
-)
+from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
+from ocio.plates.frame_pattern import FramePattern, listed
 
 
 @dataclass(frozen=True)
@@ -62,67 +42,6 @@ class FrameSequence:
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
         """Yield what reads each frame, for positions in `paths`: see `FrameSource`."""
         return (partial(read_frame, self.paths[position], is_encoded=self.is_encoded) for position in positions)
-
-
-@dataclass(frozen=True)
-class FramePattern:
-    """A file name with one frame placeholder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder of the files.
-    prefix, suffix : str
-        The parts of the name before and after the frame number.
-    width : int
-        Digits to which the number is padded with zeros.
-    frames : str
-        The frames that the name itself asks for, such as "1001-1100"; empty for all.
-    """
-
-    folder: Path
-    prefix: str
-    width: int
-    suffix: str
-    frames: str = ""
-
-    @classmethod
-    def parse(cls, pattern: str | Path) -> FramePattern | None:
-        """Return the pattern, or None for a name without a placeholder.
-
-        `%04d`, `$F4` and `####` pad to four digits, `@@@` to three; `%d` and `$F` do not pad. A single `#` means four
-        digits, as in oiiotool and RV; several mean as many digits, as in Nuke. `shot.1001-1100#.png` and
-        `shot.[1001-1100].png` ask for some of the frames; the second pads as its first number does. Placeholders in
-        the name of the folder do not count.
-
-        Raises
-        ------
-        PlateError
-            If the name holds several placeholders of the same kind.
-        """
-        path = Path(pattern)
-        for placeholder in _PLACEHOLDERS:
-            matches = list(placeholder.finditer(path.name))
-            if len(matches) > 1:
-                raise PlateError(f"{path}: holds {len(matches)} frame placeholders; leave one of them")
-            if matches:
-                start, end = matches[0].span()
-                frames = matches[0]["frames"] or ""
-                return cls(path.parent, path.name[:start], _width(matches[0]["mark"], frames), path.name[end:], frames)
-        return None
-
-    def path(self, number: int) -> Path:
-        """Return the file of a frame."""
-        return self.folder / f"{self.prefix}{number:0{self.width}d}{self.suffix}"
-
-    def files(self) -> dict[int, Path]:
-        """Return the existing files by frame number; raise a PlateError if the folder cannot be listed."""
-        named = re.compile(f"{re.escape(self.prefix)}(-?[0-9]{{1,18}}){re.escape(self.suffix)}")
-        matches = ((path, named.fullmatch(path.name)) for path in _listed(self.folder))
-        numbered = {
-            int(match[1]): path for path, match in matches if match and self.path(int(match[1])).name == path.name
-        }
-        return {number: path for number, path in numbered.items() if path.is_file()}
 
 
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
@@ -180,66 +99,11 @@ def sample_frames(sequence: FrameSequence, count: int = FRAMES_ANALYZED) -> tupl
     return tuple(sequence.paths[position] for position in sorted(positions))
 
 
-def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
-    """Return the frame numbers of a specification, ascending and each once.
-
-    Parameters
-    ----------
-    frames : str or iterable of int
-        Numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2" (every second), "1,5,9",
-        "-3--1". A range may run backwards; the frames come in ascending order all the same.
-
-    Raises
-    ------
-    PlateError
-        If it is malformed, holds parts of frames, or there are more than `MAX_FRAMES` frames.
-    """
-    if not isinstance(frames, str):
-        return tuple(sorted({index(number) for number in frames}))
-    from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
-    from fileseq.frameset import FrameSet
-
-    found: Collection[Any] = ()
-    try:
-        if frames.isascii() and all(frames.split(",")):
-            found = FrameSet(frames)
-    except MaxSizeException:
-        found = range(MAX_FRAMES + 1)
-    except ParseException:
-        found = ()
-    if len(found) > MAX_FRAMES:
-        raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
-    if not found or any(number != int(number) for number in found):
-        raise PlateError(f"frames {frames!r}: is no frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9")
-    return tuple(sorted(map(int, found)))
-
-
-def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
-    """Return ascending frame numbers as ranges, for example "1-3, 7, 9-12", with an ellipsis after `limit` ranges."""
-    ranges: list[list[int]] = []
-    for number in numbers:
-        if ranges and number == ranges[-1][1] + 1:
-            ranges[-1][1] = number
-        else:
-            ranges.append([number, number])
-    texts = [str(first) if first == last else f"{first}-{last}" for first, last in ranges]
-    return ", ".join(texts[:limit]) + (", …" if len(texts) > limit else "")
-
-
-def _width(mark: str, frames: str) -> int:
-    """Return the number of digits to which a placeholder pads; without one, to those of the first frame."""
-    if not mark:
-        return len(re.split(r"(?<=[0-9])\D", frames)[0])
-    if mark[0] in "%$":
-        return int(mark.strip("%d$F") or 1)
-    return 4 if mark == "#" else len(mark)
-
-
 def _only_sequence(folder: Path) -> FramePattern:
     """Return the pattern of the one sequence in a folder: two files or more that differ in their number alone."""
     from fileseq.filesequence import FileSequence  # only here: see the module
 
-    names = [path.name for path in _listed(folder) if not path.name.startswith(".") and path.is_file()]
+    names = [path.name for path in listed(folder) if not path.name.startswith(".") and path.is_file()]
     sequences = [found for found in FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
     patterns = [
         _pattern(folder, found.basename(), found.zfill(), found.extension(), found.start()) for found in sequences
@@ -258,14 +122,6 @@ def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> 
     if first < 0 and prefix[-1:].isalnum():
         prefix, width = prefix + "-", width - 1
     return FramePattern(folder, prefix, width, suffix)
-
-
-def _listed(folder: Path) -> list[Path]:
-    """Return what a folder holds; raise a PlateError if it cannot be listed."""
-    try:
-        return list(folder.iterdir())
-    except OSError as problem:
-        raise PlateError(f"{folder}: cannot be listed ({problem.strerror}); check the folder") from problem
 
 
 def _kind(path: Path) -> str:

@@ -24,7 +24,9 @@ from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
 from ocio.plates.first_frame import FirstFrame, SourceFrame, first_frame
 from ocio.plates.frame_files import EncodedFrame, FrameSource
-from ocio.plates.frames import FramePattern, FrameSequence, format_frames
+from ocio.plates.frame_numbers import format_frames
+from ocio.plates.frame_pattern import FramePattern
+from ocio.plates.frames import FrameSequence
 from ocio.plates.light import PlateLight, check_finished
 from ocio.plates.parallel import finished
 from ocio.plates.primaries import check_same_primaries, plate_primaries

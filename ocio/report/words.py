@@ -12,7 +12,7 @@ from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_pe
 from crfnet_core.posterior import Family, LikelyKind, Verdict
 from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
 from ocio.output_files import OutputFiles
-from ocio.plates.frames import format_frames
+from ocio.plates.frame_numbers import format_frames
 from ocio.plates.linear import PlateReport
 from ocio.report.documents import QUARTERS
 from ocio.report.facts import agreeing, basis, curve_error, expected_errors, shape_error

@@ -6,15 +6,9 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PlateError
-from ocio.plates.frames import (
-    MAX_FRAMES,
-    FramePattern,
-    FrameSequence,
-    find_frames,
-    format_frames,
-    parse_frames,
-    sample_frames,
-)
+from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
+from ocio.plates.frame_pattern import FramePattern
+from ocio.plates.frames import FrameSequence, find_frames, sample_frames
 
 
 def touch(folder, *names):

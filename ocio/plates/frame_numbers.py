@@ -1,0 +1,62 @@
+"""Frame numbers in words: ranges such as 1001-1100 and 1-9x2, read and written.
+
+Fileseq reads them. It is imported only when they are: what the Blender add-on calls does without it, so the add-on need
+not bring it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Collection, Iterable, Sequence
+from operator import index
+from typing import Any
+
+from crfnet_core.errors import PlateError
+
+#: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
+MAX_FRAMES = 1_000_000
+
+
+def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
+    """Return the frame numbers of a specification, ascending and each once.
+
+    Parameters
+    ----------
+    frames : str or iterable of int
+        Numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2" (every second), "1,5,9",
+        "-3--1". A range may run backwards; the frames come in ascending order all the same.
+
+    Raises
+    ------
+    PlateError
+        If it is malformed, holds parts of frames, or there are more than `MAX_FRAMES` frames.
+    """
+    if not isinstance(frames, str):
+        return tuple(sorted({index(number) for number in frames}))
+    from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
+    from fileseq.frameset import FrameSet
+
+    found: Collection[Any] = ()
+    try:
+        if frames.isascii() and all(frames.split(",")):
+            found = FrameSet(frames)
+    except MaxSizeException:
+        found = range(MAX_FRAMES + 1)
+    except ParseException:
+        found = ()
+    if len(found) > MAX_FRAMES:
+        raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
+    if not found or any(number != int(number) for number in found):
+        raise PlateError(f"frames {frames!r}: is no frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9")
+    return tuple(sorted(map(int, found)))
+
+
+def format_frames(numbers: Sequence[int], limit: int = 5) -> str:
+    """Return ascending frame numbers as ranges, for example "1-3, 7, 9-12", with an ellipsis after `limit` ranges."""
+    ranges: list[list[int]] = []
+    for number in numbers:
+        if ranges and number == ranges[-1][1] + 1:
+            ranges[-1][1] = number
+        else:
+            ranges.append([number, number])
+    texts = [str(first) if first == last else f"{first}-{last}" for first, last in ranges]
+    return ", ".join(texts[:limit]) + (", …" if len(texts) > limit else "")
