@@ -4,7 +4,7 @@ from types import SimpleNamespace
 
 import pytest
 
-pytest.importorskip("scipy", reason="training needs the train extra")
+pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core import ResponseCurve
 from crfnet_core.cameras import Camera, CameraSettings
