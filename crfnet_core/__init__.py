@@ -4,6 +4,7 @@ analysis             what the network reads in each photograph
 estimate             the method on one screen: photographs in, response and uncertainty out
 response_estimate    what comes out, and the same as a document for JSON
 calibration          the response measured from an exposure stack instead
+cameras              responses of one's cameras, kept to be used again
 photo, image_io      a photograph's code values, of a file or an array, and the one reader of image files
 metadata             what a file says of how its photograph was made, and of its primaries
 colorimetry          from chromaticities to matrices

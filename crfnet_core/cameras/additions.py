@@ -112,6 +112,7 @@ def remove_photographs(library: CameraLibrary, name: str, photographs: Sequence[
     CameraError
         If the camera or a photograph is not there, or nothing would remain.
     """
+    library.get(name)  # a wrong name makes no folder
     with library.locked():
         camera = library.get(name).without(photographs)
         if not (camera.measured or camera.photographs):

@@ -17,6 +17,7 @@ EXAMPLES = """examples:
   crfnet estimate clip.mp4 --out look               a movie: some of its frames, one response
   crfnet estimate shot.%04d.dpx --frames 1001-1100 --out look        a sequence: some of these frames
   crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
+  crfnet estimate plate01.jpg --out look --camera "A7 III"       the response of a stored camera: see crfnet camera
 
 For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
 plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01.json."""

@@ -11,11 +11,12 @@ from ocio.arguments.parts import Commands, add_command, add_frames, add_network,
 EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
   crfnet linearize shot.%04d.png --lut look/plate01.spi1d --out linear/shot.%04d.exr
+  crfnet linearize shot.%04d.png --camera "A7 III" --out linear/shot.%04d.exr
   crfnet linearize 'shot.####.jpg' --frames 1001-1100 --out 'linear/shot.####.exr'
   crfnet linearize clip.mov --frames 1-100 --lut look/clip.spi1d --out linear/clip.%04d.exr
 
-Without --lut one response is estimated from several of the frames. Frames that are already written are left alone,
-so an interrupted run goes on where it stopped. The first frame of a movie has number 1."""
+Without --lut and --camera one response is estimated from several of the frames. Frames that are already written are
+left alone, so an interrupted run goes on where it stopped. The first frame of a movie has number 1."""
 
 
 def add(commands: Commands) -> None:

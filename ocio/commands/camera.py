@@ -85,6 +85,7 @@ def _remove(arguments: argparse.Namespace) -> None:
     if arguments.photos:
         left = report.camera_summary(remove_photographs(library, name, arguments.photos))
     else:
+        library.get(name)  # a wrong name makes no folder
         with library.locked():
             library.remove(name)
         left = None

@@ -81,8 +81,9 @@ def test_its_examples_run(page, plate, tmp_path, monkeypatch):
     """One after the other, in one folder."""
     shutil.copyfile(plate, tmp_path / "plate01.jpg")
     monkeypatch.chdir(tmp_path)
+    monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
     snippets = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert len(snippets) == 4
+    assert len(snippets) == 5
     names: dict[str, object] = {}
     for snippet in snippets:
         exec(snippet, names)

@@ -170,6 +170,14 @@ def test_a_camera_is_handed_on_as_a_file(run, measured, library, tmp_path, monke
     assert CameraLibrary.of_user().get("measured").measured == measured.measured
 
 
+@pytest.mark.parametrize(
+    "arguments", [["remove", "nobody"], ["remove", "nobody", "a.jpg"], ["show", "nobody"], ["list"]]
+)
+def test_asking_makes_no_library(crfnet, tmp_path, arguments):
+    crfnet("camera", *arguments)
+    assert list(tmp_path.iterdir()) == []
+
+
 BAD = {
     "neither": ["camera", "add", "a"],
     "both": ["camera", "add", "a", "{photo}", "--from-calibration", "{photo}"],
