@@ -80,7 +80,10 @@ def _fail(problem: BaseException) -> int:
         return BAD_INPUT
     from crfnet_core.errors import one_line  # as above
 
-    _print_error(f"crfnet: error: {one_line(UNEXPLAINED.get(type(problem), str(problem)))}")
+    text = UNEXPLAINED.get(type(problem), str(problem))
+    if isinstance(problem, OSError) and problem.strerror:
+        text = f"{problem.filename or 'the output'}: {problem.strerror}; check the name, the folder and the disk"
+    _print_error(f"crfnet: error: {one_line(text)}")
     return BAD_INPUT
 
 

@@ -72,11 +72,11 @@ class Session:
             self._session = onnxruntime.InferenceSession(
                 graph, options, providers=["CPUExecutionProvider"], enable_fallback=0
             )
+            self._check_signature()
         except _PROBLEMS as problem:
             raise ModelError(
                 f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"
             ) from None
-        self._check_signature()
 
     def run(self, inputs: Float32Array) -> list[Float32Array]:
         """Return the network's outputs for some rows: finite, and of the shapes of evidence.

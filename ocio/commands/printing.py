@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping
@@ -22,6 +23,7 @@ NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'c
 
 def has_matplotlib() -> bool:
     """Return whether a sheet can be drawn; if not, say on stderr what to do."""
+    os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     if find_spec("matplotlib") is not None:
         return True
     print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201

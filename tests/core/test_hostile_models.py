@@ -214,6 +214,12 @@ def test_pipes_devices_and_huge_files_are_not_read(tmp_path, name):
     assert "it has more than" in refusal(tmp_path / "m")
 
 
+def test_names_that_are_no_text_are_refused(tmp_path):
+    graph = evidence_graph(inputs=(value("windows", ("n", 227, 227, 3)), value("other", (1,))))
+    content = model(graph).replace(b"other", b"\xff\xfeher")
+    assert "onnxruntime cannot load" in refusal(write_model(tmp_path / "m", content))
+
+
 def test_a_number_of_outputs_that_is_no_evidence_is_refused(tmp_path):
     folder = write_model(tmp_path / "m", model(evidence_graph()), output_names=["locations", "factors"])
     assert "has 2 outputs, needed are 3" in refusal(folder)

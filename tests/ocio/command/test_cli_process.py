@@ -113,6 +113,14 @@ def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fix
     assert [name for name in listed(tmp_path / "out") if not name.startswith(".crfnet-")] == listed(look)
 
 
+def test_a_backend_that_matplotlib_does_not_know_does_not_matter(plate, fixed_model, tmp_path):
+    command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+    environment = {**os.environ, "MPLBACKEND": "nonsense"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+    assert (done.returncode, done.stderr) == (0, "")
+    assert (tmp_path / "out" / "plate_sheet.png").exists()
+
+
 @pytest.mark.parametrize("name", ["OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES"])
 def test_what_a_studio_hides_of_its_configs_does_not_matter(look, plate, fixed_model, tmp_path, name):
     command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]

@@ -130,7 +130,16 @@ def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
     [
         (KeyboardInterrupt(), 130, "crfnet: interrupted"),
         (MemoryError(), BAD_INPUT, "crfnet: error: not enough memory"),
-        (OSError(28, "No space left on device", "x.exr"), BAD_INPUT, "crfnet: error: [Errno 28] No space left"),
+        (
+            OSError(28, "No space left on device", "x.exr"),
+            BAD_INPUT,
+            "crfnet: error: x.exr: No space left on device; check",
+        ),
+        (
+            OSError(2, "No such file or directory"),
+            BAD_INPUT,
+            "crfnet: error: the output: No such file or directory; ch",
+        ),
     ],
 )
 def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, problem, code, line):
