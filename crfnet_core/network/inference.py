@@ -94,10 +94,9 @@ class ResponseNetwork:
             raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
         folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")
-        graph = read_model_file(folder / "model.onnx")
-        if hashlib.sha256(graph).hexdigest() != config.sha256:
+        if hashlib.sha256(read_model_file(folder / "model.onnx")).hexdigest() != config.sha256:
             raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
-        return cls(config, _session(folder, graph, config), folder=folder, threads=threads)
+        return cls(config, _session(folder, config), folder=folder, threads=threads)
 
     def inputs(self, windows: Float32Array, *, progress: Progress | None = None) -> Float32Array:
         """Return what the network reads of `windows`: their statistics, or the windows themselves.
@@ -181,12 +180,12 @@ def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:
     return tuple(Evidence(*parts) for parts in zip(*(output.astype(np.float64) for output in outputs), strict=True))
 
 
-def _session(folder: Path, graph: bytes, config: ModelConfig) -> onnxruntime.InferenceSession:
+def _session(folder: Path, config: ModelConfig) -> onnxruntime.InferenceSession:
     """Return the session of a graph on one thread of the CPU, or say why there is none."""
     options = onnxruntime.SessionOptions()
     options.intra_op_num_threads = 1
     try:
-        session = onnxruntime.InferenceSession(graph, options, providers=["CPUExecutionProvider"])
+        session = onnxruntime.InferenceSession(folder / "model.onnx", options, providers=["CPUExecutionProvider"])
     except _UNLOADABLE as problem:
         raise ModelError(
             f"{folder}: onnxruntime cannot load model.onnx; restore it or update ({one_line(problem)})"

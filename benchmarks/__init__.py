@@ -1,0 +1,1 @@
+"""What crfnet costs and withstands, measured: `make bench`."""
