@@ -3,7 +3,7 @@ import pytest
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, SECOND_WEIGHTS, candidate_responses
 from crfnet_core.statistics.mixing import LEVEL_BANDS, Mixtures, disagreement_sums, mixing_sums
-from crfnet_core.statistics.shading import LITTLE, MUCH, shading_sums
+from crfnet_core.statistics.shading import LITTLE, MUCH, Pairs, shading_sums
 
 RESPONSES = candidate_responses()
 
@@ -73,7 +73,7 @@ def test_shading_agrees_under_the_true_response(true, change, least, most):
     rng = np.random.default_rng(2)
     light = rng.uniform(0.05, 0.8, (3, 20_000))
     shaded = light * rng.uniform(least, most, 20_000)
-    sums, count = shading_sums((recorded(light, true), recorded(shaded, true)), change)
+    sums, count = shading_sums(Pairs.among((recorded(light, true), recorded(shaded, true))), change)
     assert count[0] > 500
     assert sums[true] < np.quantile(sums, 0.2)
 
@@ -81,5 +81,5 @@ def test_shading_agrees_under_the_true_response(true, change, least, most):
 def test_a_flat_window_says_nothing():
     flat = np.full((3, 500), 100, np.uint8)
     mixtures = Mixtures.among((flat,) * 5)
-    parts = (*mixing_sums(mixtures), *disagreement_sums(mixtures), *shading_sums((flat,) * 2, LITTLE))
+    parts = (*mixing_sums(mixtures), *disagreement_sums(mixtures), *shading_sums(Pairs.among((flat,) * 2), LITTLE))
     assert not any(part.any() for part in parts)
