@@ -44,12 +44,12 @@ def main(names: list[str]) -> None:
 
 def measure(name: str) -> None:
     """Measure a part and replace its figures in `RESULTS`; those of other parts stay."""
-    kept = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     circumstances = _circumstances()
     with tempfile.TemporaryDirectory() as folder:
         figures = list(PARTS[name](Path(folder), RUNS))
     for figure in figures:
         print(f"{figure.name:<90}{figure.value:>8.2f} {figure.unit:<6}{figure.limit}", flush=True)
+    kept = json.loads(RESULTS.read_text()) if RESULTS.exists() else {}
     kept[name] = {**circumstances, "figures": [_rounded(asdict(each)) for each in figures]}
     RESULTS.write_text(json.dumps({each: kept[each] for each in PARTS if each in kept}, indent=2) + "\n")
 
