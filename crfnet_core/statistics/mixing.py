@@ -102,8 +102,8 @@ class Mixtures:
 
     def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
         """Return a, b and c of two channels at some indices, each (2, len(index))."""
-        a, b, c = (np.stack([side[channel].take(index) for channel in pair]) for side in (self.a, self.b, self.c))
-        return a, b, c
+        positions = index + np.array(pair)[:, None] * self.a.shape[1]
+        return self.a.take(positions), self.b.take(positions), self.c.take(positions)
 
 
 def mixing_parts(lines: Lines) -> dict[str, Float32Array]:
