@@ -1,1 +1,1 @@
-"""What is measured again and again: runs that take too long for the tests."""
+"""What crfnet costs and withstands, measured again and again: runs that take too long for the tests."""

@@ -8,7 +8,6 @@ import sys
 from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
-from importlib.metadata import version
 
 import shtab
 
@@ -37,6 +36,16 @@ def main(argv: Sequence[str] | None = None) -> int:
             return interruption.exit_code
 
 
+class _Version(argparse.Action):
+    """Print the version, which takes half as long to look up as everything else takes to start."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        from importlib.metadata import version
+
+        sys.stdout.write(f"{parser.prog} {version('crfnet')}\n")
+        parser.exit()
+
+
 def build_parser() -> argparse.ArgumentParser:
     """Return the parser of the whole command line."""
     parser = Parser(
@@ -44,7 +53,9 @@ def build_parser() -> argparse.ArgumentParser:
         description="Camera response from one photograph: LUTs, an OpenColorIO config and a linear plate.",
         epilog="crfnet COMMAND --help shows examples.",
     )
-    parser.add_argument("--version", action="version", version=f"crfnet {version('crfnet')}")
+    parser.add_argument(
+        "--version", action=_Version, nargs=0, default=argparse.SUPPRESS, help="show program's version number and exit"
+    )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
     for subcommand in (estimate, calibrate, camera, linearize, config, convert, info, completion):
         subcommand.add(commands)

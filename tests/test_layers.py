@@ -5,9 +5,11 @@ import sys
 
 import pytest
 
+import crfnet_core
+
 GUESTS = ("bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy")
 
-PACKAGES = ("blender_addon", "crfnet_core", "ocio", "training")
+PACKAGES = ("benchmarks", "blender_addon", "crfnet_core", "ocio", "training")
 
 #: The most lines of a module, and the most modules of a package beside its `__init__.py`: more want another room.
 MOST_LINES, MOST_MODULES = 300, 12
@@ -39,6 +41,19 @@ def test_the_core_loads_no_guest(root):
 def test_the_command_starts_light(root):
     """`crfnet --help` must not wait for onnxruntime, OpenImageIO or matplotlib."""
     assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
+
+
+def test_the_core_starts_light(root):
+    """Its names are imported when they are first used."""
+    assert not loaded_by("import sys, crfnet_core; print(*sys.modules)", root) & {"numpy", "onnxruntime", "OpenImageIO"}
+
+
+def test_every_public_name_and_module_of_the_core_is_there_and_no_other():
+    for name in crfnet_core.__all__:
+        assert getattr(crfnet_core, name).__name__ == name
+    assert crfnet_core.posterior.Prior.__module__ == "crfnet_core.posterior.prior"
+    with pytest.raises(AttributeError, match="nonesuch"):
+        _ = crfnet_core.nonesuch
 
 
 def test_the_pipeline_loads_what_the_add_on_has(root):

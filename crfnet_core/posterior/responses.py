@@ -78,7 +78,8 @@ class ResponseBank:
     @cached_property
     def weights(self) -> Float64Array:
         """EMoR weights of the responses, shape (N, 11)."""
-        return EmorBasis.load().project(self.brightness)
+        basis = EmorBasis.load()
+        return np.concatenate([basis.project(rows) for rows in np.array_split(self.brightness, 16)])
 
     @cached_property
     def log_irradiance(self) -> Float32Array:

@@ -8,7 +8,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crfnet_core.statistics.gradients import STRIDES
-from crfnet_core.statistics.sampling import Row, interpolation_weights, samples_in_a_row
+from crfnet_core.statistics.sampling import Row, interpolation_weights
 from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray, Uint8Array
 
 #: Levels that the two sides of edges are first counted on.
@@ -42,9 +42,9 @@ class Triples(NamedTuple):
     rise: Uint8Array
 
     @classmethod
-    def among(cls, lines: Uint8Array, stride: int) -> Triples:
-        """Return the triples of `sampled_lines` at a stride."""
-        a, b, c = samples_in_a_row(lines, stride, 3)
+    def among(cls, row: Row) -> Triples:
+        """Return the triples of three samples in a row, each uint8 (3, M)."""
+        a, b, c = row
         low = np.minimum(a, c)
         return cls(a, b, c, low, np.maximum(a, c) - low, b - low)
 

@@ -6,7 +6,7 @@ from functools import cache
 
 import numpy as np
 
-from crfnet_core.statistics.sampling import CODES, interpolation_weights, samples_in_a_row
+from crfnet_core.statistics.sampling import CODES, Lines, interpolation_weights
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
 
 #: Levels of brightness that counts over codes are gathered into.
@@ -28,25 +28,20 @@ def level_histogram(planes: Uint8Array) -> Float64Array:
     return histogram
 
 
-def gradient_sums(lines: Uint8Array) -> Float32Array:
+def gradient_sums(lines: Lines) -> Float32Array:
     """Return `GRADIENT_SUMS` over the neighbours of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
 
     Both neighbours count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
     level, so the mean gradient of brightness, as a function of brightness, follows the slope of f (Eq. 9).
-
-    Parameters
-    ----------
-    lines : ndarray, uint8, shape (3, 2, N, lines)
-        See `sampled_lines`.
     """
     sums = np.stack([_sums_by_code(lines, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
     by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)
     return by_level
 
 
-def _sums_by_code(lines: Uint8Array, stride: int) -> Float32Array:
+def _sums_by_code(lines: Lines, stride: int) -> Float32Array:
     """Return the sums over the neighbours of the samples of each code, shape (3, GRADIENT_SUMS, 256)."""
-    first, second = samples_in_a_row(lines, stride, 2)
+    first, second = lines.samples_in_a_row(stride, 2)
     pairs = (first.astype(np.uint16) << 8) | second
     tables, sums = _difference_tables(), np.empty((3, GRADIENT_SUMS, CODES), np.float32)
     padded = np.empty((CODES, CODES + 16), np.float32)  # columns a power of two apart would share lines of a cache

@@ -17,7 +17,7 @@ import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
 from crfnet_core.statistics.edges import shared_edges
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Row, both_directions, evenly_spread, half_resolution
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Lines, Row, evenly_spread, half_resolution
 from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
 
 #: Distances between the samples of a mixture; and between those of half resolution.
@@ -102,13 +102,13 @@ class Mixtures:
 
     def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
         """Return a, b and c of two channels at some indices, each (2, len(index))."""
-        a, b, c = (np.stack([side[channel].take(index) for channel in pair]) for side in (self.a, self.b, self.c))
-        return a, b, c
+        positions = index + np.array(pair)[:, None] * self.a.shape[1]
+        return self.a.take(positions), self.b.take(positions), self.c.take(positions)
 
 
-def mixing_parts(planes: Uint8Array) -> dict[str, Float32Array]:
-    """Return the sums over the mixtures in planes of codes (3, N, N): see `SHAPES`."""
-    mixtures = [Mixtures.among(both_directions(planes, stride, 5)) for stride in MIXING_STRIDES]
+def mixing_parts(lines: Lines) -> dict[str, Float32Array]:
+    """Return the sums over the mixtures in a window: see `SHAPES`."""
+    mixtures = [Mixtures.among(lines.samples_in_a_row(stride, 5)) for stride in MIXING_STRIDES]
     sums, counts = _stacked(map(mixing_sums, mixtures))
     disagreement, disagreement_counts = _stacked(map(disagreement_sums, mixtures))
     return {
@@ -124,8 +124,8 @@ def half_resolution_parts(planes: Uint8Array) -> dict[str, Float32Array]:
 
     JPEG and video keep colour at half the resolution, so there the channels of single samples were never independent.
     """
-    halved = half_resolution(planes)
-    mixtures = [Mixtures.among(both_directions(halved, stride, 5)) for stride in HALF_RESOLUTION_STRIDES]
+    lines = Lines.of(half_resolution(planes))
+    mixtures = [Mixtures.among(lines.samples_in_a_row(stride, 5)) for stride in HALF_RESOLUTION_STRIDES]
     sums, counts = _stacked(map(disagreement_sums, mixtures))
     return {"half_resolution_disagreement": sums, "half_resolution_disagreement_counts": counts}
 

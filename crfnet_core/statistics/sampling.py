@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import NamedTuple
 
 import numpy as np
 
@@ -34,41 +35,41 @@ def half_resolution(planes: Uint8Array) -> Uint8Array:
     return means
 
 
-def sampled_lines(planes: Uint8Array) -> Uint8Array:
-    """Return every second row and every second column of planes (3, N, N), the channels first, shape (3, 2, N, lines).
+class Lines(NamedTuple):
+    """Every second row and every second column of planes of codes: adjacent ones say nearly the same.
 
-    The samples of a line are in the third axis: those in a row of all lines are whole blocks of memory.
+    Parameters
+    ----------
+    rows : ndarray, uint8, shape (3, lines, N)
+        The rows.
+    columns : ndarray, uint8, shape (3, N, lines)
+        The columns.
     """
-    return np.stack([planes[:, ::2].transpose(0, 2, 1), planes[:, :, ::2]], axis=1)
 
+    rows: Uint8Array
+    columns: Uint8Array
 
-def samples_in_a_row(lines: Uint8Array, stride: int, count: int) -> Row:
-    """Return `count` samples in a row, `stride` apart, of `sampled_lines`, each array of shape (3, M).
+    @classmethod
+    def of(cls, planes: Uint8Array) -> Lines:
+        """Return the lines of planes (3, N, N)."""
+        return cls(np.ascontiguousarray(planes[:, ::2]), np.ascontiguousarray(planes[:, :, ::2]))
 
-    At large strides fewer lines are looked at: the same as in `rows_and_columns`, in another order.
-    """
-    size, skip = lines.shape[2] - (count - 1) * stride, max(1, stride // 8)
-    starts = range(0, count * stride, stride)
-    return tuple(lines[:, :, start : start + size, ::skip].reshape(len(lines), -1) for start in starts)
+    def samples_in_a_row(self, stride: int, count: int) -> Row:
+        """Return `count` samples in a row, `stride` apart, of all rows and then of all columns, each (3, M).
 
-
-def rows_and_columns(planes: Uint8Array, stride: int, count: int) -> tuple[Row, Row]:
-    """Return `count` samples in a row, `stride` apart, along the rows and along the columns of planes (..., N, N).
-
-    Each array has the shape (..., M). Adjacent lines say nearly the same, so at most every second one is looked at.
-    """
-    size, skip = planes.shape[-1] - (count - 1) * stride, max(2, stride // 4)
-    starts = [number * stride for number in range(count)]
-    rows = tuple(planes[..., ::skip, start : start + size] for start in starts)
-    columns = tuple(planes[..., start : start + size, ::skip] for start in starts)
-    flat = (*planes.shape[:-2], -1)
-    return tuple(side.reshape(flat) for side in rows), tuple(side.reshape(flat) for side in columns)
-
-
-def both_directions(planes: Uint8Array, stride: int, count: int) -> Row:
-    """Return `rows_and_columns` of planes (3, N, N) one behind the other, each array of shape (3, M)."""
-    rows, columns = rows_and_columns(planes, stride, count)
-    return tuple(np.concatenate(sides, axis=1) for sides in zip(rows, columns, strict=True))
+        At large strides fewer lines are looked at.
+        """
+        size, skip = self.rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
+        return tuple(
+            np.concatenate(
+                [
+                    self.rows[:, ::skip, start : start + size].reshape(3, -1),
+                    self.columns[:, start : start + size, ::skip].reshape(3, -1),
+                ],
+                axis=1,
+            )
+            for start in range(0, count * stride, stride)
+        )
 
 
 def evenly_spread(mask: BoolArray, most: int) -> IndexArray:

@@ -7,7 +7,7 @@ from crfnet_core.statistics.edges import Triples, edge_sums
 from crfnet_core.statistics.gradients import STRIDES, gradient_sums, level_histogram
 from crfnet_core.statistics.layout import pack
 from crfnet_core.statistics.mixing import half_resolution_parts, mixing_parts
-from crfnet_core.statistics.sampling import code_planes, sampled_lines
+from crfnet_core.statistics.sampling import Lines, code_planes
 from crfnet_core.statistics.shading import shading_parts
 from crfnet_core.types import Float32Array
 
@@ -26,16 +26,16 @@ def window_statistics(window: Float32Array) -> Float32Array:
         The parts of `crfnet_core.statistics.layout`, packed: `unpack` gives them back by name.
     """
     planes = code_planes(window)
-    lines = sampled_lines(planes)
-    triples = [Triples.among(lines, stride) for stride in STRIDES]
+    lines = Lines.of(planes)
+    triples = [Triples.among(lines.samples_in_a_row(stride, 3)) for stride in STRIDES]
     return pack(
         {
             "histogram": level_histogram(planes),
             "gradients": gradient_sums(lines),
             "edges": edge_sums(triples),
             "channel_equations": channel_equations(triples[: len(EQUATION_STRIDES)]),
-            **mixing_parts(planes),
-            **shading_parts(planes),
+            **mixing_parts(lines),
+            **shading_parts(lines),
             **half_resolution_parts(planes),
         }
     )

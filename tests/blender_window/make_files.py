@@ -14,8 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
+from benchmarks.pictures import make_photograph
 from ocio.cli import main as crfnet
-from tests import bench
 from tests.helpers.images import read_image, write_image
 
 #: The bundled photograph.
@@ -48,7 +48,7 @@ def make_plates(folder: Path) -> None:
         write_image(folder / "numbers" / f"{number:04d}.jpg", frame, Compression="jpeg:95")
         write_image(folder / "shot" / f"shot.{1000 + number}.jpg", frame, Compression="jpeg:95")
     write_image(folder / "limited.png", np.rint(16 + 219 / 255 * codes).astype(np.uint8))
-    bench.make_photograph(folder / "large.jpg", *LARGE)
+    make_photograph(folder / "large.jpg", *LARGE)
 
 
 def main(folder: Path) -> int:

@@ -241,6 +241,12 @@ def test_the_same_photograph_gives_the_same_estimate(bundled, plate, fixed_model
     assert again.uncertainty == bundled.uncertainty
 
 
+def test_an_estimate_looks_at_some_pixels_of_a_file_only(plate, fixed_model):
+    photo = read_photo(plate)
+    estimate_response(photo, network=ResponseNetwork.load(fixed_model))
+    assert "pixels" not in vars(photo)
+
+
 def test_the_packaged_model_answers_the_bundled_photograph(plate):
     estimate = estimate_response(read_photo(plate), network=ResponseNetwork.load())
     assert np.isfinite([estimate.uncertainty, estimate.shape_uncertainty]).all()

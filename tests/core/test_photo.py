@@ -184,7 +184,7 @@ def test_a_damaged_ultra_hdr_photograph_is_named_itself(tmp_path):
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
-def test_memory_is_the_codes_and_the_floats(tmp_path):
+def test_memory_is_the_codes_alone(tmp_path):
     path = write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
     code = (
         "import resource, sys\n"
@@ -195,7 +195,7 @@ def test_memory_is_the_codes_and_the_floats(tmp_path):
     )
     run = subprocess.run([sys.executable, "-c", code, path], cwd=ROOT, capture_output=True, text=True, timeout=30)
     assert run.returncode == 0, run.stderr
-    needed = 12e6 * 3 * (1 + 4) / 1024
+    needed = 12e6 * 3 / 1024
     assert int(run.stdout) < 1.3 * needed, "kB"
 
 
@@ -203,6 +203,27 @@ def test_memory_is_the_codes_and_the_floats(tmp_path):
 def test_argument_that_is_no_path(path):
     with pytest.raises(TypeError):
         read_photo(path)
+
+
+@pytest.mark.parametrize("is_associated", [False, True])
+def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed(tmp_path, is_associated):
+    rng = np.random.default_rng(0)
+    codes = rng.integers(0, 256, (40, 30, 4), np.uint8)
+    stored = np.minimum(codes, codes[..., 3:]) if is_associated else codes
+    path = write_image(tmp_path / "a.tif", stored, oiio__UnassociatedAlpha=int(not is_associated))
+    photo = read_photo(path)
+    index = np.s_[3:30:4, ::5]
+    before = photo[index]
+    assert "pixels" not in vars(photo)
+    assert photo.shape == photo.pixels.shape == (40, 30, 3)
+    np.testing.assert_array_equal(before, photo.pixels[index])
+    np.testing.assert_array_equal(photo[index], before)
+
+
+def test_a_name_that_is_not_there_is_an_attribute_error(tmp_path):
+    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
+    with pytest.raises(AttributeError, match="nonesuch"):
+        _ = photo.nonesuch
 
 
 def test_photo_is_frozen(tmp_path):

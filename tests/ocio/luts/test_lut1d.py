@@ -48,6 +48,14 @@ def test_apply_interpolates_clamps_and_takes_nan_for_the_first_entry(kind):
     assert found.tolist() == [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0]
 
 
+@pytest.mark.parametrize("domain", [(0.0, 1.0), (-0.125, 1.125)])
+def test_a_large_array_has_the_values_of_its_rows(domain):
+    """It is worked on in blocks."""
+    lut = inverse_response_lut(ResponseCurve.gamma(), domain=domain)
+    pixels = np.random.default_rng(0).uniform(-0.5, 1.5, (7, 9999)).astype(np.float32)
+    np.testing.assert_array_equal(lut.apply(pixels), np.stack([lut.apply(row) for row in pixels]))
+
+
 def test_apply_over_a_domain():
     lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
     assert lut.apply([-2, -1, -0.5, 0, 0.5, 1, 2]).tolist() == [-1, -1, -0.5, 0, 2, 4, 4]
