@@ -55,6 +55,8 @@ def is_defined(body, names):
                 return not rest
             case ast.AnnAssign(target=target) if first in names_in(target):
                 return not rest
+            case ast.If(body=inner) if is_defined(inner, names):  # names that are imported when they are used
+                return True
             case ast.ImportFrom(names=imported) if first in {alias.asname or alias.name for alias in imported}:
                 return not rest
     return False
