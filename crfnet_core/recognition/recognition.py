@@ -117,7 +117,8 @@ def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
     spaces = " or ".join(f'"{COLOR_SPACES[each.name]}"' for each in near if each.name in COLOR_SPACES)
     fit, guess = f"its maker's curve is {least.name}", ""
     if len(near) > 1:
-        fit = f"by its levels the curve is {', '.join(f'{each.name} ({each.probability:.0%})' for each in near)}"
+        likely = ", ".join(f"{each.name} ({100 * each.probability:.0f} %)" for each in near)
+        fit = f"by its levels the curve may be {likely}"
         guess = f"; if nothing says, {least.name} is safest: its light may be off by {least.expected_error:.1f} stop"
     return Recognition(
         kind=Kind.LOG_FOOTAGE,

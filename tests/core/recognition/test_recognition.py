@@ -85,7 +85,7 @@ def test_log_footage_is_recognized_with_its_remedy():
 def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_error():
     found = recognize(Levels.of(log_picture("ARRI LogC3")), log_probability=0.9)
     safest, error = min(zip(found.curves, found.errors, strict=True), key=lambda pair: pair[1])
-    assert f"by its levels the curve is {found.curves[0]} ({found.probabilities[0]:.0%}), " in found.reason
+    assert f"the curve may be {found.curves[0]} ({100 * found.probabilities[0]:.0f} %), " in found.reason
     assert found.advice.endswith(f"; if nothing says, {safest} is safest: its light may be off by {error:.1f} stop")
     assert list(found.probabilities) == sorted(found.probabilities, reverse=True)
     assert 0 < sum(found.probabilities) < 1
