@@ -47,7 +47,7 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
     with suppress(AddonError):
-        found: list[tuple[str, str]] = lazy_import.load(".work.cameras").stored_cameras(text, models)
+        found: list[tuple[str, str]] = lazy_import.load("crfnet_core.cameras").listed_cameras(text, models)
         return found
     return []
 

@@ -9,7 +9,6 @@ frame_files      the frames of a plate as files that the estimator reads: its ow
 decoding         another Blender, which decodes movies
 encoding_check   refuses plates that are logarithmic or linear already
 background       a job in another thread, with progress and cancellation
-cameras          the stored cameras that a response may be taken from
 estimate_record  an estimate as the entries that a .blend file keeps
 curve_picture    a drawing of the response
 wording          what is said of an estimate, in the spelling of Blender's interface

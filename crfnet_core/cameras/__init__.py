@@ -13,7 +13,7 @@ from crfnet_core.cameras.answer import camera_estimate, compared, differences, w
 from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse
 from crfnet_core.cameras.documents import camera_document, read_calibration
 from crfnet_core.cameras.library import DATA_VARIABLE, CameraLibrary, find_camera
-from crfnet_core.cameras.matching import matching_cameras, offered_cameras
+from crfnet_core.cameras.matching import listed_cameras, matching_cameras, offered_cameras
 
 __all__ = [
     "DATA_VARIABLE",
@@ -30,6 +30,7 @@ __all__ = [
     "compared",
     "differences",
     "find_camera",
+    "listed_cameras",
     "matching_cameras",
     "offered_cameras",
     "read_calibration",

@@ -164,6 +164,13 @@ def find_camera(name: str) -> Camera:
     return own.find(name) or shipped.find(name) or own.get(name)
 
 
+def known_cameras() -> tuple[list[Camera], list[Camera]]:
+    """Return the user's own cameras, and those that come with this project and have no namesake among them."""
+    own = CameraLibrary.of_user().cameras()
+    names = {name_key(camera.name) for camera in own}
+    return own, [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
+
+
 def _made(lock: Path) -> bool:
     """Return whether a file that did not exist could be made."""
     try:

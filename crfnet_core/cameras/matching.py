@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Collection
 from contextlib import suppress
 
 from crfnet_core.cameras.answer import compared
 from crfnet_core.cameras.camera import Camera, CameraSettings
-from crfnet_core.cameras.library import CameraLibrary
+from crfnet_core.cameras.library import known_cameras
 from crfnet_core.errors import CameraError
 from crfnet_core.posterior import Prior
 from crfnet_core.response_estimate import CameraAnswer, ResponseEstimate
@@ -23,17 +24,34 @@ def matching_cameras(settings: CameraSettings) -> list[Camera]:
     """
     if not settings.camera:
         return []
-    own, shipped = (
-        [camera for camera in library.cameras() if camera.settings.camera.casefold() == settings.camera.casefold()]
-        for library in (CameraLibrary.of_user(), CameraLibrary.shipped())
-    )
-    names = {camera.name.casefold() for camera in own}
-    shipped = [camera for camera in shipped if camera.name.casefold() not in names]
 
     def nearest(camera: Camera) -> float:
         return _stops_away(camera, settings)
 
-    return [*sorted(own, key=nearest), *sorted(shipped, key=nearest)]
+    model = settings.camera.casefold()
+    return [
+        camera
+        for cameras in known_cameras()
+        for camera in sorted(cameras, key=nearest)
+        if camera.settings.camera.casefold() == model
+    ]
+
+
+def listed_cameras(text: str = "", models: Collection[str] = ()) -> list[tuple[str, str]]:
+    """Return the names of all cameras that hold a text, each with what its response rests on, to choose from.
+
+    Parameters
+    ----------
+    text : str
+        What has been typed so far, in upper or lower case.
+    models : collection of str
+        Make and model of a plate's camera, as `FileOrigin.camera` has them: such cameras come first, then the user's
+        own, then those that come with this project.
+    """
+    wanted = {model.casefold() for model in models}
+    cameras = [camera for known in known_cameras() for camera in known if text.casefold() in camera.name.casefold()]
+    ordered = sorted(cameras, key=lambda camera: camera.settings.camera.casefold() not in wanted)
+    return [(camera.name, camera.basis) for camera in ordered]
 
 
 def offered_cameras(

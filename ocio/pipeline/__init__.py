@@ -1,6 +1,7 @@
 """The one way from photographs to files, for the command and for the add-on.
 
 estimates  photographs or frames to the response estimated from them, and its LUT
+loading    the network, the prior and the stored camera that the options name
 folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheet, document and config
 each       many photographs, one response each: written as they end, continued when interrupted
 manifest   the file in which they stand
@@ -21,14 +22,11 @@ from ocio.pipeline.estimates import (
     PhotographEstimate,
     estimate_frames,
     estimate_photographs,
-    load_camera_response,
-    load_network,
-    load_prior,
-    model_label,
     response_lut,
     sampled_photographs,
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
+from ocio.pipeline.loading import load_camera_response, load_network, load_prior, model_label
 from ocio.pipeline.manifest import MANIFEST, PhotographRecord
 
 __all__ = [

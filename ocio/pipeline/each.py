@@ -20,8 +20,9 @@ from ocio.configs.portable import portable_config
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.estimates import estimate_photographs, load_camera, load_network, load_prior
+from ocio.pipeline.estimates import estimate_photographs
 from ocio.pipeline.folders import estimated_light, with_light, write_estimate
+from ocio.pipeline.loading import load_camera, load_network, load_prior
 from ocio.pipeline.manifest import MANIFEST, Manifest, PhotographRecord
 from ocio.pipeline.workers import cores, worker_pool
 from ocio.plates.linear_space import linear_space

@@ -7,17 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crfnet_core.cameras import (
-    Camera,
     CameraSettings,
-    camera_estimate,
-    find_camera,
     offered_cameras,
     with_camera,
 )
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Prior
 from crfnet_core.response_estimate import CameraAnswer
@@ -28,6 +25,7 @@ from ocio.movies.frames import MovieFrames
 from ocio.movies.library import is_movie
 from ocio.movies.selection import chosen_photos
 from ocio.options import EstimateOptions
+from ocio.pipeline.loading import load_camera
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import FrameSequence, find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
@@ -73,66 +71,6 @@ class PhotographEstimate:
     def movies(self) -> tuple[str, ...]:
         """What the report says of each movie, one line each."""
         return tuple(str(plate.movie) for plate in self.plates if isinstance(plate, MovieFrames))
-
-
-def load_network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network that the options name; a caller with several estimates loads it once.
-
-    Raises
-    ------
-    ModelError
-        If the model folder is absent, incomplete or altered.
-    """
-    return ResponseNetwork.load(options.model, threads=options.threads)
-
-
-def load_prior(options: EstimateOptions) -> Prior:
-    """Return the prior that the options name; a caller with several estimates loads it once.
-
-    Raises
-    ------
-    PriorError
-        If there is no such prior, or the file is none.
-    """
-    return Prior.load(options.prior)
-
-
-def load_camera(options: EstimateOptions) -> Camera | None:
-    """Return the stored camera that the options name; None if they name none.
-
-    Raises
-    ------
-    CameraError
-        If there is no such camera, or its file is damaged.
-    """
-    return None if options.camera is None else find_camera(options.camera)
-
-
-def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
-    """Return the response of the stored camera that the options name, for photographs that nobody looks at.
-
-    Raises
-    ------
-    CameraError
-        If there is no such camera, or it has no evidence of the model.
-    PriorError, ModelError
-        If there is no such prior or model.
-    """
-    camera = load_camera(options)
-    if camera is None:
-        return None
-    return camera_estimate(camera, model=model_label(options.model), prior=load_prior(options))
-
-
-def model_label(model: Path | None) -> str:
-    """Return the label of a model without loading its network; None stands for the default.
-
-    Raises
-    ------
-    ModelError
-        If the model folder is absent, incomplete or altered.
-    """
-    return ModelConfig.read(model_folder(model) / "model.json").label
 
 
 def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> list[Path]:

@@ -2,11 +2,10 @@
 
 import pytest
 
-from blender_addon.work.cameras import stored_cameras
 from blender_addon.work.errors import AddonError
 from blender_addon.work.wording import american
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
+from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured, listed_cameras
 from crfnet_core.errors import CameraError
 
 
@@ -21,25 +20,25 @@ def library(monkeypatch, tmp_path):
 
 
 def test_the_user_s_own_come_before_those_that_come_with_the_add_on():
-    names = [name for name, _ in stored_cameras()]
+    names = [name for name, _ in listed_cameras()]
     assert names[:2] == ["Anna's", "old"]
     assert "Canon EOS 20D" in names
-    assert ("old", "measured from 6 exposures") in stored_cameras()
+    assert ("old", "measured from 6 exposures") in listed_cameras()
 
 
 def test_cameras_of_the_plate_s_make_and_model_come_first():
-    assert stored_cameras(models=["Sony ILCE-7M2"])[0][0] == "old"
-    assert stored_cameras(models=["Canon EOS 20D"])[0][0] == "Canon EOS 20D"
+    assert listed_cameras(models=["Sony ILCE-7M2"])[0][0] == "old"
+    assert listed_cameras(models=["Canon EOS 20D"])[0][0] == "Canon EOS 20D"
 
 
 def test_a_text_narrows_them():
-    assert [name for name, _ in stored_cameras("anna")] == ["Anna's"]
-    assert stored_cameras("nobody's") == []
+    assert [name for name, _ in listed_cameras("anna")] == ["Anna's"]
+    assert listed_cameras("nobody's") == []
 
 
 def test_a_damaged_file_hides_no_other(library):
     (library.folder / "damaged.json").write_text("{")
-    assert "old" in [name for name, _ in stored_cameras()]
+    assert "old" in [name for name, _ in listed_cameras()]
 
 
 def test_an_unknown_camera_is_told_in_words_of_the_interface(library):
