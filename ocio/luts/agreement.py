@@ -30,7 +30,7 @@ def opencolorio_steps(path: Path) -> list[OCIO.Transform]:
     try:
         processor = OCIO.Config.CreateRaw().getProcessor(names_alone, transform, OCIO.TRANSFORM_DIR_FORWARD)
         return list(processor.createGroupTransform())
-    except UnicodeDecodeError:  # OpenColorIO's message quotes the file
+    except UnicodeError:  # OpenColorIO's message quotes the file, or the name is no text
         raise LutError(f"{path}: OpenColorIO reads no LUT from it; write the LUT again") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         said = one_line(problem).rpartition(" failed with: ")[2].replace(str(path.absolute()), path.name)
@@ -45,7 +45,8 @@ def check_agreement(path: Path, lut: AnyLut) -> None:
     LutError
         If it refuses the file, or reads something else.
     """
-    *before, table = opencolorio_steps(path)
+    steps = opencolorio_steps(path)
+    before, table = steps[:-1], steps[-1] if steps else None
     is_plain = (
         isinstance(table, OCIO.Lut1DTransform)
         and not table.getInputHalfDomain()
