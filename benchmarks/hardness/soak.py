@@ -22,7 +22,7 @@ MOST_GROWTH, WARM = 1.1, 10
 
 def soak(count: int, work: Path) -> Row:
     """Return the row of `count` estimates in one process."""
-    what = "estimates in one process: memory, open files, threads"
+    what = "estimates in one process: memory, open files, Python threads"
     if not sys.platform.startswith("linux"):
         return Row(what, 0, (), "skipped: memory is read from /proc, which only Linux has")
     command = [sys.executable, "-m", "benchmarks.hardness.soak", str(count), str(work)]
@@ -37,12 +37,12 @@ def soak(count: int, work: Path) -> Row:
     late = statistics.median(memory[-(count // 4) :] or memory)
     if late > MOST_GROWTH * early:
         failures.append(f"memory grows from {early / 2**20:.0f} to {late / 2**20:.0f} MB")
-    for name, counted in (("open files", opened), ("threads", threads)):
+    for name, counted in (("open files", opened), ("Python threads", threads)):
         if counted[-1] > counted[warm]:
             failures.append(f"{name} grow from {counted[warm]} to {counted[-1]}")
     note = (
         f"{early / 2**20:.0f} MB in the second quarter, {late / 2**20:.0f} MB in the last;"
-        f" {opened[warm]} open files and {threads[warm]} threads early, {opened[-1]} and {threads[-1]} late"
+        f" {opened[warm]} open files and {threads[warm]} Python threads early, {opened[-1]} and {threads[-1]} late"
     )
     return Row(what, count, tuple(failures), note)
 

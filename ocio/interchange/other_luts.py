@@ -35,8 +35,9 @@ def read_other_lut(path: Path) -> ResponseFile:
         If OpenColorIO refuses the file, it holds a 3D LUT or a matrix, or it falls somewhere.
     """
     lines = LutText.read(path).lines  # absent, too large or no text is refused here
-    marks = [line.strip(" \t\r\f\v").upper().partition(" METADATA")[0] for line in lines]
-    if "BEGIN" in marks and "END" not in marks[marks.index("BEGIN") :]:  # OpenColorIO would look for it for ever
+    marks = [line.strip(" \t\r\f\v").upper() for line in lines]
+    begins = [number for number, mark in enumerate(marks) if mark.startswith("BEGIN METADATA")]
+    if begins and not any(mark.startswith("END METADATA") for mark in marks[begins[0] :]):  # it would look for ever
         raise LutError(f"{path}: has no line END METADATA; the file is cut or altered")
     steps = opencolorio_steps(path)
     mixing = next((type(step).__name__ for step in steps if not isinstance(step, _PER_CHANNEL)), None)

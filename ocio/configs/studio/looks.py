@@ -115,7 +115,7 @@ def _document(path: Path) -> dict[str, Any] | None:
         _primaries(document)
     except (OSError, ValueError, KeyError, TypeError):
         return None
-    return document if all(isinstance(name, str) and Path(name).name == name for name in names) else None
+    return document if all(isinstance(name, str) and name and Path(name).name == name for name in names) else None
 
 
 def _exposure(source: Path, document: dict[str, Any]) -> float:

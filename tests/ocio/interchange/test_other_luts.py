@@ -81,6 +81,7 @@ def test_3d_tables_are_refused(tmp_path):
         ("a.csp", "", "is empty"),
         ("a.csp", csp([["0", "0", "0"], ["\xdd", "1", "1"]], SHAPER), "OpenColorIO reads no LUT from it"),
         ("a.csp", "CSPLUTV100\n1D\n\nBEGIN METADATA\nhello\n", "has no line END METADATA"),
+        ("a.csp", "CSPLUTV100\n1D\n\nBEGIN METADATA\nhello\nEND", "has no line END METADATA"),
         ("a.csp", "CSPLUTV100\n1D\n\nbegin metadata!\nhello\n", "has no line END METADATA"),
         ("a.csp", "CSPLUTV100\n1D\nEND METADATA\n\nBEGIN METADATA\x0bEND METADATA\n", "has no line END METADATA"),
         ("a.tif", "x", r"responses are read from \.spi1d, \.cube, \.clf, .*; found '\.tif'"),
