@@ -17,7 +17,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.pipeline.workers import cores
 
 #: Photographs of `crfnet estimate --each`, and frames of `crfnet linearize`.
-PHOTOGRAPHS, FRAMES = 40, 100
+PHOTOGRAPHS, FRAMES = 100, 100
 
 
 def estimate(folder: Path, runs: int) -> Iterator[Figure]:

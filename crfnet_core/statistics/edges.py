@@ -24,14 +24,15 @@ SHAPES = {"edges": (len(STRIDES), 2, GRID, GRID)}
 
 
 class Triples(NamedTuple):
-    """Three samples a, b, c in a row of all lines, and the lower and higher of a and c, each uint8 (3, M).
+    """Three samples a, b, c in a row, and what tells whether they are an edge, each uint8 (3, M).
 
     Parameters
     ----------
     a, b, c, low : ndarray
-        Codes.
+        Codes; low is the lower one of a and c.
     height, rise : ndarray
-        From low to high, and from low to b: above the height if b is not between a and c, since codes wrap around.
+        Codes from low to the other side, and to b. If b is not between a and c, the rise is above the height: below low
+        it wraps around to 256 less what is missing, which is more than is left above low.
     """
 
     a: Uint8Array
@@ -87,25 +88,3 @@ def _sums_by_level(triples: Triples) -> Float64Array:
     counts = np.bincount(cell, minlength=EDGE_LEVELS**2).astype(np.float64)
     sums = np.stack([counts, np.bincount(cell, ratio, minlength=EDGE_LEVELS**2)])
     return sums.reshape(2, EDGE_LEVELS, EDGE_LEVELS)
-
-
-def shared_edges(row: Row, least_height: int) -> tuple[IndexArray, BoolArray]:
-    """Return the edges that two channels or all three share.
-
-    Parameters
-    ----------
-    row : tuple of three ndarrays, uint8, shape (3, M)
-        Samples a, b and c in a row, of all channels.
-    least_height : int
-        An edge is higher than this, in codes.
-
-    Returns
-    -------
-    ndarray, shape (N,), and ndarray, bool, shape (3, N)
-        The indices at which two channels or more have an edge, and which channels these are.
-    """
-    a, b, c = row
-    low, high = np.minimum(a, c), np.maximum(a, c)
-    is_edge = (high - low > least_height) & (b >= low) & (b <= high)
-    index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
-    return index, is_edge.take(index, axis=1)

@@ -16,7 +16,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
-from crfnet_core.statistics.edges import shared_edges
+from crfnet_core.statistics.edges import Triples
 from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Lines, Row, evenly_spread, half_resolution
 from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
 
@@ -94,11 +94,12 @@ class Mixtures:
     @classmethod
     def among(cls, row: Row) -> Mixtures:
         """Return the mixtures among five samples in a row, each uint8 (3, M)."""
-        index, is_mixture = shared_edges(row[1:4], LEAST_HEIGHT)
+        is_edge = Triples.among(row[1:4]).are_edges(LEAST_HEIGHT)
+        index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
         before, a, b, c, behind = (side.take(index, axis=1).astype(np.int16) for side in row)
         change, height = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
         is_isolated = np.stack([reading * change <= np.maximum(height, reading) for reading in ISOLATION])
-        return cls(a, b, c, is_mixture, is_isolated)
+        return cls(a, b, c, is_edge.take(index, axis=1), is_isolated)
 
     def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
         """Return a, b and c of two channels at some indices, each (2, len(index))."""
