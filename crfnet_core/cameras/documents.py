@@ -11,7 +11,7 @@ import numpy as np
 
 from crfnet_core.analysis import THUMBNAIL, AnalyzedPhotograph
 from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse, checked_name
-from crfnet_core.errors import CameraError, CRFNetError
+from crfnet_core.errors import CameraError, CRFNetError, one_line
 from crfnet_core.files import read_json
 from crfnet_core.metadata import FileOrigin
 from crfnet_core.posterior import STATED_ODDS, Evidence
@@ -23,6 +23,9 @@ from crfnet_core.types import Float64Array, plain_values
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 CAMERA_VERSION = 1
+
+#: Bounds of the numbers of evidence and levels, and of standard deviations in stops: far beyond all that is measured.
+LARGEST_NUMBER, LARGEST_DEVIATION = 1e9, 100.0
 
 
 def camera_document(camera: Camera) -> dict[str, Any]:
@@ -50,7 +53,9 @@ def read_camera(path: Path) -> Camera:
     if document.get("kind") != "camera":
         raise CameraError(f"{path}: describes no camera; remove the file, or restore it")
     if (version := document.get("camera_version")) != CAMERA_VERSION:
-        raise CameraError(f"{path}: has camera_version {version}, this crfnet reads {CAMERA_VERSION}: update it")
+        raise CameraError(
+            f"{path}: has camera_version {one_line(str(version))}, this crfnet reads {CAMERA_VERSION}: update it"
+        )
     try:
         measured = document["measured"]
         return Camera(
@@ -59,7 +64,7 @@ def read_camera(path: Path) -> Camera:
             photographs=tuple(map(_photograph, document["photographs"])),
         )
     except (CRFNetError, AttributeError, KeyError, TypeError, ValueError) as problem:
-        raise CameraError(f"{path}: is damaged ({' '.join(str(problem).split())}); restore or remove it") from None
+        raise CameraError(f"{path}: is damaged ({one_line(problem)}); restore or remove it") from None
 
 
 def read_calibration(path: Path) -> MeasuredResponse:
@@ -86,7 +91,7 @@ def read_calibration(path: Path) -> MeasuredResponse:
             warnings=tuple(map(str, document["warnings"])),
         )
     except (CRFNetError, AttributeError, KeyError, TypeError, ValueError) as problem:
-        raise CameraError(f"{path}: is damaged ({' '.join(str(problem).split())}); calibrate again") from None
+        raise CameraError(f"{path}: is damaged ({one_line(problem)}); calibrate again") from None
 
 
 def _read_object(path: Path) -> dict[str, Any]:
@@ -173,15 +178,15 @@ def _settings(entry: Mapping[str, Any]) -> CameraSettings:
 
 
 def _numbers(values: Any, *shape: int) -> Float64Array:
-    """Return finite numbers of this shape."""
+    """Return numbers of this shape, which can be computed with."""
     numbers = np.array(values, np.float64)
-    if numbers.shape != shape or not np.isfinite(numbers).all():
-        raise ValueError(f"numbers of shape {numbers.shape} instead of {shape}")
+    if numbers.shape != shape or not (np.abs(numbers) < LARGEST_NUMBER).all():
+        raise ValueError(f"numbers of shape {numbers.shape} instead of {shape}, or too large")
     return numbers
 
 
 def _deviation(value: Any) -> float:
-    """Return a standard deviation: a finite number, not below 0."""
-    if not 0 <= (deviation := float(value)) < np.inf:
+    """Return a standard deviation in stops."""
+    if not 0 <= (deviation := float(value)) < LARGEST_DEVIATION:
         raise ValueError(f"{value} is no standard deviation")
     return deviation

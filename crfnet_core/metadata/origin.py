@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
@@ -119,9 +119,24 @@ class FileOrigin:
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
         """Return what `dataclasses.asdict` made of an origin, also after JSON; other entries are left out."""
-        entries = {field.name: entry[field.name] for field in fields(cls)}
-        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
-        return cls(**entries | kinds | {"words": tuple(entry["words"])})
+        quality = entry["jpeg_quality"]
+        return cls(
+            device=Device(entry["device"]),
+            camera=str(entry["camera"]),
+            editor=str(entry["editor"]),
+            is_scaled=_known(entry["is_scaled"]),
+            is_resaved=_known(entry["is_resaved"]),
+            jpeg_quality=None if quality is None else int(quality),
+            picture_shape=str(entry["picture_shape"]),
+            encoding=Encoding(entry["encoding"]),
+            words=tuple(map(str, entry["words"])),
+            renderer=str(entry.get("renderer", "")),  # the first documents have none
+        )
+
+
+def _known(entry: object) -> bool | None:
+    """Return whether something holds; None if that is not known."""
+    return None if entry is None else bool(entry)
 
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:

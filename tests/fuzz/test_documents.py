@@ -2,11 +2,15 @@
 
 import json
 import shutil
+from contextlib import suppress
 
 import numpy as np
 import pytest
 
-from crfnet_core.errors import CRFNetError
+from crfnet_core.cameras import CameraLibrary, add_photographs, camera_estimate
+from crfnet_core.cameras.documents import read_camera
+from crfnet_core.cameras.library import SHIPPED
+from crfnet_core.errors import CameraError, CRFNetError
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.posterior.prior import PRIORS
@@ -90,5 +94,22 @@ def test_damaged_estimates_are_read_or_refused(fuzz, document):
         else:
             return
         assert line.isprintable(), line
+
+    fuzz(case)
+
+
+def test_damaged_cameras_are_read_or_refused(fuzz, refused, fixed_model, plate, tmp_path):
+    """One camera that was measured, and one of a photograph."""
+    network, library = ResponseNetwork.load(fixed_model), CameraLibrary(tmp_path / "cameras")
+    add_photographs(library, "a", [plate], network=network)
+    kept = [*library.folder.glob("*.json"), min(SHIPPED.glob("*.json"))]
+    documents = [json.loads(path.read_text()) for path in kept]
+
+    def case(generator):
+        path = tmp_path / "camera.json"
+        path.write_bytes(damaged_json(documents[generator.integers(2)], generator))
+        if not refused(read_camera, path):
+            with suppress(CameraError):  # names the camera instead of its file
+                camera_estimate(read_camera(path), model=network.config.label)
 
     fuzz(case)
