@@ -120,7 +120,7 @@ class ResponseEstimate:
     photos : tuple of str
         File names of the photographs.
     recognition : Recognition, optional
-        What the photographs are if they are log footage or limited range: see `crfnet_core.recognition`.
+        What the photographs are if they are no pictures as a camera renders them: see `crfnet_core.recognition`.
     camera : CameraAnswer, optional
         The stored camera whose response this is; None if it is estimated from the photographs alone.
     """

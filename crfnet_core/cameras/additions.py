@@ -68,7 +68,7 @@ def add_photographs(
     Raises
     ------
     PhotoError
-        If a photograph cannot be read, is log footage or limited range, or its encoding has a published curve.
+        If a photograph cannot be read, is recognised as something else, or its encoding has a published curve.
     CameraError
         If a photograph is of another make or model, or the library cannot be written to.
     """

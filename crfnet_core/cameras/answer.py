@@ -55,19 +55,7 @@ def camera_estimate(camera: Camera, *, model: str, prior: Prior | None = None) -
 
 def compared(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = None) -> CameraAnswer:
     """Return how far photographs' own estimate is from a camera's response; parameters and errors of `with_camera`."""
-    other = camera_estimate(camera, model=own.model, prior=prior)
-    stops, error = shape_error(other.curve, own.curve), estimation_error(other.curve, own.curve)
-    limit = MEASURED_LIMIT if camera.measured else ESTIMATED_LIMIT
-    has_shape = stops <= limit * float(np.hypot(own.shape_uncertainty, other.shape_uncertainty))
-    has_curve = error <= limit * float(np.hypot(own.uncertainty, other.uncertainty))
-    return CameraAnswer(
-        camera.name,
-        camera.measured is not None,
-        camera.basis,
-        difference_stops=stops,
-        difference=error,
-        agrees=has_shape and has_curve,
-    )
+    return _compared(own, camera, camera_estimate(camera, model=own.model, prior=prior))
 
 
 def differences(camera: Camera, *, model: str, prior: Prior | None = None) -> dict[str, CameraAnswer]:
@@ -105,7 +93,7 @@ def with_camera(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = 
         As of `camera_estimate`.
     """
     answer = camera_estimate(camera, model=own.model, prior=prior)
-    found = compared(own, camera, prior=prior)
+    found = _compared(own, camera, answer)
     warnings = [own.recognition.reason] if own.recognition else []
     warnings += [*editor_warnings(own.origins), *_other_cameras(camera, own), *answer.warnings]
     verdict = Verdict.DO_NOT_TRUST if own.recognition else answer.verdict
@@ -125,6 +113,22 @@ def with_camera(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = 
         photos=own.photos,
         recognition=own.recognition,
         camera=found,
+    )
+
+
+def _compared(own: ResponseEstimate, camera: Camera, other: ResponseEstimate) -> CameraAnswer:
+    """Return how far photographs' own estimate is from a camera's response, which is given."""
+    stops, error = shape_error(other.curve, own.curve), estimation_error(other.curve, own.curve)
+    limit = MEASURED_LIMIT if camera.measured else ESTIMATED_LIMIT
+    has_shape = stops <= limit * float(np.hypot(own.shape_uncertainty, other.shape_uncertainty))
+    has_curve = error <= limit * float(np.hypot(own.uncertainty, other.uncertainty))
+    return CameraAnswer(
+        camera.name,
+        camera.measured is not None,
+        camera.basis,
+        difference_stops=stops,
+        difference=error,
+        agrees=has_shape and has_curve,
     )
 
 

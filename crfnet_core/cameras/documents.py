@@ -29,7 +29,7 @@ LARGEST_NUMBER, LARGEST_DEVIATION = 1e9, 100.0
 
 
 def camera_document(camera: Camera) -> dict[str, Any]:
-    """Return a camera as plain lists, texts and numbers, ready for JSON; `camera_of` makes its equal."""
+    """Return a camera as plain lists, texts and numbers, ready for JSON; `read_camera` makes its equal of the file."""
     measured = camera.measured
     document = {
         "kind": "camera",

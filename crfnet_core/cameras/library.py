@@ -79,7 +79,7 @@ class CameraLibrary:
         """
         if camera := self.find(name):
             return camera
-        raise CameraError(f"no camera {name!r} in {self.folder}; crfnet camera list shows them{self._damaged()}")
+        raise self._absent(name)
 
     def save(self, camera: Camera) -> Path:
         """Write a camera, in the place of the one of its name if there is one, and return its file.
@@ -103,7 +103,7 @@ class CameraLibrary:
         """
         path = self._file_of(name)
         if path is None:
-            raise CameraError(f"no camera {name!r} in {self.folder}; crfnet camera list shows them{self._damaged()}")
+            raise self._absent(name)
         try:
             path.unlink()
         except OSError as problem:
@@ -134,9 +134,10 @@ class CameraLibrary:
         finally:
             lock.unlink(missing_ok=True)
 
-    def _damaged(self) -> str:
-        """Return what is wrong with the library's files, for the end of an error."""
-        return "".join(f"; {problem}" for problem in self.problems())
+    def _absent(self, name: str) -> CameraError:
+        """Return the error of a camera that is not there, with what is wrong with the library's files."""
+        damaged = "".join(f"; {problem}" for problem in self.problems())
+        return CameraError(f"no camera {name!r} in {self.folder}; crfnet camera list shows them{damaged}")
 
     def _files(self) -> Iterator[tuple[Path, Camera | CameraError]]:
         """Yield the library's files in the order of their names, each with its camera or with what is wrong."""

@@ -23,7 +23,6 @@ from crfnet_core.network import ResponseNetwork
 from ocio import pipeline, report
 from ocio.commands.printing import print_json, print_lines, progress_bar
 from ocio.interchange.files import write_response
-from ocio.luts.files import WRITERS, write_lut
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -100,16 +99,12 @@ def _remove(arguments: argparse.Namespace) -> None:
 def _export(arguments: argparse.Namespace) -> None:
     """Write the response of a camera as a LUT, for another program, or as the library keeps it."""
     camera, out = find_camera(arguments.name), arguments.out
-    suffix, overwrite = out.suffix.lower(), arguments.overwrite
     notes: list[str] = []
-    if suffix == ".json":
-        atomic_write_text(out, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
+    if out.suffix.lower() == ".json":
+        atomic_write_text(out, json_text(camera_document(camera)), overwrite=arguments.overwrite, error=CameraError)
     else:
         lut = pipeline.response_lut(camera_estimate(camera, model=pipeline.model_label(arguments.model)))
-        if suffix in WRITERS:
-            write_lut(out, lut, overwrite=overwrite)
-        else:
-            notes += filter(None, [write_response(out, lut, overwrite=overwrite)])
+        notes += filter(None, [write_response(out, lut, overwrite=arguments.overwrite)])
     if arguments.json:
         print_json({"camera": camera.name, "written": str(out), "notes": notes})
     else:

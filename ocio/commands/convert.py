@@ -26,10 +26,10 @@ def run(arguments: argparse.Namespace) -> None:
 
 def _write(out: Path, lut: AnyLut, *, is_forward: bool, overwrite: bool) -> list[str]:
     """Write the file and return what is to be said of it."""
-    if out.suffix.lower() not in WRITERS:
-        if is_forward:
-            raise LutError(f"{out}: --forward is for LUTs; give a name that ends in {', '.join(WRITERS)}")
+    if not is_forward:
         return list(filter(None, [write_response(out, lut, overwrite=overwrite)]))
-    table = forward_lut(lut) if is_forward else lut
+    if out.suffix.lower() not in WRITERS:
+        raise LutError(f"{out}: --forward is for LUTs; give a name that ends in {', '.join(WRITERS)}")
+    table = forward_lut(lut)
     write_lut(out, table, overwrite=overwrite)
-    return list(table.comments[:2]) if is_forward else []
+    return list(table.comments[:2])

@@ -12,7 +12,7 @@ from ocio.interchange.opencv import read_opencv, write_opencv
 from ocio.interchange.other_luts import read_other_lut
 from ocio.interchange.pfstools import read_pfstools, write_pfstools
 from ocio.interchange.response_file import ResponseFile, described, from_lut
-from ocio.luts.files import WRITERS, read_lut
+from ocio.luts.files import WRITERS, read_lut, write_lut
 from ocio.luts.rgb_lut import AnyLut
 
 #: Suffixes of files that may hold several responses; the reader takes the name of one.
@@ -76,12 +76,12 @@ def read_response(path: str | Path, *, curve: str = "") -> ResponseFile:
 
 
 def write_response(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> str:
-    """Write an inverse response in the format of another program, and return what is to be said of it, or "".
+    """Write an inverse response in any known format, and return what is to be said of the file, or "".
 
     Parameters
     ----------
     path : str or Path
-        The file; its suffix is one of `RESPONSE_WRITERS`. A Hugin project must exist already.
+        The file; its suffix is one of `WRITABLE`. A Hugin project must exist already.
     lut : Lut1D or RgbLut1D
         The inverse response.
     overwrite : bool
@@ -94,6 +94,9 @@ def write_response(path: str | Path, lut: AnyLut, *, overwrite: bool = False) ->
     """
     path = Path(path)
     suffix = path.suffix.lower()
+    if suffix in WRITERS:
+        write_lut(path, lut, overwrite=overwrite)
+        return ""
     if suffix not in RESPONSE_WRITERS:
         raise LutError(f"{path}: responses are written as {', '.join(WRITABLE)}; found {suffix or 'no suffix'!r}")
     return RESPONSE_WRITERS[suffix](path, lut, overwrite=overwrite) or ""

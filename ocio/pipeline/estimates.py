@@ -6,11 +6,7 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.cameras import (
-    CameraSettings,
-    offered_cameras,
-    with_camera,
-)
+from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
 from crfnet_core.metadata.color_tags import ColorTags

@@ -72,10 +72,9 @@ def read_settings(data: Path, network: ResponseNetwork) -> list[Setting]:
     cases = real_photographs(data)[REAL_BODIES]
     found = []
     for body, settings in settings_of_bodies(data).items():
-        for number, stacks in enumerate(settings, 1):
+        for name, stacks in settings.items():
             files = {stack.measured: stack for stack in stacks}
             photographs = [_read(case, files[case.measured], data, network) for case in cases if case.measured in files]
-            name = body if len(settings) == 1 else f"{body} ({number})"
             found.append(Setting(name, body, tuple(stacks), tuple(photographs)))
     return found
 

@@ -24,9 +24,9 @@ def measured_cameras(data: Path) -> list[Camera]:
         The data folder.
     """
     return [
-        Camera(name if len(settings) == 1 else f"{name} ({number})", measured=measured_response(stacks))
-        for name, settings in settings_of_bodies(data).items()
-        for number, stacks in enumerate(settings, 1)
+        Camera(name, measured=measured_response(stacks))
+        for settings in settings_of_bodies(data).values()
+        for name, stacks in settings.items()
     ]
 
 

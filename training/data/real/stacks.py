@@ -71,8 +71,8 @@ class Stack:
         return estimation_error(self.curve, other.curve) <= SAME_SETTING * expected
 
 
-def settings_of_bodies(data: Path) -> dict[str, list[list[Stack]]]:
-    """Return make and model -> the stacks of each setting, the most certain first.
+def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
+    """Return make and model -> name of each of its settings -> its stacks, the most certain first.
 
     Parameters
     ----------
@@ -89,7 +89,10 @@ def settings_of_bodies(data: Path) -> dict[str, list[list[Stack]]]:
             settings.append([stack])
         else:
             like.append(stack)
-    return bodies
+    return {
+        body: {body if len(settings) == 1 else f"{body} ({number})": own for number, own in enumerate(settings, 1)}
+        for body, settings in bodies.items()
+    }
 
 
 def measured_response(stacks: Sequence[Stack]) -> MeasuredResponse:
