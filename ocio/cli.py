@@ -9,10 +9,8 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
-import shtab
-
-from ocio.arguments import calibrate, camera, completion, config, convert, estimate, info, linearize
-from ocio.arguments.parts import BAD_INPUT, Parser
+from ocio.arguments.command_line import build_parser
+from ocio.arguments.parts import BAD_INPUT
 from ocio.interruption import interruptible
 from ocio.streams import complete_streams, own_stderr
 
@@ -36,52 +34,18 @@ def main(argv: Sequence[str] | None = None) -> int:
             return interruption.exit_code
 
 
-class _Version(argparse.Action):
-    """Print the version, which takes half as long to look up as everything else takes to start."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        from importlib.metadata import version
-
-        sys.stdout.write(f"{parser.prog} {version('crfnet')}\n")
-        parser.exit()
-
-
-def build_parser() -> argparse.ArgumentParser:
-    """Return the parser of the whole command line."""
-    parser = Parser(
-        prog="crfnet",
-        description="Camera response from one photograph: LUTs, an OpenColorIO config and a linear plate.",
-        epilog="crfnet COMMAND --help shows examples.",
-    )
-    parser.add_argument(
-        "--version", action=_Version, nargs=0, default=argparse.SUPPRESS, help="show program's version number and exit"
-    )
-    commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for subcommand in (estimate, calibrate, camera, linearize, config, convert, info, completion):
-        subcommand.add(commands)
-    return parser
-
-
 def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
-    """Run the subcommand and return the exit code."""
+    """Run the module of the subcommand's name in `ocio.commands` and return the exit code."""
     # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
     from crfnet_core.errors import CRFNetError
 
     try:
         "".join(argv).encode()  # refuses file names that are not valid Unicode
-        _run_subcommand(arguments)
+        import_module(f"ocio.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
         return _fail(problem)
     return 0
-
-
-def _run_subcommand(arguments: argparse.Namespace) -> None:
-    """Run the module of the subcommand's name in `ocio.commands`."""
-    if arguments.command == "completion":
-        sys.stdout.write(shtab.complete(build_parser(), shell=arguments.shell) + "\n")
-        return
-    import_module(f"ocio.commands.{arguments.command}").run(arguments)
 
 
 def _fail(problem: BaseException) -> int:

@@ -40,7 +40,7 @@ def test_the_core_loads_no_guest(root):
 
 def test_the_command_starts_light(root):
     """`crfnet --help` must not wait for onnxruntime, OpenImageIO or matplotlib."""
-    assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib"}
+    assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib", "shtab"}
 
 
 def test_the_core_starts_light(root):

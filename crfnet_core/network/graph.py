@@ -89,6 +89,8 @@ def _fields(content: memoryview) -> Iterator[tuple[int, int | memoryview]]:
 
 def _varint(content: memoryview, at: int) -> tuple[int, int]:
     """Return the integer at a position, seven bits a byte, and the position behind it."""
+    if at < len(content) and content[at] < 0x80:  # as most are, and a graph has ten thousands
+        return content[at], at + 1
     value = 0
     for shift, byte in enumerate(content[at : at + 10]):
         value |= (byte & 0x7F) << 7 * shift

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command, add_json, positive
 from ocio.defaults import LUT_LENGTH
 
@@ -24,19 +22,15 @@ eos20d_sheet.png (every frame's points on the curve) and eos20d.json."""
 def add(commands: Commands) -> None:
     """Add `crfnet calibrate`."""
     parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
-    photos = parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, PNG, TIFF, WebP or DPX")
-    photos.complete = shtab.FILE  # type: ignore[attr-defined]
-    out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
-    out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, PNG, TIFF, WebP or DPX")
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     parser.add_argument("--name", metavar="NAME", help="how the files and the colour space are called (first frame)")
-    times = parser.add_argument(
+    parser.add_argument(
         "--times", metavar="LIST|CSV", help="exposure times in seconds, one for each frame, instead of EXIF's"
     )
-    times.complete = shtab.FILE  # type: ignore[attr-defined]
-    compare = parser.add_argument(
+    parser.add_argument(
         "--compare", type=Path, metavar="FILE", help="a response to check: JSON of an estimate, or a LUT"
     )
-    compare.complete = shtab.FILE  # type: ignore[attr-defined]
     parser.add_argument(
         "--accept-edited", action="store_true", help="measure what a program makes of its files, not the camera"
     )

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, Parser, add_action, add_command, add_model
 
 EXAMPLES = """examples:
@@ -40,12 +38,8 @@ def _add_add(actions: Commands) -> None:
     """Add `crfnet camera add`."""
     parser = add_action(actions, "add", "add photographs, or a measured response, to a camera")
     parser.add_argument("name", metavar="NAME", help="what you call the camera; a new name makes a new one")
-    photos = parser.add_argument("photos", nargs="*", type=Path, metavar="PHOTO", help="as the camera wrote it")
-    photos.complete = shtab.FILE  # type: ignore[attr-defined]
-    source = parser.add_argument(
-        "--from-calibration", type=Path, metavar="FILE", help="the JSON that crfnet calibrate wrote"
-    )
-    source.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("photos", nargs="*", type=Path, metavar="PHOTO", help="as the camera wrote it")
+    parser.add_argument("--from-calibration", type=Path, metavar="FILE", help="the JSON that crfnet calibrate wrote")
     add_model(parser)
     parser.add_argument("--overwrite", action="store_true", help="replace the measured response")
 
@@ -54,9 +48,8 @@ def _add_export(actions: Commands) -> None:
     """Add `crfnet camera export`."""
     parser = add_action(actions, "export", "write the response of a camera to a file")
     parser.add_argument("name", metavar="NAME", help="the camera")
-    out = parser.add_argument(
+    parser.add_argument(
         "out", type=Path, metavar="OUT", help="a LUT or a file that crfnet convert writes, or .json to hand it on"
     )
-    out.complete = shtab.FILE  # type: ignore[attr-defined]
     add_model(parser)
     parser.add_argument("--overwrite", action="store_true", help="replace a file that is already there")

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command
+
+#: The shells that shtab knows; its own list is not read here, because importing it takes longer than all of --help.
+SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
 
 EXAMPLES = """examples:
   crfnet completion bash > ~/.local/share/bash-completion/completions/crfnet
@@ -14,4 +15,4 @@ EXAMPLES = """examples:
 def add(commands: Commands) -> None:
     """Add `crfnet completion`."""
     parser = add_command(commands, "completion", "print the shell completion script", EXAMPLES)
-    parser.add_argument("shell", choices=shtab.SUPPORTED_SHELLS)
+    parser.add_argument("shell", choices=SHELLS)

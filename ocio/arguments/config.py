@@ -5,8 +5,6 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, Parser, add_action, add_command
 
 EXAMPLES = """examples:
@@ -64,14 +62,11 @@ def _add_overlay(actions: Commands) -> None:
 
 def _add_looks(parser: argparse.ArgumentParser, *, base: str) -> None:
     """Add what goes where."""
-    looks = parser.add_argument("looks", nargs="+", type=Path, metavar="LOOK", help="folder, JSON or LUT")
-    looks.complete = shtab.FILE  # type: ignore[attr-defined]
-    found = parser.add_argument("--base", required=True, metavar="CONFIG", help=base)
-    found.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("looks", nargs="+", type=Path, metavar="LOOK", help="folder, JSON or LUT")
+    parser.add_argument("--base", required=True, metavar="CONFIG", help=base)
 
 
 def _add_out(parser: argparse.ArgumentParser, *, required: bool, words: str) -> None:
     """Add --out and --overwrite."""
-    out = parser.add_argument("--out", type=Path, required=required, metavar="FILE", help=words)
-    out.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("--out", type=Path, required=required, metavar="FILE", help=words)
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")

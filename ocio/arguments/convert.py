@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command, add_json
 
 EXAMPLES = """examples:
@@ -22,10 +20,8 @@ written: .spi1d .cube .clf; Hugin .pto; DoRF .txt; pfstools .m; OpenCV .npy .yml
 def add(commands: Commands) -> None:
     """Add `crfnet convert`."""
     parser = add_command(commands, "convert", "convert a camera response between LUTs and other programs", EXAMPLES)
-    source = parser.add_argument("source", type=Path, metavar="SOURCE", help="the response or its inverse; see below")
-    source.complete = shtab.FILE  # type: ignore[attr-defined]
-    out = parser.add_argument("out", type=Path, metavar="OUT", help="file to be written; its suffix names the format")
-    out.complete = shtab.FILE  # type: ignore[attr-defined]
+    parser.add_argument("source", type=Path, metavar="SOURCE", help="the response or its inverse; see below")
+    parser.add_argument("out", type=Path, metavar="OUT", help="file to be written; its suffix names the format")
     parser.add_argument("--curve", default="", metavar="NAME", help="of several curves (DoRF) or images (Hugin)")
     parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values instead")
     parser.add_argument("--overwrite", action="store_true", help="replace, or change in place, what is already there")

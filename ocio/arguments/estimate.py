@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command, add_frames, add_network, add_plate, count, positive
 from ocio.defaults import LUT_LENGTH, WINDOWS
 
@@ -26,16 +24,14 @@ plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01
 def add(commands: Commands) -> None:
     """Add `crfnet estimate`."""
     parser = add_command(commands, "estimate", "estimate the response of the camera that took a photograph", EXAMPLES)
-    photos = parser.add_argument(
+    parser.add_argument(
         "photos",
         nargs="+",
         type=Path,
         metavar="PHOTO",
         help="JPEG, HEIC, PNG, TIFF, DPX and others, a movie, or a sequence",
     )
-    photos.complete = shtab.FILE  # type: ignore[attr-defined]
-    out = parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
-    out.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     add_frames(parser)
     parser.add_argument(
         "--each", action="store_true", help="one response per photograph, not one for all; PHOTO may be a folder"

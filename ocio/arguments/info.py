@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command, add_json
 
 EXAMPLES = """examples:
@@ -16,8 +14,7 @@ EXAMPLES = """examples:
 def add(commands: Commands) -> None:
     """Add `crfnet info`."""
     parser = add_command(commands, "info", "say what a LUT file or a model folder holds", EXAMPLES)
-    subject = parser.add_argument(
+    parser.add_argument(
         "subject", type=Path, metavar="FILE|MODEL", help="a LUT or whatever crfnet convert reads, or a model folder"
     )
-    subject.complete = shtab.FILE  # type: ignore[attr-defined]
     add_json(parser)

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import shtab
-
 from ocio.arguments.parts import Commands, add_command, add_frames, add_network, add_plate
 
 EXAMPLES = """examples:
@@ -22,22 +20,19 @@ left alone, so an interrupted run goes on where it stopped. The first frame of a
 def add(commands: Commands) -> None:
     """Add `crfnet linearize`."""
     parser = add_command(commands, "linearize", "write a plate or a frame sequence as linear EXR", EXAMPLES)
-    plates = parser.add_argument(
+    parser.add_argument(
         "plates",
         metavar="PLATES",
         help="a file, a movie, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png,"
         " shot.1001-1100#.png",
     )
-    plates.complete = shtab.FILE  # type: ignore[attr-defined]
-    out = parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")
-    out.complete = shtab.FILE  # type: ignore[attr-defined]
-    lut = parser.add_argument(
+    parser.add_argument("--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES")
+    parser.add_argument(
         "--lut",
         type=Path,
         metavar="FILE",
         help="the response: a LUT (.spi1d, .cube, .clf, .csp, .3dl), or as crfnet convert reads it",
     )
-    lut.complete = shtab.FILE  # type: ignore[attr-defined]
     add_frames(parser)
     parser.add_argument(
         "--encoded", action="store_true", help="OpenEXR plates that do not say it hold encoded values, not linear ones"

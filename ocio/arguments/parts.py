@@ -3,11 +3,8 @@
 from __future__ import annotations
 
 import argparse
-from dataclasses import dataclass
 from pathlib import Path
-from typing import NoReturn, TypeAlias
-
-import shtab
+from typing import NamedTuple, NoReturn, TypeAlias
 
 from ocio.defaults import DEPTHS, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
 
@@ -15,8 +12,7 @@ from ocio.defaults import DEPTHS, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, 
 BAD_INPUT = 2
 
 
-@dataclass(frozen=True, kw_only=True)
-class Exposure:
+class Exposure(NamedTuple):
     """The exposure asked for: stops after the anchor, which is white or an encoded brightness of 18 % gray."""
 
     stops: float = 0.0
@@ -54,20 +50,18 @@ def add_action(actions: Commands, name: str, summary: str) -> argparse.ArgumentP
 
 def add_model(parser: argparse.ArgumentParser) -> None:
     """Add --model."""
-    model = parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
-    model.complete = shtab.DIRECTORY  # type: ignore[attr-defined]
+    parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
 
 
 def add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
     add_model(parser)
-    prior = parser.add_argument(
+    parser.add_argument(
         "--prior",
         default=PRIORS[0],
         metavar="|".join((*PRIORS, "FILE")),
         help=f"what to expect: today's cameras, any source (film, old video too), or as a JSON file says ({PRIORS[0]})",
     )
-    prior.complete = shtab.FILE  # type: ignore[attr-defined]
     parser.add_argument("--camera", metavar="NAME", help="the response of a stored camera: see crfnet camera list")
     parser.add_argument(
         "--ignore-metadata",

@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 import shlex
 from collections.abc import Mapping, Sequence
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict
+from importlib import import_module
 from pathlib import Path
 from typing import Any
 
@@ -33,8 +35,10 @@ def run(arguments: argparse.Namespace) -> None:
         return
     photos = pipeline.sampled_photographs(arguments.photos, arguments.frames)
     plan = pipeline.plan_outputs(arguments.out, photos, plate_options(arguments), outputs)
-    prior, network = pipeline.load_prior(options), pipeline.load_network(options)
-    with progress_bar("windows") as progress:
+    with ThreadPoolExecutor(1) as loader, progress_bar("windows") as progress:
+        if outputs.has_sheet:
+            loader.submit(import_module, "ocio.sheet")  # matplotlib, on another core than network and photograph
+        prior, network = pipeline.load_prior(options), pipeline.load_network(options)
         estimated = pipeline.estimate_photographs(
             photos, network, prior, options, frames=arguments.frames, progress=progress
         )

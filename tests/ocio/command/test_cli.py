@@ -5,11 +5,15 @@ import json
 import shutil
 import subprocess
 import sys
+from pathlib import Path
 
 import pytest
+import shtab
 
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
+from ocio.arguments.command_line import build_parser
 from ocio.commands import printing
+from ocio.commands.completion import FILES, FOLDERS, all_arguments
 
 COMMANDS = ("estimate", "linearize", "info", "completion")
 
@@ -28,11 +32,15 @@ class TestHelp:
     def test_version(self, crfnet):
         assert crfnet("--version").out.startswith("crfnet 0.")
 
-    @pytest.mark.parametrize("shell", ["bash", "zsh", "tcsh"])
+    @pytest.mark.parametrize("shell", shtab.SUPPORTED_SHELLS)
     def test_completion(self, crfnet, shell):
         done = crfnet("completion", shell)
         assert done.code == 0
         assert "linearize" in done.out
+
+    def test_every_path_is_completed(self):
+        paths = {argument.metavar for argument in all_arguments(build_parser()) if argument.type is Path}
+        assert paths <= FILES | FOLDERS
 
     @pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
     def test_bash_accepts_the_completion(self, crfnet):
