@@ -193,19 +193,50 @@ def check_outputs(
         If the folder cannot be made or written to, two estimates or photographs would share a file, a file exists and
         may not be replaced, or a photograph itself would be replaced.
     """
-    check_folder(folder)
     outputs = tuple(outputs)
     targets = [path for files in outputs for path in files.own]
+    check_targets(folder, targets, photos=photos, shared=[files.config for files in outputs[:1]], overwrite=overwrite)
+
+
+def check_targets(
+    folder: Path,
+    targets: Sequence[Path],
+    *,
+    photos: Iterable[Path] = (),
+    shared: Sequence[Path] = (),
+    overwrite: bool = True,
+) -> None:
+    """Check that files can be written; create nothing.
+
+    Parameters
+    ----------
+    folder : Path
+        The folder to write to; it need not exist yet.
+    targets : sequence of Path
+        The files, each of one photograph or estimate.
+    photos : iterable of Path
+        The photographs, none of which may be replaced.
+    shared : sequence of Path
+        Further files, of several estimates.
+    overwrite : bool
+        Whether existing files may be replaced.
+
+    Raises
+    ------
+    PlateError
+        See `check_outputs`.
+    """
+    check_folder(folder)
     if twice := sorted(path.name for path, times in Counter(targets).items() if times > 1):
         raise PlateError(f"two photographs would both be written as {twice[0]}; rename one or use two folders")
     originals = {os.path.realpath(photo) for photo in photos}
-    targets += [files.config for files in outputs[:1]]
-    for path in targets:
+    every = [*targets, *shared]
+    for path in every:
         if os.path.realpath(path) in originals:
             raise PlateError(f"{path}: is one of the photographs and would be replaced; choose another folder")
         if path.is_dir():
             raise PlateError(f"{path}: is a folder, and a file of that name is to be written; choose another folder")
-    if not overwrite and (existing := [path.name for path in targets if os.path.lexists(path)]):
+    if not overwrite and (existing := [path.name for path in every if os.path.lexists(path)]):
         what = f"{existing[0]} and {len(existing) - 1} more exist" if len(existing) > 1 else f"{existing[0]} exists"
         raise PlateError(f"{folder}: {what} already; add --overwrite or choose another folder")
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_frames, add_network, add_plate, count, positive
+from ocio.arguments.parts import Commands, add_command, add_each, add_frames, add_network, add_plate, count, positive
 from ocio.defaults import LUT_LENGTH, WINDOWS
 
 EXAMPLES = """examples:
@@ -33,15 +33,7 @@ def add(commands: Commands) -> None:
     )
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     add_frames(parser)
-    parser.add_argument(
-        "--each", action="store_true", help="one response per photograph, not one for all; PHOTO may be a folder"
-    )
-    parser.add_argument(
-        "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
-    )
-    parser.add_argument(
-        "--scheduler", metavar="ADDRESS", help="with --each: a Dask scheduler, such as tcp://10.0.0.1:8786"
-    )
+    add_each(parser, "one response per photograph, not one for all; PHOTO may be a folder")
     parser.add_argument(
         "--windows", type=positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
     )

@@ -106,6 +106,17 @@ def add_frames(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
 
 
+def add_each(parser: argparse.ArgumentParser, words: str) -> None:
+    """Add --each, of which `words` say what it does, and where it works."""
+    parser.add_argument("--each", action="store_true", help=words)
+    parser.add_argument(
+        "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
+    )
+    parser.add_argument(
+        "--scheduler", metavar="ADDRESS", help="with --each: a Dask scheduler, such as tcp://10.0.0.1:8786"
+    )
+
+
 def add_json(parser: argparse.ArgumentParser) -> None:
     """Add --json."""
     parser.add_argument("--json", action="store_true", help="print one JSON document instead of words")

@@ -63,9 +63,7 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
         print_json({"folder": str(arguments.out), "estimates": [asdict(record) for record in records]})
     else:
         _print_records(records, tasks[0].files, arguments.out)
-    if failed := [record for record in records if record.error]:
-        first = f"the first: {failed[0].error}"
-        raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
+    pipeline.check_records(records)
 
 
 def _print_estimate(
@@ -101,4 +99,4 @@ def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, fold
     print_lines(record.error or record.summary for record in records)
     lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
     print_lines(["", f"Written to {folder}, for each photograph as for the first:", *lines])
-    print_lines([f"All results, one JSON line each: {folder / pipeline.MANIFEST}"])
+    print_lines([f"All results, one JSON line each: {folder / pipeline.ESTIMATES}"])

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import argparse
+from dataclasses import asdict
 from pathlib import Path
 
-from crfnet_core.errors import CameraError
+from crfnet_core.errors import CameraError, PlateError
 from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
@@ -26,7 +27,14 @@ def run(arguments: argparse.Namespace) -> None:
     """Write plates as linear EXR through a LUT, a stored camera's response, or one estimated from the frames."""
     if arguments.lut and arguments.camera:
         raise CameraError("--lut and --camera both name a response; give one of them")
-    sequence = find_source(arguments.plates, arguments.frames)
+    if arguments.each:
+        _run_each(arguments)
+        return
+    if len(arguments.plates) > 1:
+        raise PlateError(
+            f"{len(arguments.plates)} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each"
+        )
+    sequence = find_source(arguments.plates[0], arguments.frames)
     if isinstance(sequence, MovieFrames):
         check_progressive(sequence.movie)
     targets = linear_targets(arguments.out, sequence)
@@ -47,6 +55,26 @@ def run(arguments: argparse.Namespace) -> None:
         print_json(document | ({"movie": movies[0]} if movies else {}))
     else:
         print_lines([*movies, *lines, *report.light_lines(document), *report.plate_lines(done)])
+
+
+def _run_each(arguments: argparse.Namespace) -> None:
+    """Write each photograph as linear EXR; those that fail are named at the end."""
+    if arguments.frames:
+        raise PlateError("--frames chooses frames of one sequence, --each takes photographs; drop one")
+    out = Path(arguments.out)
+    photographs = pipeline.find_photographs([Path(name) for name in arguments.plates])
+    options, plates = estimate_options(arguments), plate_options(arguments)
+    tasks = pipeline.plan_each_linear(out, photographs, options, plates, arguments.lut)
+    with progress_bar("photographs") as progress:
+        records = pipeline.linearize_each(
+            out, tasks, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
+        )
+    if arguments.json:
+        print_json({"folder": str(out), "photographs": [asdict(record) for record in records]})
+    else:
+        print_lines(record.error or f"{record.linear}: {record.summary}" for record in records)
+        print_lines(["", f"Written to {out}. All results, one JSON line each: {out / pipeline.PLATES}"])
+    pipeline.check_records(records)
 
 
 def _lut_lines(path: Path, found: ResponseFile) -> list[str]:

@@ -3,8 +3,10 @@
 estimates  photographs or frames to the response estimated from them, and its LUT
 loading    the network, the prior and the stored camera that the options name
 folders    the folder that `crfnet estimate` writes: all checks first, then LUTs, plates, sheet, document and config
-each       many photographs, one response each: written as they end, continued when interrupted
-manifest   the file in which they stand
+each       many photographs, one response each, with its files
+each_linear  many photographs as linear EXR
+batch      what both have in common: recorded as they end, continued when interrupted
+manifest   the file of these records
 workers    processes of this machine, or a Dask cluster
 calibrations  the folder that `crfnet calibrate` writes, and responses to compare with
 delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
@@ -15,9 +17,11 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 """
 
 from ocio.luts.exposure import anchored_exposure
+from ocio.pipeline.batch import find_photographs
 from ocio.pipeline.calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
 from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
-from ocio.pipeline.each import estimate_each, find_photographs, plan_each
+from ocio.pipeline.each import estimate_each, plan_each
+from ocio.pipeline.each_linear import linearize_each, plan_each_linear
 from ocio.pipeline.estimates import (
     PhotographEstimate,
     estimate_frames,
@@ -27,10 +31,11 @@ from ocio.pipeline.estimates import (
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
 from ocio.pipeline.loading import load_camera_response, load_network, load_prior, model_label
-from ocio.pipeline.manifest import MANIFEST, PhotographRecord
+from ocio.pipeline.manifest import ESTIMATES, PLATES, PhotographRecord, check_records
 
 __all__ = [
-    "MANIFEST",
+    "ESTIMATES",
+    "PLATES",
     "CalibrationPlan",
     "OutputPlan",
     "PhotographEstimate",
@@ -38,17 +43,20 @@ __all__ = [
     "all_or_none",
     "anchored_exposure",
     "bake_plates",
+    "check_records",
     "estimate_each",
     "estimate_frames",
     "estimate_photographs",
     "export_luts",
     "find_photographs",
+    "linearize_each",
     "load_camera_response",
     "load_network",
     "load_prior",
     "model_label",
     "plan_calibration",
     "plan_each",
+    "plan_each_linear",
     "plan_outputs",
     "response_lut",
     "response_to_compare",

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Iterable, Mapping
-from dataclasses import asdict, dataclass
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import PlateError
+from crfnet_core.errors import PhotoError, PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text
 from crfnet_core.metadata.color_tags import Primaries
@@ -16,8 +16,8 @@ from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line
 
-#: File name of the manifest in the output folder.
-MANIFEST = "estimates.jsonl"
+#: File names of the manifests in the output folder: of `crfnet estimate --each`, and of `crfnet linearize --each`.
+ESTIMATES, PLATES = "estimates.jsonl", "plates.jsonl"
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -30,8 +30,10 @@ class PhotographRecord:
         The file, as it was given.
     folder : str
         The folder of its files, relative to the manifest.
+    linear : str
+        The linear EXR, relative to the manifest; empty in a manifest of estimates.
     weights : tuple of float
-        Eleven EMoR weights of the response.
+        Eleven EMoR weights of the response; empty if it was given as a LUT, and so is what follows up to the exposure.
     family : str
         What the picture most likely is, in words.
     verdict : str
@@ -52,6 +54,7 @@ class PhotographRecord:
 
     photograph: str
     folder: str = ""
+    linear: str = ""
     weights: tuple[float, ...] = ()
     family: str = ""
     verdict: str = ""
@@ -64,21 +67,30 @@ class PhotographRecord:
     error: str = ""
 
     @classmethod
-    def of(cls, photograph: Path, folder: Path, estimate: ResponseEstimate, light: PlateLight) -> PhotographRecord:
-        """Return the record of an estimate."""
-        kind = estimate.likely_kind
-        return cls(
+    def of(
+        cls, photograph: Path, folder: Path, light: PlateLight, estimate: ResponseEstimate | None, *, linear: str = ""
+    ) -> PhotographRecord:
+        """Return the record of a photograph, and of its estimate if there is one."""
+        record = cls(
             photograph=str(photograph),
             folder=folder.as_posix(),
+            linear=linear,
+            exposure=light.stops,
+            primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
+            primaries_source=light.plate.source,
+            summary=f"{photograph.name}: linear",
+        )
+        if estimate is None:
+            return record
+        kind = estimate.likely_kind
+        return replace(
+            record,
             weights=tuple(estimate.weights.tolist()),
             family=kind.words if kind else "",
             verdict=estimate.verdict,
             uncertainty=estimate.uncertainty,
             shape_uncertainty_stops=estimate.shape_uncertainty,
-            exposure=light.stops,
-            primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
-            primaries_source=light.plate.source,
-            summary=result_line(estimate),
+            summary=result_line(estimate, name=photograph.name),
         )
 
     @property
@@ -123,6 +135,10 @@ class Manifest:
         with self.path.open("a", encoding="utf-8", newline="\n") as file:
             file.write(_line(asdict(record)))
 
+    def of(self, photographs: Iterable[Path]) -> list[PhotographRecord]:
+        """Return the records of some photographs, in their order."""
+        return [self.records[str(photograph)] for photograph in photographs]
+
     def rewrite(self, photographs: Iterable[str]) -> None:
         """Write the settings and the records of some photographs anew, in their order."""
         self.records = {photograph: self.records[photograph] for photograph in photographs}
@@ -145,6 +161,19 @@ class Manifest:
                 " give the same, choose another folder, or add --overwrite"
             )
         self.records = {record.photograph: record for record in records}
+
+
+def check_records(records: Sequence[PhotographRecord]) -> None:
+    """Check that no photograph failed.
+
+    Raises
+    ------
+    PhotoError
+        With the number of those that did, and what the first lacks.
+    """
+    if failed := [record for record in records if record.error]:
+        first = f"the first: {failed[0].error}"
+        raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
 
 
 def _line(entry: Mapping[str, Any]) -> str:

@@ -7,7 +7,7 @@ import re
 import time
 from collections.abc import Iterable, Mapping, Sequence
 from contextlib import closing, suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -53,14 +53,14 @@ class PlateReport:
         The files that existed already and were left alone.
     missing : tuple of int
         Numbers of the frames for which there is no plate.
-    light : PlateLight or None
+    light : PlateLight
         What the numbers in the files mean.
     """
 
     written: tuple[Path, ...]
     skipped: tuple[Path, ...]
     missing: tuple[int, ...]
-    light: PlateLight | None = field(default=None, compare=False)
+    light: PlateLight
 
 
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:

@@ -50,7 +50,7 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
         "written": [str(path) for path in report.written],
         "skipped": [str(path) for path in report.skipped],
         "missing": list(report.missing),
-        **(_light_document(report.light) if report.light else {}),
+        **_light_document(report.light),
         "estimate": estimate.to_dict() if estimate else None,
     }
 

@@ -56,11 +56,11 @@ def verdict_lines(estimate: ResponseEstimate) -> list[str]:
     ]
 
 
-def result_line(estimate: ResponseEstimate) -> str:
+def result_line(estimate: ResponseEstimate, *, name: str) -> str:
     """Return the photograph, the verdict, the uncertainty and the kind on one line, for lists of estimates."""
     notes = [*filter(None, [estimate.likely_kind]), *estimate.warnings]
     more = "".join(f"; {note}" for note in notes)
-    return f"{estimate.photos[0]}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
+    return f"{name}: {estimate.verdict}, expected error {expected_errors(estimate)}{more}"
 
 
 def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty and the windows") -> list[str]:
@@ -104,8 +104,6 @@ def _as_argument(path: Path) -> str:
 
 def light_lines(document: Mapping[str, Any]) -> list[str]:
     """Return the primaries and the exposure of linear plates, from an `estimate_document` or a `plate_document`."""
-    if "primaries" not in document:
-        return []
     primaries, space = document["primaries"], document["output_space"]
     is_unknown = "white" not in primaries
     return [

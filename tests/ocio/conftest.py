@@ -47,3 +47,14 @@ def frames(plate, tmp_path):
     for number in (1, 2, 3, 5):
         shutil.copy(plate, tmp_path / f"shot.{number:04d}.jpg")
     return tmp_path
+
+
+@pytest.fixture
+def photographs(plate, tmp_path):
+    """A folder with three photographs, one of them in a subfolder, and a file that is none."""
+    folder = tmp_path / "photographs"
+    (folder / "day 2").mkdir(parents=True)
+    for name in ("a.jpg", "b.JPG", "day 2/a.jpg"):
+        shutil.copy(plate, folder / name)
+    (folder / "notes.txt").write_text("no photograph")
+    return folder

@@ -10,9 +10,14 @@ from crfnet_core.estimate import estimate_response
 from crfnet_core.files import json_text
 from crfnet_core.image_io import read_photo
 from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ModelConfig, ResponseNetwork
 from crfnet_core.posterior import Family, Verdict
+from crfnet_core.response import ResponseCurve
 from ocio import report
+from ocio.luts.lut1d import inverse_response_lut
+from ocio.options import PlateOptions
+from ocio.plates.light import PlateLight
 from ocio.plates.linear import PlateReport
 
 CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D", file_format="TIFF")
@@ -66,7 +71,7 @@ def test_warnings_come_last(estimate):
 
 
 def test_one_line_for_lists(estimate):
-    line = report.result_line(estimate(warnings=("dark",)))
+    line = report.result_line(estimate(warnings=("dark",)), name="plate.jpg")
     assert line == (
         "plate.jpg: good, expected error 0.10 stop, 3.9 % of the brightness range (E_est 1.25);"
         " a camera's own rendering, 93 %; dark"
@@ -126,12 +131,13 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
         "Expect the curve to be off by 3.9 % of the brightness range (E_est 1.25); gamma 2.2 is usually off by 10 %.",
     ]
     assert report.provenance(stored)[-1] == "Verdict: good, expected error 3.9 % of the brightness range (E_est 1.25)"
-    assert report.result_line(stored).endswith("(E_est 1.25)")
+    assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")
 
 
 def test_the_document_is_json(estimate):
     """With the names of enumerations as texts, and figures rounded."""
-    plates = PlateReport(written=(), skipped=(), missing=())
+    light = PlateLight.of(ColorTags(), inverse_response_lut(ResponseCurve.gamma()), PlateOptions())
+    plates = PlateReport(written=(), skipped=(), missing=(), light=light)
     document = json.loads(json_text(report.plate_document(plates, estimate())))["estimate"]
     assert document["family"] == {"words": "a camera's own rendering", "probability": 0.93}
     assert document["families"] == dict.fromkeys(Family, 0) | {"phone": 0.03, "camera": 0.9, "film": 0.07}

@@ -11,26 +11,15 @@ import pytest
 
 from ocio.arguments.parts import BAD_INPUT
 from ocio.pipeline import each
-from ocio.pipeline.manifest import MANIFEST
+from ocio.pipeline.manifest import ESTIMATES
 from tests.helpers.folders import listed, tree
 from tests.helpers.processes import start_interruptible
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
 
 
-@pytest.fixture
-def photographs(plate, tmp_path):
-    """A folder with three photographs, one of them in a subfolder, and a file that is none."""
-    folder = tmp_path / "photographs"
-    (folder / "day 2").mkdir(parents=True)
-    for name in ("a.jpg", "b.JPG", "day 2/a.jpg"):
-        shutil.copy(plate, folder / name)
-    (folder / "notes.txt").write_text("no photograph")
-    return folder
-
-
 def manifest_lines(tmp_path):
-    settings, *records = map(json.loads, (tmp_path / "out" / MANIFEST).read_text().splitlines())
+    settings, *records = map(json.loads, (tmp_path / "out" / ESTIMATES).read_text().splitlines())
     return settings["settings"], records
 
 
@@ -39,7 +28,7 @@ def test_a_folder_is_searched_and_its_subfolders_are_kept(estimate, photographs,
     assert (done.code, done.err) == (0, "")
     assert listed(tmp_path / "out") == sorted(
         [f"{stem}{suffix}" for stem in "ab" for suffix in (".spi1d", ".cube", ".clf", ".json")]
-        + ["config.ocio", "day 2", MANIFEST]
+        + ["config.ocio", "day 2", ESTIMATES]
     )
     assert listed(tmp_path / "out" / "day 2") == ["a.clf", "a.cube", "a.json", "a.spi1d", "config.ocio"]
 
@@ -128,11 +117,11 @@ def test_a_foreign_config_stays(estimate, photographs, tmp_path):
 
 def test_what_is_no_manifest_is_refused(estimate, photographs, tmp_path):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / MANIFEST).write_text("mine\n")
+    (tmp_path / "out" / ESTIMATES).write_text("mine\n")
     done = estimate(photographs, *QUICK)
     assert done.code == BAD_INPUT
     assert "is no manifest" in done.err
-    assert tree(tmp_path / "out") == {MANIFEST: b"mine\n"}
+    assert tree(tmp_path / "out") == {ESTIMATES: b"mine\n"}
 
 
 def test_a_crowded_folder_gets_no_config(estimate, photographs, tmp_path, monkeypatch):

@@ -13,7 +13,7 @@ from ocio.configs.studio.looks import read_looks
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.rgb_lut import RgbLut1D
-from ocio.pipeline.manifest import MANIFEST
+from ocio.pipeline.manifest import ESTIMATES
 from tests.helpers.configs import loaded, rule_names
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 
@@ -103,7 +103,7 @@ class TestLooks:
         write_look(tmp_path / "all" / "b", ["b.jpg"])
         with pytest.raises(ConfigError, match="holds nothing that crfnet estimate wrote"):
             read_looks(tmp_path / "all")
-        (tmp_path / "all" / MANIFEST).write_text("")
+        (tmp_path / "all" / ESTIMATES).write_text("")
         assert [each.space.name for each in read_looks(tmp_path / "all")] == ["CRF a", "CRF b"]
 
     @pytest.mark.parametrize("suffix", [".cube", ".clf", ".spi1d"])

@@ -1,0 +1,167 @@
+"""Many photographs, one task each: recorded as they end, continued when interrupted, not stopped by a bad file."""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import BrokenExecutor, as_completed
+from dataclasses import asdict, dataclass, replace
+from functools import lru_cache
+from pathlib import Path
+from typing import Any, TypeVar
+
+from crfnet_core.errors import CRFNetError, PlateError, one_line
+from crfnet_core.image_io import PHOTOGRAPH_SUFFIXES
+from crfnet_core.network import ResponseNetwork
+from crfnet_core.posterior import Prior
+from crfnet_core.types import Progress, show_progress
+from ocio.options import EstimateOptions, PlateOptions
+from ocio.pipeline.loading import load_network, load_prior
+from ocio.pipeline.manifest import Manifest, PhotographRecord
+from ocio.pipeline.workers import cores, worker_pool
+
+
+@dataclass(frozen=True, kw_only=True)
+class Task(ABC):
+    """One photograph, and all that its worker gets.
+
+    Parameters
+    ----------
+    photo : Path
+        The photograph.
+    folder : Path
+        The folder of its files, relative to the manifest.
+    options : EstimateOptions
+        How responses are estimated.
+    plates : PlateOptions
+        How the linear plate is written; `overwrite` holds for every file.
+    """
+
+    photo: Path
+    folder: Path
+    options: EstimateOptions
+    plates: PlateOptions
+
+    @property
+    @abstractmethod
+    def targets(self) -> tuple[Path, ...]:
+        """The files of this photograph alone."""
+
+    @property
+    def settings(self) -> dict[str, Any]:
+        """What all tasks of a manifest have in common, ready for JSON."""
+        chosen = {**asdict(self.options), **asdict(self.plates)}
+        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")}
+
+
+AnyTask = TypeVar("AnyTask", bound=Task)
+
+
+def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
+    """Return photographs, and where their files go, relative to the output folder.
+
+    Parameters
+    ----------
+    names : sequence of Path
+        Files, and folders that are searched with all their subfolders for `PHOTOGRAPH_SUFFIXES`. What belongs to a
+        photograph in a subfolder goes into a subfolder of the same name.
+
+    Raises
+    ------
+    PlateError
+        If a folder holds no photograph.
+    """
+    photographs: dict[Path, Path] = {}
+    for name in names:
+        if not name.is_dir():
+            photographs[name] = Path()
+            continue
+        found = sorted(path for path in name.rglob("*") if path.suffix.lower() in PHOTOGRAPH_SUFFIXES)
+        if not found:
+            raise PlateError(
+                f"{name}: the folder holds no photograph ({', '.join(PHOTOGRAPH_SUFFIXES)}); check the name"
+            )
+        photographs |= {path: path.parent.relative_to(name) for path in found}
+    return photographs
+
+
+def run_tasks(
+    path: Path,
+    tasks: Sequence[AnyTask],
+    work: Callable[[AnyTask], PhotographRecord],
+    *,
+    workers: int | None = None,
+    scheduler: str | None = None,
+    progress: Progress | None = None,
+) -> Manifest:
+    """Do the tasks that are not done yet; return the manifest with the records of all, in order.
+
+    Parameters
+    ----------
+    path : Path
+        The manifest, to which a record is added as soon as a task ends; its folder must exist.
+    tasks : sequence of Task
+        At least one.
+    work : callable
+        A function of a module, since other processes call it.
+    workers : int, optional
+        Processes; by default one a core.
+    scheduler : str, optional
+        The address of a Dask scheduler: see `worker_pool`.
+    progress : callable, optional
+        Called with (done, total) after every photograph; whatever it raises ends the run after those that have begun.
+
+    Raises
+    ------
+    CRFNetError
+        If the manifest is of other settings or a process dies; not if a photograph is bad.
+    """
+    settings = {name: str(value) if isinstance(value, Path) else value for name, value in tasks[0].settings.items()}
+    manifest = Manifest(path, settings, overwrite=tasks[0].plates.overwrite)
+    todo = [task for task in tasks if not _is_done(task, manifest)]
+    before = len(tasks) - len(todo)
+    show_progress(progress, before, len(tasks))
+    for done, record in enumerate(_records(todo, work, workers or cores(), scheduler), before + 1):
+        manifest.add(record)
+        show_progress(progress, done, len(tasks))
+    manifest.rewrite(dict.fromkeys([*(str(task.photo) for task in tasks), *manifest.records]))
+    return manifest
+
+
+@lru_cache(maxsize=1)
+def network_and_prior(options: EstimateOptions) -> tuple[ResponseNetwork, Prior]:
+    """Return the network and the prior, loaded once in a process."""
+    return load_network(options), load_prior(options)
+
+
+def _records(
+    tasks: Sequence[AnyTask], work: Callable[[AnyTask], PhotographRecord], workers: int, scheduler: str | None
+) -> Iterator[PhotographRecord]:
+    """Yield the records of photographs as they are done."""
+    if not tasks:
+        return
+    workers = min(workers, len(tasks))
+    if (workers > 1 or scheduler) and not tasks[0].options.threads:
+        single = replace(tasks[0].options, threads=1)
+        tasks = [replace(task, options=single) for task in tasks]
+    with worker_pool(workers, scheduler=scheduler) as pool:
+        futures = [pool.submit(_recorded, work, task) for task in tasks]
+        try:
+            for future in as_completed(futures):
+                yield future.result()
+        except BrokenExecutor as problem:
+            raise CRFNetError("a process died, perhaps for lack of memory; run the same command again") from problem
+
+
+def _recorded(work: Callable[[AnyTask], PhotographRecord], task: AnyTask) -> PhotographRecord:
+    """Return the record of a task; what goes wrong stands in it."""
+    try:
+        return work(task)
+    except (CRFNetError, OSError, MemoryError) as problem:
+        return PhotographRecord(photograph=str(task.photo), error=one_line(problem) or "not enough memory")
+
+
+def _is_done(task: Task, manifest: Manifest) -> bool:
+    """Return whether the manifest has a photograph without an error whose files are still there."""
+    record = manifest.records.get(str(task.photo))
+    return record is not None and not record.error and all(path.exists() for path in task.targets)

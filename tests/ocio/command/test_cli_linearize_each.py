@@ -1,0 +1,134 @@
+"""`crfnet linearize --each`: many photographs as linear EXR."""
+
+import json
+import shutil
+
+import numpy as np
+import pytest
+
+from ocio.arguments.parts import BAD_INPUT
+from ocio.pipeline import each_linear
+from ocio.pipeline.manifest import PLATES
+from tests.helpers.folders import listed, tree
+from tests.helpers.images import read_image
+
+
+@pytest.fixture
+def linearize(crfnet, fixed_model, tmp_path):
+    """Run `crfnet linearize --each` with the fixed model into tmp_path/out, in one process."""
+
+    def run(*arguments):
+        options = ("--out", tmp_path / "out", "--model", fixed_model, "--depth", "float", "--workers", "1")
+        return crfnet("linearize", *arguments, "--each", *options)
+
+    return run
+
+
+def manifest_lines(tmp_path):
+    settings, *records = map(json.loads, (tmp_path / "out" / PLATES).read_text().splitlines())
+    return settings["settings"], records
+
+
+def test_a_lut_holds_for_all(linearize, photographs, look, linear, tmp_path):
+    done = linearize(photographs, "--lut", look / "plate.spi1d")
+    assert (done.code, done.err) == (0, "")
+    assert listed(tmp_path / "out") == ["a.exr", "b.exr", "day 2", PLATES]
+    np.testing.assert_array_equal(read_image(tmp_path / "out" / "day 2" / "a.exr"), linear)
+    settings, records = manifest_lines(tmp_path)
+    assert settings["lut"] == str(look / "plate.spi1d")
+    assert [record["linear"] for record in records] == ["a.exr", "b.exr", "day 2/a.exr"]
+    assert all((record["weights"], record["verdict"], record["error"]) == ([], "", "") for record in records)
+
+
+def test_each_has_its_own_response(linearize, photographs, look, linear, tmp_path):
+    assert linearize(photographs).code == 0
+    document = json.loads((look / "plate.json").read_text())
+    for record in manifest_lines(tmp_path)[1]:
+        assert (record["weights"], record["verdict"]) == (document["weights"], document["verdict"])
+    np.testing.assert_allclose(read_image(tmp_path / "out" / "a.exr"), linear, rtol=1e-6)
+
+
+def test_a_camera_holds_for_all(linearize, photographs, tmp_path):
+    done = linearize(photographs, "--camera", "Canon EOS 20D")
+    assert (done.code, done.err) == (0, "")
+    records = manifest_lines(tmp_path)[1]
+    assert len({tuple(record["weights"]) for record in records}) == 1
+    assert [record["summary"].partition(":")[0] for record in records] == ["a.jpg", "b.JPG", "a.jpg"]
+
+
+def test_a_bad_photograph_stops_no_other_and_is_tried_again(linearize, photographs, look, tmp_path, monkeypatch):
+    (photographs / "bad.jpg").write_bytes(b"no photograph")
+    arguments = (photographs, "--lut", look / "plate.spi1d")
+    done = linearize(*arguments)
+    assert done.code == BAD_INPUT
+    assert "1 of 4 photographs failed and the others are written; the first: " in done.err
+    before = tree(tmp_path / "out")
+    shutil.copy(photographs / "a.jpg", photographs / "bad.jpg")
+    worked_on = []
+    linearize_one = each_linear.linearize_one
+    monkeypatch.setattr(
+        each_linear, "linearize_one", lambda task: (worked_on.append(task.photo.name), linearize_one(task))[1]
+    )
+    assert linearize(*arguments).code == 0
+    assert worked_on == ["bad.jpg"]
+    after = tree(tmp_path / "out")
+    assert {name: after[name] for name in before if name.endswith(".exr")} == {
+        name: content for name, content in before.items() if name.endswith(".exr")
+    }
+
+
+def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tmp_path):
+    """As a run leaves it that is killed in between."""
+    arguments = (photographs, "--lut", look / "plate.spi1d")
+    linearize(*arguments)
+    before = (tmp_path / "out" / "a.exr").stat().st_mtime_ns
+    (tmp_path / "out" / PLATES).unlink()
+    assert linearize(*arguments).code == 0
+    assert (tmp_path / "out" / "a.exr").stat().st_mtime_ns == before
+    assert len(manifest_lines(tmp_path)[1]) == 3
+
+
+def test_another_response_is_refused(linearize, photographs, look, tmp_path):
+    linearize(photographs, "--lut", look / "plate.spi1d")
+    before = tree(tmp_path / "out")
+    done = linearize(photographs)
+    assert done.code == BAD_INPUT
+    assert "was begun with another lut" in done.err
+    assert tree(tmp_path / "out") == before
+
+
+def test_two_of_one_name_are_refused(linearize, photographs, tmp_path):
+    shutil.copy(photographs / "a.jpg", photographs / "a.jpeg")
+    done = linearize(photographs)
+    assert done.code == BAD_INPUT
+    assert "two photographs would both be written as a.exr" in done.err
+    assert not (tmp_path / "out").exists()
+
+
+def test_processes_write_the_same_bytes_as_one(linearize, crfnet, fixed_model, photographs, tmp_path):
+    linearize(photographs)
+    arguments = ("--out", tmp_path / "two", "--model", fixed_model, "--depth", "float", "--workers", "2")
+    assert crfnet("linearize", photographs, "--each", *arguments).code == 0
+    assert tree(tmp_path / "two") == tree(tmp_path / "out")
+
+
+def test_json(linearize, photographs, look, tmp_path):
+    done = linearize(photographs, "--lut", look / "plate.spi1d", "--json")
+    assert json.loads(done.out) == {"folder": str(tmp_path / "out"), "photographs": manifest_lines(tmp_path)[1]}
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (("--each", "--frames", "1-2"), "--frames chooses frames of one sequence"),
+        (("--each", "--lut", "absent.spi1d"), "absent.spi1d"),
+        (("--each", "--camera", "nobody's"), "nobody's"),
+        (("more.jpg",), "2 plates are given, one is needed"),
+    ],
+)
+def test_refusals(crfnet, plate, tmp_path, arguments, message):
+    done = crfnet("linearize", plate, *arguments, "--out", tmp_path / "out.exr")
+    assert done.code == BAD_INPUT
+    assert message in done.err
+    assert done.err.count("\n") == 1
+    assert not (tmp_path / "out.exr").exists()
