@@ -57,12 +57,16 @@ def progress_bar(unit: str) -> Iterator[Progress]:
 
 def _minute_lines(unit: str) -> Progress:
     """Return a callback that prints how far a run is, for the log of a render farm; a short run prints nothing."""
-    due = time.monotonic() + LINE_SECONDS
+    start = time.monotonic()
+    due, before = start + LINE_SECONDS, -1
 
     def show(done: int, total: int) -> None:
-        nonlocal due
+        nonlocal due, before
+        before = done if before < 0 else before  # done in an earlier run, which says nothing of how long the rest takes
         if (now := time.monotonic()) >= due:
-            print(f"crfnet: {done} of {total} {unit}", file=sys.stderr, flush=True)  # noqa: T201
+            seconds = (now - start) * (total - done) / (done - before) if done > before else 0.0
+            left = f", {tqdm.format_interval(seconds)} left" if seconds else ""
+            print(f"crfnet: {done} of {total} {unit}{left}", file=sys.stderr, flush=True)  # noqa: T201
             due = now + LINE_SECONDS
 
     return show

@@ -93,4 +93,5 @@ class TestProgressBar:
         with printing.progress_bar("frames") as progress:
             for done in range(1, 6):
                 progress(done, 2997)
-        assert sys.stderr.getvalue() == "crfnet: 2 of 2997 frames\ncrfnet: 5 of 2997 frames\n"
+        lines = "crfnet: 2 of 2997 frames, 49:55:00 left\ncrfnet: 5 of 2997 frames, 27:00:40 left\n"
+        assert sys.stderr.getvalue() == lines
