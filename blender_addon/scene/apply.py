@@ -33,6 +33,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     stored_estimate.set_primaries(datablock, completed.primaries)
     if job.estimation.stored is None:
         stored_estimate.set_entry(datablock, stored_estimate.FILE_STATE, job.plate.file_state)
+        stored_estimate.set_offers(datablock, completed.offers)
     if job.estimation.origin:
         stored_estimate.set_entry(datablock, stored_estimate.ORIGIN, job.estimation.origin)
     remember_settings(datablock, job)

@@ -41,6 +41,9 @@ ORIGIN = "origin"
 #: file and its copy may differ, in seconds, because archives and some file systems round them.
 FILE_STATE, _SAME_TIME = "file_state", 2
 
+#: The entry with the stored cameras of the plate's make and model, in JSON: name and words of each.
+OFFERS = "offers"
+
 #: The entry with the primaries of the plate, in JSON: the fields of `crfnet_core.metadata.color_tags.Primaries`.
 PRIMARIES = "primaries"
 
@@ -52,7 +55,7 @@ DO_NOT_TRUST = "do not trust"
 def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
     """Store an estimate on its image or clip, which still gets the colour space that it waits for.
 
-    What is known of the file that was analysed stays, too: the estimate may be the stored one again.
+    What is known of the file that was analysed stays, and of its camera: the estimate may be the stored one again.
 
     Parameters
     ----------
@@ -64,7 +67,8 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
         What the panel says of the estimate.
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
-    kept = {name: datablock[KEY].get(name) for name in (PENDING_COLOR_SPACE, FILE_STATE) if is_stored(datablock)}
+    names = (PENDING_COLOR_SPACE, FILE_STATE, OFFERS)
+    kept = {name: datablock[KEY].get(name) for name in names if is_stored(datablock)}
     datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
     for name, value in kept.items():
         if value:
@@ -113,6 +117,16 @@ def camera_models(datablock: Datablock) -> list[str]:
     """Return make and model of the cameras that a plate's photographs name."""
     origins = json.loads(datablock[KEY].get("metadata", "[]"))
     return [origin["camera"] for origin in origins if origin["camera"]]
+
+
+def offers(datablock: Datablock) -> list[tuple[str, str]]:
+    """Return the stored cameras of the plate's make and model: their names, and what each is, in words."""
+    return [(name, words) for name, words in json.loads(datablock[KEY].get(OFFERS, "[]"))]
+
+
+def set_offers(datablock: Datablock, cameras: Iterable[tuple[str, str]]) -> None:
+    """Keep the stored cameras of the plate's make and model with an estimate."""
+    set_entry(datablock, OFFERS, json.dumps(list(cameras), ensure_ascii=False))
 
 
 def curve_and_band(datablock: Datablock) -> Float64Array:

@@ -75,6 +75,9 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:
         draw_paragraphs(box, warnings, letters, icon="ERROR")
+    for name, words in stored_estimate.offers(datablock):
+        draw_text(box, words, letters, icon="CAMERA_DATA")
+        box.operator("crf.estimate_response", text=f"Use {name}").camera = name
     header, body = layout.panel("CRF_details", default_closed=True)
     header.label(text="Details")
     if body is not None:

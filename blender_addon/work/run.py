@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 
 from crfnet_core import ResponseEstimate
+from crfnet_core.cameras import CameraSettings, offered_cameras
 from crfnet_core.errors import CRFNetError
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
@@ -22,7 +23,7 @@ from ocio.pipeline import (
     response_lut,
 )
 from ocio.plates.frames import FrameSequence
-from ocio.report import verdict_lines
+from ocio.report import offer_words, verdict_lines
 
 from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
@@ -75,6 +76,19 @@ class CompletedJob:
         if is_loaded(self.estimate):
             return (loaded_line(self.estimate.model),)
         return tuple(map(panel_line, verdict_lines(self.estimate)))
+
+    @property
+    def offers(self) -> tuple[tuple[str, str], ...]:
+        """The stored cameras of the plate's make and model: their names, and what each is, in words.
+
+        There are none if a stored camera was asked for, or the metadata was left out.
+        """
+        options = self.job.estimation.options
+        if options.camera or not self.estimate.origins:
+            return ()
+        settings = CameraSettings(model=self.estimate.origins[0].camera)
+        found = offered_cameras(self.estimate, settings, prior=load_prior(options))
+        return tuple((offer.name, panel_line(f"{offer.name}: {offer_words(offer)}")) for offer in found)
 
     @property
     def is_withheld(self) -> bool:

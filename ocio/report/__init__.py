@@ -18,6 +18,7 @@ from ocio.report.cameras import (
     camera_summary,
     disagreement_lines,
     offer_lines,
+    offer_words,
     photograph_documents,
     photograph_lines,
 )
@@ -59,6 +60,7 @@ __all__ = [
     "model_document",
     "model_lines",
     "offer_lines",
+    "offer_words",
     "oiiotool_lines",
     "photograph_documents",
     "photograph_lines",

@@ -16,10 +16,13 @@ def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
     """Return one line that offers stored cameras of a photograph's make and model; nothing without any."""
     if not offers:
         return []
-    named = " or ".join(
-        f"--camera {shlex.quote(offer.name)} ({offer.basis}; this estimate is {agreement(offer)})" for offer in offers
-    )
+    named = " or ".join(f"--camera {shlex.quote(offer.name)} ({offer_words(offer)})" for offer in offers)
     return [f"A response of this camera is known; to use it, add {named}."]
+
+
+def offer_words(offer: CameraAnswer) -> str:
+    """Return what a stored camera's response rests on, and how far the photograph's own estimate is from it."""
+    return f"{offer.basis}; this estimate is {agreement(offer)}"
 
 
 def camera_line(camera: Camera) -> str:

@@ -3,6 +3,8 @@
 import numpy as np
 import pytest
 
+from tests.helpers.cameras import photograph
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
@@ -64,3 +66,39 @@ def test_without_the_wheels_none_are_suggested_and_nothing_breaks(image, monkeyp
 
     monkeypatch.setattr(lazy_import, "load", fail)
     assert _stored_cameras(image.camera_response_settings, bpy.context, "") == []
+
+
+@pytest.fixture
+def of_that_model(addon, plate_file, tmp_path):
+    """A plate of the stored camera's make and model."""
+    return bpy.data.images.load(str(photograph(plate_file, tmp_path / "sony.jpg")))
+
+
+def test_a_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_model, curve):
+    from blender_addon.scene import stored_estimate
+
+    bpy.ops.crf.estimate_response(image=of_that_model.name)
+    ((name, words),) = stored_estimate.offers(of_that_model)
+    assert name == "mine"
+    assert words.startswith("mine: measured from 6 exposures; this estimate is ")
+    assert "E_est" not in words
+    bpy.ops.crf.estimate_response(image=of_that_model.name, camera=name)
+    assert stored_estimate.offers(of_that_model) == []
+    assert stored_estimate.restored(of_that_model).camera.name == "mine"
+
+
+def test_the_offer_stays_when_the_estimate_is_applied(of_that_model, curve, tmp_path):
+    from blender_addon.scene import stored_estimate
+
+    bpy.ops.crf.estimate_response(image=of_that_model.name)
+    before = stored_estimate.offers(of_that_model)
+    bpy.ops.crf.apply_response(image=of_that_model.name, apply="EXPORT", folder=str(tmp_path / "out"), anyway=True)
+    assert stored_estimate.offers(of_that_model) == before != []
+
+
+def test_nothing_is_offered_for_other_models_or_without_metadata(image, of_that_model, curve):
+    from blender_addon.scene import stored_estimate
+
+    bpy.ops.crf.estimate_response(image=image.name)
+    bpy.ops.crf.estimate_response(image=of_that_model.name, ignore_metadata=True)
+    assert stored_estimate.offers(image) == stored_estimate.offers(of_that_model) == []
