@@ -119,6 +119,12 @@ def camera_models(datablock: Datablock) -> list[str]:
     return [origin["camera"] for origin in origins if origin["camera"]]
 
 
+def camera(datablock: Datablock) -> str:
+    """Return the name of the stored camera whose response it is; empty if it was estimated."""
+    found = json.loads(datablock[KEY].get("camera", "null"))
+    return found["name"] if found else ""
+
+
 def offers(datablock: Datablock) -> list[tuple[str, str]]:
     """Return the stored cameras of the plate's make and model: their names, and what each is, in words."""
     return [(name, words) for name, words in json.loads(datablock[KEY].get(OFFERS, "[]"))]

@@ -75,6 +75,9 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
     if warnings:
         draw_paragraphs(box, warnings, letters, icon="ERROR")
+    if name := stored_estimate.camera(datablock):
+        draw_text(box, f"This is the response of the stored camera {name}.", letters, icon="CAMERA_DATA")
+        box.operator("crf.estimate_response", text="Estimate from the Plate").camera = ""
     for name, words in stored_estimate.offers(datablock):
         draw_text(box, words, letters, icon="CAMERA_DATA")
         box.operator("crf.estimate_response", text=f"Use {name}").camera = name

@@ -84,7 +84,10 @@ def test_a_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_mo
     assert "E_est" not in words
     bpy.ops.crf.estimate_response(image=of_that_model.name, camera=name)
     assert stored_estimate.offers(of_that_model) == []
-    assert stored_estimate.restored(of_that_model).camera.name == "mine"
+    assert stored_estimate.camera(of_that_model) == "mine"
+    bpy.ops.crf.estimate_response(image=of_that_model.name, camera="")
+    assert stored_estimate.camera(of_that_model) == ""
+    assert of_that_model.camera_response_settings.camera == ""
 
 
 def test_the_offer_stays_when_the_estimate_is_applied(of_that_model, curve, tmp_path):

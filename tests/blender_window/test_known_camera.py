@@ -8,8 +8,11 @@ from tests.blender_window.base import WindowTest
 #: The camera that `known.jpg` names, of which a measured response comes along.
 CAMERA = "Canon EOS 20D"
 
-#: The button that takes it.
+#: The button that takes its response.
 USE = f'{ESTIMATE}camera="{CAMERA}"'
+
+#: The button that estimates the plate's own response again.
+BACK = f'{ESTIMATE}camera=""'
 
 
 class TestKnownCamera(WindowTest):
@@ -25,3 +28,5 @@ class TestKnownCamera(WindowTest):
         self.keep(artist.picture(artist.sidebar()), "known_camera_taken")
         self.assertIn(CAMERA, artist.call("plates.stored", name)["camera"])
         self.assertEqual(artist.value(f"bpy.data.images[{name!r}].camera_response_settings.camera"), CAMERA)
+        artist.run(BACK)
+        self.assertEqual(artist.call("plates.stored", name)["camera"], "null")

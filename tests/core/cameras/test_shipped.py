@@ -1,5 +1,6 @@
 """The measured cameras that come with the project."""
 
+import numpy as np
 import pytest
 
 from crfnet_core.cameras import CameraLibrary, CameraSettings, camera_estimate, find_camera, matching_cameras
@@ -38,3 +39,10 @@ def test_every_camera_is_found_by_its_name_and_fits_its_own_make_and_model(camer
 )
 def test_the_makers_own_way_of_writing_finds_them(make, model, names):
     assert [camera.name for camera in matching_cameras(CameraSettings(make, model, iso=(400,)))] == names
+
+
+def test_their_slopes_do_not_jump(cameras):
+    """A plate would get bands: from a code to the next, the stops of a code change by at most a quarter."""
+    for camera in cameras:
+        stops = np.diff(np.log2(camera.measured.curve.inverse(np.arange(32, 255) / 255)))
+        assert np.abs(np.diff(np.log2(stops))).max() < np.log2(1.25), camera.name

@@ -18,6 +18,7 @@ from crfnet_core.cameras import CameraSettings, MeasuredResponse
 from crfnet_core.cameras.answer import brightness_per_stop
 from crfnet_core.metrics import estimation_error
 from crfnet_core.response import ResponseCurve
+from training.data.in_camera import log_irradiance, response_of
 from training.data.real.case_metadata import metadata_of_case
 from training.data.real.file_origin import Editing, editing
 from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
@@ -96,14 +97,17 @@ def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
 
 
 def measured_response(stacks: Sequence[Stack]) -> MeasuredResponse:
-    """Return the response of a setting: that of the first of its stacks, with the sensitivities of all."""
+    """Return the response of a setting: that of the first of its stacks, smoothed, with the sensitivities of all.
+
+    Unsmoothed its slope in stops changes within a code by up to eleven times near white: the plate gets bands there.
+    """
     first = stacks[0]
     total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
     shape = min(SHAPE_STOPS, total)
     best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
     return MeasuredResponse(
-        curve=ResponseCurve(first.curve.brightness.round(DECIMALS)),
+        curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
         source=f"{first.frames} exposures (grade {first.grade}{best})",
