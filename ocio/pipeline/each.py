@@ -112,12 +112,8 @@ def estimate_each(
         The folder of the manifest.
     tasks : sequence of EstimateTask
         As `plan_each` returns them; at least one.
-    workers : int, optional
-        Processes; by default one a core.
-    scheduler : str, optional
-        The address of a Dask scheduler: see `worker_pool`.
-    progress : callable, optional
-        Called with (done, total) after every photograph; whatever it raises ends the run after those that have begun.
+    workers, scheduler, progress
+        See `ocio.pipeline.batch.run_tasks`.
 
     Raises
     ------
