@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ocio.arguments.parts import Commands, add_command
 
-#: The shells that shtab knows; its own list is not read here, because importing it takes longer than all of --help.
+#: The shells that shtab knows. Its own list is not read here: importing it takes a third as long as all of --help.
 SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
 
 EXAMPLES = """examples:
