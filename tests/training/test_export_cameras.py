@@ -5,6 +5,8 @@ import csv
 import numpy as np
 import pytest
 
+pytest.importorskip("scipy.ndimage", reason="training needs the train extra")
+
 from crfnet_core import ResponseCurve
 from crfnet_core.cameras import camera_estimate
 from training.export.cameras import measured_cameras
