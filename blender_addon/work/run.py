@@ -60,6 +60,8 @@ class CompletedJob:
         Those that the plate is encoded in.
     problem : AddonError, CRFNetError or None
         Why the response could be estimated, but not applied.
+    offers : tuple of (str, str)
+        After a new estimate, the stored cameras of the plate's make and model: their names, and what each is, in words.
     """
 
     job: Job
@@ -69,6 +71,7 @@ class CompletedJob:
     files: writers.Written | None
     primaries: Primaries = REC709
     problem: AddonError | CRFNetError | None = None
+    offers: tuple[tuple[str, str], ...] = ()
 
     @property
     def lines(self) -> tuple[str, ...]:
@@ -76,19 +79,6 @@ class CompletedJob:
         if is_loaded(self.estimate):
             return (loaded_line(self.estimate.model),)
         return tuple(map(panel_line, verdict_lines(self.estimate)))
-
-    @property
-    def offers(self) -> tuple[tuple[str, str], ...]:
-        """The stored cameras of the plate's make and model: their names, and what each is, in words.
-
-        There are none if a stored camera was asked for, or the metadata was left out.
-        """
-        options = self.job.estimation.options
-        if options.camera or not self.estimate.origins:
-            return ()
-        settings = CameraSettings(model=self.estimate.origins[0].camera)
-        found = offered_cameras(self.estimate, settings, prior=load_prior(options))
-        return tuple((offer.name, panel_line(f"{offer.name}: {offer_words(offer)}")) for offer in found)
 
     @property
     def is_withheld(self) -> bool:
@@ -127,15 +117,26 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
-    primaries = _primaries(job, sequence)
+    primaries, offers = _primaries(job, sequence), _offers(job, estimate)
+    estimated = CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, offers=offers)
     try:
-        return _completed(job, estimate, primaries, sequence, progress)
+        return _completed(estimated, sequence, progress)
     except CancelledError:
         raise
     except (AddonError, CRFNetError) as problem:
         if job.estimation.stored is not None:
             raise
-        return CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, problem)
+        return replace(estimated, problem=problem)
+
+
+def _offers(job: Job, estimate: ResponseEstimate) -> tuple[tuple[str, str], ...]:
+    """Return the `offers` of a job; none if it asks for a stored camera, or the metadata was left out."""
+    options = job.estimation.options
+    if job.estimation.stored is not None or options.camera or not estimate.origins:
+        return ()
+    settings = CameraSettings(model=estimate.origins[0].camera)
+    found = offered_cameras(estimate, settings, prior=load_prior(options))
+    return tuple((offer.name, panel_line(f"{offer.name}: {offer_words(offer)}")) for offer in found)
 
 
 def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
@@ -151,23 +152,20 @@ def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
 
 
 def _completed(
-    job: Job,
-    estimate: ResponseEstimate,
-    primaries: Primaries,
-    sequence: Callable[[], FrameSequence],
-    progress: Progress | None,
+    estimated: CompletedJob, sequence: Callable[[], FrameSequence], progress: Progress | None
 ) -> CompletedJob:
-    """Return the job with its estimate, after writing its files."""
+    """Return a job that has its estimate with the exposure and the files that it asks for, after writing these."""
+    job, estimate = estimated.job, estimated.estimate
     gray = job.exposure.gray if job.exposure.anchor is Anchor.GRAY else None
     stops = anchored_exposure(estimate.curve, gray=gray, stops=job.exposure.stops)
-    completed = CompletedJob(job, estimate, stops, (), None, primaries)
+    completed = replace(estimated, stops=stops)
     if not completed.is_applied:
         return completed
     shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
         lut = _lut(estimate, job.output.lut_length)
-        files = writers.write(job, lut, stops, sequence, progress, primaries=primaries)
+        files = writers.write(job, lut, stops, sequence, progress, primaries=estimated.primaries)
     return replace(completed, frames=sequence().numbers if shows_frames else (), files=files)
 
 
