@@ -204,7 +204,7 @@ def check_targets(
     *,
     photos: Iterable[Path] = (),
     shared: Sequence[Path] = (),
-    overwrite: bool = True,
+    overwrite: bool = False,
 ) -> None:
     """Check that files can be written; create nothing.
 

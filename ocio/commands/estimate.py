@@ -15,6 +15,7 @@ from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_arguments, plate_options
 from ocio.commands.printing import has_matplotlib, print_json, print_lines, progress_bar
+from ocio.defaults import ESTIMATES
 from ocio.movies.frames import MovieFrames
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
@@ -99,4 +100,4 @@ def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, fold
     print_lines(record.error or record.summary for record in records)
     lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
     print_lines(["", f"Written to {folder}, for each photograph as for the first:", *lines])
-    print_lines([f"All results, one JSON line each: {folder / pipeline.ESTIMATES}"])
+    print_lines([f"All results, one JSON line each: {folder / ESTIMATES}"])

@@ -11,6 +11,7 @@ from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
+from ocio.defaults import PLATES
 from ocio.interchange.files import read_response
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.files import READERS
@@ -73,7 +74,7 @@ def _run_each(arguments: argparse.Namespace) -> None:
         print_json({"folder": str(out), "photographs": [asdict(record) for record in records]})
     else:
         print_lines(record.error or f"{record.linear}: {record.summary}" for record in records)
-        print_lines(["", f"Written to {out}. All results, one JSON line each: {out / pipeline.PLATES}"])
+        print_lines(["", f"Written to {out}. All results, one JSON line each: {out / PLATES}"])
     pipeline.check_records(records)
 
 

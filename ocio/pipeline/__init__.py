@@ -31,11 +31,9 @@ from ocio.pipeline.estimates import (
 )
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
 from ocio.pipeline.loading import load_camera_response, load_network, load_prior, model_label
-from ocio.pipeline.manifest import ESTIMATES, PLATES, PhotographRecord, check_records
+from ocio.pipeline.manifest import PhotographRecord, check_records
 
 __all__ = [
-    "ESTIMATES",
-    "PLATES",
     "CalibrationPlan",
     "OutputPlan",
     "PhotographEstimate",

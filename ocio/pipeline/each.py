@@ -12,6 +12,7 @@ from crfnet_core.errors import PlateError
 from crfnet_core.types import Progress
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
+from ocio.defaults import ESTIMATES
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
@@ -19,7 +20,7 @@ from ocio.pipeline.batch import Task, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_photographs
 from ocio.pipeline.folders import estimated_light, with_light, write_estimate
 from ocio.pipeline.loading import load_camera
-from ocio.pipeline.manifest import ESTIMATES, Manifest, PhotographRecord
+from ocio.pipeline.manifest import Manifest, PhotographRecord
 from ocio.plates.linear_space import linear_space
 from ocio.staging import staged_files
 

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from functools import lru_cache
 from pathlib import Path
 from typing import Any
 
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.types import Progress
+from ocio.defaults import PLATES
 from ocio.interchange.files import read_response
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import EstimateOptions, PlateOptions
@@ -17,7 +17,7 @@ from ocio.output_files import check_targets, output_folder, plain_stem
 from ocio.pipeline.batch import Task, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_frames, response_lut
 from ocio.pipeline.loading import load_camera_response
-from ocio.pipeline.manifest import PLATES, PhotographRecord
+from ocio.pipeline.manifest import PhotographRecord
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linearize_plates
 
@@ -78,7 +78,7 @@ def plan_each_linear(
         )
         for photo, folder in photographs.items()
     )
-    check_targets(out, [task.target for task in tasks], photos=photographs)
+    check_targets(out, [task.target for task in tasks], photos=photographs, overwrite=True)
     return tasks
 
 
@@ -136,9 +136,11 @@ def linearize_one(task: LinearTask) -> PhotographRecord:
     return PhotographRecord.of(task.photo, task.folder, done.light, estimate, linear=linear)
 
 
-@lru_cache(maxsize=1)
 def _given_response(lut: Path | None, options: EstimateOptions) -> tuple[AnyLut, ResponseEstimate | None] | None:
-    """Return the response that all photographs have, read once in a process; None if each has its own."""
+    """Return the response that all photographs have; None if each has its own.
+
+    It is read anew each time, in 15 ms: the workers of a cluster outlive a run, and files change between runs.
+    """
     if lut:
         return read_response(lut).lut, None
     stored = load_camera_response(options)

@@ -182,7 +182,7 @@ def _write_linear(files: OutputFiles, estimated: PhotographEstimate, light: Plat
 
 
 def _write_sheet(path: Path, estimated: PhotographEstimate) -> None:
-    """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
+    """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only for it."""
     from ocio.sheet import draw_sheet
 
     draw_sheet(path, estimated.preview, estimated.estimate, stride=estimated.stride)

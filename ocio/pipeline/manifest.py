@@ -16,9 +16,6 @@ from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line
 
-#: File names of the manifests in the output folder: of `crfnet estimate --each`, and of `crfnet linearize --each`.
-ESTIMATES, PLATES = "estimates.jsonl", "plates.jsonl"
-
 
 @dataclass(frozen=True, kw_only=True)
 class PhotographRecord:

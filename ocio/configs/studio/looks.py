@@ -15,13 +15,11 @@ from crfnet_core.image_io import oiio_message
 from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 from ocio.configs.files import load_config, plate_exposure
 from ocio.configs.plate_color_space import PlateColorSpace
+from ocio.defaults import ESTIMATES
 from ocio.luts.files import READERS, read_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.response import response_of_lut
 from ocio.output_files import OutputFiles
-
-#: The manifest of many estimates (`ocio.pipeline.manifest`), whose files are in folders below it.
-MANIFEST = "estimates.jsonl"
 
 
 @dataclass(frozen=True, eq=False)
@@ -68,7 +66,7 @@ def read_looks(path: Path) -> list[Look]:
     """
     path = path.resolve()
     if path.is_dir():
-        pattern = "**/*.json" if (path / MANIFEST).is_file() else "*.json"
+        pattern = "**/*.json" if (path / ESTIMATES).is_file() else "*.json"
         documents = [found for found in sorted(path.glob(pattern)) if _document(found)]
         if not documents:
             raise ConfigError(f"{path}: holds nothing that crfnet estimate wrote; give its folder, JSON or LUT")

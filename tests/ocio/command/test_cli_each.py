@@ -10,8 +10,8 @@ import time
 import pytest
 
 from ocio.arguments.parts import BAD_INPUT
+from ocio.defaults import ESTIMATES
 from ocio.pipeline import each
-from ocio.pipeline.manifest import ESTIMATES
 from tests.helpers.folders import listed, tree
 from tests.helpers.processes import start_interruptible
 

@@ -6,9 +6,12 @@ import shutil
 import numpy as np
 import pytest
 
+from crfnet_core import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
+from ocio.defaults import PLATES
+from ocio.luts.files import write_lut
+from ocio.luts.lut1d import inverse_response_lut
 from ocio.pipeline import each_linear
-from ocio.pipeline.manifest import PLATES
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 
@@ -95,6 +98,16 @@ def test_another_response_is_refused(linearize, photographs, look, tmp_path):
     assert done.code == BAD_INPUT
     assert "was begun with another lut" in done.err
     assert tree(tmp_path / "out") == before
+
+
+def test_a_lut_that_has_changed_is_read_again(linearize, photographs, look, tmp_path):
+    """Also by a process that has read it before, as the workers of a cluster have."""
+    lut = shutil.copy(look / "plate.spi1d", tmp_path / "lut.spi1d")
+    linearize(photographs, "--lut", lut)
+    before = read_image(tmp_path / "out" / "a.exr")
+    write_lut(lut, inverse_response_lut(ResponseCurve.gamma()), overwrite=True)
+    assert linearize(photographs, "--lut", lut, "--overwrite").code == 0
+    assert np.abs(read_image(tmp_path / "out" / "a.exr") - before).max() > 0.01
 
 
 def test_two_of_one_name_are_refused(linearize, photographs, tmp_path):

@@ -10,10 +10,10 @@ from crfnet_core.errors import ConfigError, LutError
 from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, Primaries
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.looks import read_looks
+from ocio.defaults import ESTIMATES
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.rgb_lut import RgbLut1D
-from ocio.pipeline.manifest import ESTIMATES
 from tests.helpers.configs import loaded, rule_names
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 
