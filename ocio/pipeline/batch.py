@@ -128,10 +128,15 @@ def run_tasks(
     return manifest
 
 
-@lru_cache(maxsize=1)
 def network_and_prior(options: EstimateOptions) -> tuple[ResponseNetwork, Prior]:
-    """Return the network and the prior, loaded once in a process."""
-    return load_network(options), load_prior(options)
+    """Return the network, loaded once in a process, and the prior, whose file may change while a worker lives."""
+    return _network(options), load_prior(options)
+
+
+@lru_cache(maxsize=1)
+def _network(options: EstimateOptions) -> ResponseNetwork:
+    """Return the network."""
+    return load_network(options)
 
 
 def _records(

@@ -1,6 +1,7 @@
 """The steps that command and add-on share: estimates, exposure, and files that are written together or not at all."""
 
 import dataclasses
+import json
 import shutil
 
 import numpy as np
@@ -16,6 +17,7 @@ from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import OutputFiles
+from ocio.pipeline.batch import network_and_prior
 from ocio.plates.frames import FrameSequence, find_frames
 from ocio.plates.linear import linear_targets
 from tests.helpers.folders import listed
@@ -222,3 +224,15 @@ class TestExport:
         with pytest.raises(type(problem)):
             pipeline.export_luts(files, space, LUT)
         assert not files.config.parent.exists()
+
+
+def test_a_worker_reads_a_prior_anew(fixed_model, tmp_path):
+    path = tmp_path / "mine.json"
+    shares = dict.fromkeys(Family, 0.125)
+    path.write_text(json.dumps({"shares": shares, "evidence": 1.0}))
+    options = EstimateOptions(model=fixed_model, prior=str(path))
+    network, before = network_and_prior(options)
+    path.write_text(json.dumps({"shares": shares, "evidence": 0.5}))
+    again, after = network_and_prior(options)
+    assert again is network
+    assert (before.evidence, after.evidence) == (1.0, 0.5)
