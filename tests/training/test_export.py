@@ -13,6 +13,7 @@ from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import load_network, write_config
 from training.export.onnx_graph import POOLING, export_onnx
 from training.network.model import KINDS, NetworkConfig, PhotographNet
+from training.network.start import start_from, start_record
 
 CONFIG = NetworkConfig(width=64)
 
@@ -80,3 +81,20 @@ def test_matrices_are_kept_in_half_precision(exported):
     kept = {tuple(tensor.dims): tensor.data_type for tensor in matrices}
     assert len(kept) > 5
     assert set(kept.values()) == {onnx.TensorProto.FLOAT16}
+
+
+def test_a_training_starts_from_an_exported_folder(exported):
+    expected, net = load_network(exported / "run").net, PhotographNet(CONFIG)
+    start_from(net, exported / "model")
+    found = dict(net.named_parameters())
+    for name, parameter in expected.named_parameters():
+        torch.testing.assert_close(found[name], parameter, rtol=0, atol=0)
+    assert torch.equal(
+        net.embedding.edges.normalization.running_var, expected.embedding.edges.normalization.running_var
+    )
+    assert start_record(exported / "model").startswith("model/model.onnx, SHA-256 ")
+
+
+def test_an_exported_network_of_another_size_is_refused(exported):
+    with pytest.raises(SystemExit, match="is not a network of this kind and size"):
+        start_from(PhotographNet(NetworkConfig(width=32)), exported / "model")

@@ -12,7 +12,7 @@ from torch import Tensor, nn
 
 from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
-from training.export.onnx_graph import HALF_SUFFIX
+from training.network.start import HALF_SUFFIX
 
 #: In front of the parameters' names in the graph of an exported network.
 GRAPH_PREFIX = "answers.network."

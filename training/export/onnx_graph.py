@@ -15,11 +15,9 @@ from torch import nn
 from crfnet_core.files import atomic_write
 from crfnet_core.statistics import LENGTH
 from crfnet_core.windows import WINDOW_SIZE
+from training.network.start import HALF_SUFFIX
 
 OPSET = 18
-
-#: Suffix of the name under which the graph keeps a matrix in half precision.
-HALF_SUFFIX = "_half"
 
 Network = TypeVar("Network", bound=nn.Module)
 

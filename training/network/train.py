@@ -15,7 +15,8 @@ from crfnet_core.files import atomic_write
 from training.network.loss import EvidenceLoss
 from training.network.model import NetworkConfig, PhotographNet
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
-from training.provenance import data_record, file_sha256, record_run
+from training.network.start import start_from, start_record
+from training.provenance import data_record, record_run
 from training.synthesis.photographs import FOLDS
 
 #: The file of the last checkpoint in the folder of a run.
@@ -99,7 +100,7 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     config, network
         The recipe and the sizes of the network.
     init : Path, optional
-        A checkpoint whose weights the run starts from, as far as it has them.
+        A checkpoint or a model folder whose weights the run starts from, as far as it has them.
 
     Raises
     ------
@@ -109,12 +110,12 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
     photographs, held_out = _split(shards, config)
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
     recipe = {"training": asdict(config), "network": asdict(network), "photographs": len(photographs.weights)}
-    record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start=_start_record(init))
+    record_run(run, recipe=recipe, seed=config.seed, data=data_record(shards, files), start=start_record(init))
     state = _start(network, config, len(photographs.weights))
     if (run / CHECKPOINT).exists():
         state.resume(run / CHECKPOINT)
     elif init is not None:
-        state.net.load_state_dict(torch.load(init, weights_only=True)["net"], strict=False)
+        start_from(state.net, init)
     loss = _loss(photographs, config)
     while state.epoch < config.epochs:
         train_loss = _train_epoch(state, loss, photographs, config)
@@ -143,11 +144,6 @@ def _loss(shards: Shards, config: TrainingConfig) -> EvidenceLoss:
     """Return the loss in which the truth competes with responses of training photographs, drawn by the seed."""
     chosen = torch.randperm(len(shards.weights), generator=torch.Generator().manual_seed(config.seed))[:COMPETITORS]
     return EvidenceLoss(shards.weights[chosen], shards.families[chosen])
-
-
-def _start_record(init: Path | None) -> str:
-    """Return in words what a run starts from."""
-    return "random weights" if init is None else f"{init.name}, SHA-256 {file_sha256(init)}"
 
 
 def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
@@ -217,7 +213,7 @@ def main() -> None:
     parser.add_argument(
         "--float32", dest="mixed", action="store_false", help="no bfloat16: faster on processors without AVX-512"
     )
-    parser.add_argument("--init", type=Path, help="a checkpoint to start from, as far as it has the same layers")
+    parser.add_argument("--init", type=Path, help="a checkpoint or a model folder to start from")
     parser.add_argument("--seed", type=int, default=defaults.seed)
     options = vars(parser.parse_args())
     network = NetworkConfig(dropout=options.pop("dropout"), width=options.pop("width"))

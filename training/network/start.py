@@ -1,0 +1,74 @@
+"""Start a training from the weights of another run or of a packaged model."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import onnx
+import torch
+from onnx import numpy_helper
+from torch import Tensor
+
+from training.network.model import PhotographNet
+from training.provenance import file_sha256
+
+#: In front of the names of the parameters in the graph of a packaged model.
+GRAPH_PREFIX = "net."
+
+#: Suffix of the name under which the graph of a packaged model keeps a matrix in half precision.
+HALF_SUFFIX = "_half"
+
+
+def start_from(net: PhotographNet, source: Path) -> None:
+    """Copy weights into the network, in place.
+
+    Parameters
+    ----------
+    net : PhotographNet
+        Is changed. What a checkpoint lacks stays as it is.
+    source : Path
+        A checkpoint, or a model folder written by `training.export.model_folder`. Matrices of a model folder were
+        rounded to half precision.
+
+    Raises
+    ------
+    SystemExit
+        If a model folder holds another network.
+    """
+    file = _weights_file(source)
+    state = torch.load(file, weights_only=True)["net"] if file == source else _packaged_state(net, file)
+    net.load_state_dict(state, strict=False)
+
+
+def start_record(source: Path | None) -> str:
+    """Return in words what a run starts from."""
+    if source is None:
+        return "random weights"
+    file = _weights_file(source)
+    name = file.name if file == source else f"{source.name}/{file.name}"
+    return f"{name}, SHA-256 {file_sha256(file)}"
+
+
+def _weights_file(source: Path) -> Path:
+    """Return the file that holds the weights."""
+    return source / "model.onnx" if source.is_dir() else source
+
+
+def _packaged_state(net: PhotographNet, graph: Path) -> dict[str, Tensor]:
+    """Return the parameters in a graph. Those that the export transposed have lost their names: shapes tell them."""
+    arrays = {
+        tensor.name.removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
+        for tensor in onnx.load(graph).graph.initializer
+    }
+    state = {}
+    for name, parameter in net.named_parameters():
+        shape = tuple(parameter.shape)
+        found = [array for key, array in arrays.items() if key == GRAPH_PREFIX + name and array.shape == shape]
+        found = found or [array.T for array in arrays.values() if array.ndim == 2 and array.shape == shape[::-1]]
+        if len(found) != 1:
+            raise SystemExit(f"{graph}: is not a network of this kind and size: it holds {len(found)} of {name}")
+        state[name] = torch.from_numpy(found[0].astype("float32"))
+    for name, buffer in net.named_buffers():
+        if GRAPH_PREFIX + name in arrays and buffer.is_floating_point():
+            state[name] = torch.from_numpy(arrays[GRAPH_PREFIX + name].astype("float32"))
+    return state
