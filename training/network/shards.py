@@ -49,13 +49,13 @@ class CurveSet(IntEnum):
 
 #: Fractions of the photographs whose response is of DoRF (both sets together), and of each other set. All families are
 #: common enough to be learned; what they are worth in use is the prior's affair.
-OF_DORF = 0.42
+OF_DORF = 0.5
 FRACTIONS = {
-    CurveSet.IN_CAMERA: 0.26,
-    CurveSet.EDITED: 0.1,
-    CurveSet.LINEAR: 0.03,
-    CurveSet.LOG: 0.04,
-    CurveSet.UNEXPLAINED: 0.15,
+    CurveSet.IN_CAMERA: 0.3,
+    CurveSet.EDITED: 0.08,
+    CurveSet.LINEAR: 0.02,
+    CurveSet.LOG: 0.03,
+    CurveSet.UNEXPLAINED: 0.07,
 }
 
 #: What the photographs of these sets show in place of a response: pictures that none explains.
