@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import math
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields
 from enum import IntEnum
@@ -190,12 +191,12 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--split", default="train", choices=["train", "validation"])
     parser.add_argument("--photographs", type=int, default=50_000)
+    parser.add_argument("--first", type=int, default=0, help="number of the first shard: others are other photographs")
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    numbers = [
-        n for n in range(-(-options.photographs // SHARD)) if not shard_path(options.out, options.split, n).exists()
-    ]
+    shards = range(options.first, options.first + math.ceil(options.photographs / SHARD))
+    numbers = [n for n in shards if not shard_path(options.out, options.split, n).exists()]
     if numbers:
         record_making(options.out, options.split, training_digest(options.data))
     with ProcessPoolExecutor(options.workers) as pool:
