@@ -42,7 +42,7 @@ class Prior:
     def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
-        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.25, "lookalikes": 0.03}`; families that it leaves
+        The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.15, "lookalikes": 0.03}`; families that it leaves
         out have no share, and "lookalikes" is 0 unless it is given.
 
         Raises
@@ -64,7 +64,7 @@ class Prior:
     @classmethod
     def _of_entries(cls, path: Path, entries: object) -> Prior:
         """Return the prior that a JSON file describes, or say what is wrong with it."""
-        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.25}'
+        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.15}'
         if not isinstance(entries, dict) or set(entries) - {"lookalikes"} != {"shares", "evidence"}:
             raise PriorError(f"{path}: {example}")
         shares, evidence, lookalikes = entries["shares"], entries["evidence"], entries.get("lookalikes", 0.0)

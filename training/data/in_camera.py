@@ -14,14 +14,17 @@ from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE
 from training.data.real.bodies import Body
 
-#: The kinds of bodies that have a mean of their own.
+#: The kinds of bodies that have a center of their own.
 KINDS = ("phone", "compact", "camera")
 
 #: Components of the deviations; the first is mostly the headroom. With more nothing changed out of fold.
 COMPONENTS = 6
 
-#: Bodies that all kinds together count as, when the mean and when the spread of one kind are taken.
+#: Bodies that all kinds together count as, when the center and when the spread of one kind are taken.
 PSEUDO_BODIES, PSEUDO_BODIES_OF_SPREAD = 1.0, 4.0
+
+#: Least distance in stops of a body from the center of its kind, and steps of the iteration that finds this center.
+LEAST_DISTANCE, STEPS = 0.03, 50
 
 #: Weight of the darkest brightnesses, below code 16 of 255, in the components: noise and black level rule there.
 DARK_WEIGHT, DARKEST = 0.2, 64
@@ -43,15 +46,15 @@ class InCameraResponses:
 
     Parameters
     ----------
-    means : dict
-        Kind -> mean log2 irradiance at 1024 uniform brightnesses, shape (1024,).
+    centers : dict
+        Kind -> log2 irradiance at 1024 uniform brightnesses, shape (1024,): the geometric median of its bodies.
     components : ndarray, shape (6, 1024)
         Deviations of one standard deviation each, over all kinds.
     spreads : dict
         Kind -> how far its bodies differ, relative to `components`.
     """
 
-    means: dict[str, Float64Array]
+    centers: dict[str, Float64Array]
     components: Float64Array
     spreads: dict[str, float]
 
@@ -59,21 +62,22 @@ class InCameraResponses:
     def of(cls, bodies: Sequence[Body]) -> InCameraResponses:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
-        average: Float64Array = np.mean([rows.mean(axis=0) for rows in stacks.values()], axis=0)
-        means = {kind: average + _shrunk_offset(bodies, stacks, kind, average) for kind in KINDS}
+        rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}
+        center = geometric_median(np.stack(list(rows.values())))
+        centers = {kind: _shrunk_center([rows[b.key] for b in bodies if b.kind == kind], center) for kind in KINDS}
         deviations = {
-            body.key: (stacks[body.key] - means.get(body.kind, average)) / np.sqrt(len(stacks[body.key]))
+            body.key: (stacks[body.key] - centers.get(body.kind, center)) / np.sqrt(len(stacks[body.key]))
             for body in bodies
         }
         components = _components(np.concatenate(list(deviations.values())), bodies=len(bodies))
         squares = {body.key: float((deviations[body.key] ** 2).sum()) for body in bodies}
-        return cls(means, components, {kind: _spread(bodies, squares, kind) for kind in KINDS})
+        return cls(centers, components, {kind: _spread(bodies, squares, kind) for kind in KINDS})
 
     def draw(self, kind: str, count: int, rng: np.random.Generator) -> Float64Array:
         """Return responses of a kind, shape (count, 1024)."""
         scores = rng.standard_normal((count, len(self.components))) * np.exp(rng.normal(0, TAILS, (count, 1)))
         deviations = self.spreads[kind] * scores @ self.components
-        return np.stack([response_of(row) for row in self.means[kind] + deviations])
+        return np.stack([response_of(row) for row in self.centers[kind] + deviations])
 
 
 def log_irradiance(curve: ResponseCurve) -> Float64Array:
@@ -95,12 +99,24 @@ def response_of(logarithms: Float64Array) -> Float64Array:
     return np.interp(IRRADIANCE, irradiance / irradiance[-1], BRIGHTNESS)
 
 
-def _shrunk_offset(
-    bodies: Sequence[Body], stacks: dict[str, Float64Array], kind: str, average: Float64Array
-) -> Float64Array:
-    """Return how far the bodies of a kind lie from the average, shrunk by `PSEUDO_BODIES`, shape (1024,)."""
-    offsets = [stacks[body.key].mean(axis=0) - average for body in bodies if body.kind == kind]
-    return np.sum([*offsets, np.zeros(SAMPLES)], axis=0) / (len(offsets) + PSEUDO_BODIES)
+def geometric_median(rows: Float64Array) -> Float64Array:
+    """Return what has the least sum of distances from rows of log2 irradiance, (N, 1024): shape (1024,).
+
+    A few cameras are far from all others, and badly measured stacks are, too; they pull a mean along. A distance is RMS
+    over the brightnesses from `DARKEST` on, in stops. The iteration is that of Weiszfeld (1937).
+    """
+    center: Float64Array = rows.mean(axis=0)
+    for _ in range(STEPS):
+        distances = np.sqrt(np.mean((rows - center)[:, DARKEST:] ** 2, axis=1))
+        center = np.average(rows, axis=0, weights=1 / np.maximum(distances, LEAST_DISTANCE))
+    return center
+
+
+def _shrunk_center(rows: Sequence[Float64Array], center: Float64Array) -> Float64Array:
+    """Return the center of the bodies of a kind, shape (1024,), drawn towards that of all by `PSEUDO_BODIES`."""
+    if not rows:
+        return center
+    return center + (geometric_median(np.stack(rows)) - center) * len(rows) / (len(rows) + PSEUDO_BODIES)
 
 
 def _spread(bodies: Sequence[Body], squares: dict[str, float], kind: str) -> float:

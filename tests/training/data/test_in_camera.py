@@ -5,7 +5,14 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.metrics import shape_error
 from crfnet_core.response import ResponseCurve
-from training.data.in_camera import COMPONENTS, KINDS, InCameraResponses, log_irradiance, response_of
+from training.data.in_camera import (
+    COMPONENTS,
+    KINDS,
+    InCameraResponses,
+    geometric_median,
+    log_irradiance,
+    response_of,
+)
 from training.data.real.bodies import Body
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -37,9 +44,9 @@ def test_a_response_comes_back_from_its_logarithms():
     assert shape_error(curve, again) < 0.01
 
 
-def test_kinds_have_their_own_means_and_spread(bodies):
+def test_kinds_have_their_own_centers_and_spread(bodies):
     found = InCameraResponses.of(bodies)
-    assert set(found.means) == set(KINDS)
+    assert set(found.centers) == set(KINDS)
     drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in KINDS}
     centres = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
     assert centres == sorted(centres)
@@ -59,13 +66,25 @@ def test_a_body_counts_once_however_many_stacks_it_has(bodies):
     many = [*bodies, body("x", "camera", *[0.6] * 20)]
     one = [*bodies, body("x", "camera", 0.6)]
     for kind in KINDS:
-        np.testing.assert_allclose(InCameraResponses.of(many).means[kind], InCameraResponses.of(one).means[kind])
+        np.testing.assert_allclose(InCameraResponses.of(many).centers[kind], InCameraResponses.of(one).centers[kind])
 
 
-def test_a_kind_without_bodies_has_the_mean_of_all(bodies):
+def test_the_geometric_median_of_three_levels_is_the_middle_one():
+    rows = np.repeat([[0.0], [1.0], [5.0]], 1024, axis=1)
+    np.testing.assert_allclose(geometric_median(rows), 1.0, atol=0.05)
+
+
+def test_one_odd_body_hardly_moves_the_center_of_its_kind(bodies):
+    before = InCameraResponses.of(bodies).centers["camera"]
+    after = InCameraResponses.of([*bodies, body("odd", "camera", 0.9)]).centers["camera"]
+    odd = log_irradiance(ResponseCurve.from_samples(UNIFORM**0.9))
+    assert abs(after[512] - before[512]) < 0.1 * abs(odd[512] - before[512])
+
+
+def test_a_kind_without_bodies_has_the_center_of_all(bodies):
     found = InCameraResponses.of([each for each in bodies if each.kind != "phone"])
-    expected = np.mean([found.means["compact"], found.means["camera"]], axis=0)
-    np.testing.assert_allclose(found.means["phone"], expected, atol=0.05)
+    expected = np.mean([found.centers["compact"], found.centers["camera"]], axis=0)
+    np.testing.assert_allclose(found.centers["phone"], expected, atol=0.05)
 
 
 def test_few_bodies_still_give_a_distribution(bodies):
