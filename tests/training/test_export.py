@@ -1,4 +1,5 @@
 import json
+import shutil
 from dataclasses import asdict
 
 import numpy as np
@@ -12,6 +13,7 @@ from crfnet_core.network import ModelConfig, ResponseNetwork
 from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import load_network, write_config
 from training.export.onnx_graph import POOLING, export_onnx
+from training.network.average import average
 from training.network.model import KINDS, NetworkConfig, PhotographNet
 from training.network.start import start_from, start_record
 
@@ -98,3 +100,19 @@ def test_a_training_starts_from_an_exported_folder(exported):
 def test_an_exported_network_of_another_size_is_refused(exported):
     with pytest.raises(SystemExit, match="is not a network of this kind and size"):
         start_from(PhotographNet(NetworkConfig(width=32)), exported / "model")
+
+
+def test_a_run_is_averaged_with_the_model_that_it_began_from(exported, tmp_path):
+    model, run = tmp_path / "model", tmp_path / "run"
+    shutil.copytree(exported / "model", model)
+    record = {"commit": "0" * 40, "recipe": {"network": asdict(CONFIG)}, "data": {"files": 0, "sha256": ""}}
+    (model / "run.json").write_text(json.dumps(record | {"start": "random weights"}))
+    run.mkdir()
+    (run / "run.json").write_text(json.dumps(record | {"start": start_record(model)}))
+    state = load_network(exported / "run").net.state_dict()
+    name = next(iter(dict(load_network(exported / "run").net.named_parameters())))
+    torch.save({"net": state | {name: state[name] + 2}}, run / "last.pt")
+    found = torch.load(average([run, model], [1, 1], tmp_path / "mean"), weights_only=True)["net"]
+    torch.testing.assert_close(found[name], state[name] + 1)
+    parts = json.loads((tmp_path / "mean" / "run.json").read_text())["average"]
+    assert parts[1]["checkpoint"] == start_record(model)

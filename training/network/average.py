@@ -1,12 +1,13 @@
-"""Average the weights of runs from the same start: ``python -m training.network.average --run DIR DIR --out DIR``.
+"""Average the weights of related runs: ``python -m training.network.average --run DIR DIR --share A B --out DIR``.
 
-Networks that were trained from the same weights lie in one valley of the loss. The mean of their weights is one network
-that answers nearly as well as the mean of their answers: Wortsman et al., "Model soups", ICML 2022.
+Networks that were trained from the same weights, or one from the other, lie in one valley of the loss. The mean of their
+weights is one network that answers nearly as well as the mean of their answers: Wortsman et al., "Model soups", ICML 2022.
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -14,6 +15,8 @@ import torch
 from torch import Tensor
 
 from crfnet_core.files import atomic_write
+from training.network.model import NetworkConfig, PhotographNet
+from training.network.start import start_from, start_record
 from training.network.train import CHECKPOINT
 from training.provenance import RUN_FILE, Record, file_sha256, read_run, write_json
 
@@ -24,7 +27,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     Parameters
     ----------
     runs : sequence of Path
-        Folders written by `training.network.train`.
+        Folders written by `training.network.train`, or model folders.
     shares : sequence of float
         What each run counts, as parts of their sum.
     out : Path
@@ -33,16 +36,16 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     Raises
     ------
     SystemExit
-        If the networks differ in size or start, or there is not one share for each run.
+        If the networks differ in size or are not related, or there is not one share for each run.
     """
     if len(shares) != len(runs) or min(shares) <= 0:
         raise SystemExit("give each run a share above 0")
     records = [read_run(run) for run in runs]
-    if any(_origin(record) != _origin(records[0]) for record in records):
+    if not _are_related(runs, records):
         raise SystemExit(
             "these runs cannot be averaged: their networks differ in size or in the weights they began from"
         )
-    networks = [torch.load(run / CHECKPOINT, weights_only=True)["net"] for run in runs]
+    networks = [_weights(run, record) for run, record in zip(runs, records, strict=True)]
     parts = [share / sum(shares) for share in shares]
     out.mkdir(parents=True, exist_ok=True)
     with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
@@ -64,16 +67,32 @@ def weighted_mean(networks: Sequence[dict[str, Tensor]], parts: Sequence[float])
     }
 
 
-def _origin(record: Record) -> Record:
-    """Return what runs must share to be averaged."""
-    return {"network": record["recipe"]["network"], "start": record["start"]}
+def _are_related(runs: Sequence[Path], records: Sequence[Record]) -> bool:
+    """Return whether all networks have one size, and began from the same weights or from one of the others."""
+    sizes = {json.dumps(record["recipe"]["network"], sort_keys=True) for record in records}
+    starts = {record["start"] for record in records} - {start_record(run) for run in runs if _is_model(run)}
+    return len(sizes) == 1 and len(starts) == 1
+
+
+def _is_model(folder: Path) -> bool:
+    """Return whether a folder is that of an exported model, not of a run."""
+    return not (folder / CHECKPOINT).exists()
+
+
+def _weights(folder: Path, record: Record) -> dict[str, Tensor]:
+    """Return the weights of a run, or of a model folder."""
+    if not _is_model(folder):
+        return dict(torch.load(folder / CHECKPOINT, weights_only=True)["net"])
+    net = PhotographNet(NetworkConfig(**record["recipe"]["network"]))
+    start_from(net, folder)
+    return dict(net.state_dict())
 
 
 def _part(run: Path, record: Record, part: float) -> Record:
     """Return what is recorded of one of the runs."""
     return {
         "share": round(part, 6),
-        "checkpoint": f"SHA-256 {file_sha256(run / CHECKPOINT)}",
+        "checkpoint": start_record(run) if _is_model(run) else f"SHA-256 {file_sha256(run / CHECKPOINT)}",
         "commit": record["commit"],
         "recipe": record["recipe"],
         "data": {key: record["data"][key] for key in ("files", "sha256")},
@@ -83,7 +102,7 @@ def _part(run: Path, record: Record, part: float) -> Record:
 def main() -> None:
     """Average as the options say."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--run", type=Path, nargs="+", required=True, help="folders written by the training")
+    parser.add_argument("--run", type=Path, nargs="+", required=True, help="folders of runs or of models")
     parser.add_argument("--share", type=float, nargs="+", required=True, help="what each run counts")
     parser.add_argument("--out", type=Path, required=True, help="the new run folder")
     options = parser.parse_args()
