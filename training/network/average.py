@@ -1,7 +1,9 @@
 """Average the weights of related runs: ``python -m training.network.average --run DIR DIR --share A B --out DIR``.
 
-Networks that were trained from the same weights, or one from the other, lie in one valley of the loss. The mean of their
-weights is one network that answers nearly as well as the mean of their answers: Wortsman et al., "Model soups", ICML 2022.
+Networks that were trained from the same weights, or one from the other, lie in one valley of the loss. The mean of
+their weights is one network that answers nearly as well as the mean of their answers: Wortsman et al., "Model soups",
+ICML 2022. A mean with the network before also keeps what the later run forgets: "Robust fine-tuning of zero-shot
+models", CVPR 2022.
 """
 
 from __future__ import annotations

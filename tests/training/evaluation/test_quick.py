@@ -23,7 +23,7 @@ from training.evaluation.test_sets import bundled_test_set
 #: Mean figures of `python -m training.evaluation --quick --protocol p0 --photographs 10`, by the head of the packaged
 #: model's hash. A new model, or another pipeline: measure, look whether it got better, and write them down here.
 EXPECTED = {
-    "aeb41b92419f": {"E_est mean": 1.4894, "E_lin mean": 3.5332, "E_est ratio": 0.6797, "shape mean": 0.2420},
+    "5f95d187ca11": {"E_est mean": 1.7101, "E_lin mean": 4.1000, "E_est ratio": 0.7804, "shape mean": 0.2536},
 }
 
 #: What rounding on other processors may change: a few windows of a few photographs.
