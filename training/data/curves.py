@@ -44,6 +44,32 @@ def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
     return encoded / encoded[-1]
 
 
+def geometric_median(
+    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9, steps: int = 500
+) -> Float64Array:
+    """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
+
+    Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), his iteration from the mean.
+
+    Parameters
+    ----------
+    rows : ndarray, shape (N, M)
+        The rows.
+    compared : slice
+        The columns in which rows are compared.
+    least_distance : float
+        What nearer rows count as, in L2: no single row is the median alone because it is near.
+    steps : int
+        Of the iteration.
+    """
+    median: Float64Array = rows.mean(axis=0)
+    for _ in range(steps):
+        distances = np.linalg.norm((rows - median)[:, compared], axis=1)
+        nearness = 1 / np.maximum(distances, least_distance)
+        median = nearness @ rows / nearness.sum()
+    return median
+
+
 class DrawsResponses(Protocol):
     """What draws responses."""
 

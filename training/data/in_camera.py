@@ -11,7 +11,7 @@ from scipy.ndimage import gaussian_filter1d
 from crfnet_core.posterior.responses import LEAST_IRRADIANCE
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE
+from training.data.curves import IRRADIANCE, geometric_median
 from training.data.real.bodies import Body
 
 #: The kinds of bodies that have a center of their own.
@@ -23,11 +23,11 @@ COMPONENTS = 6
 #: Bodies that all kinds together count as, when the center and when the spread of one kind are taken.
 PSEUDO_BODIES, PSEUDO_BODIES_OF_SPREAD = 1.0, 4.0
 
-#: Least distance in stops of a body from the center of its kind, and steps of the iteration that finds this center.
-LEAST_DISTANCE, STEPS = 0.03, 50
-
 #: Weight of the darkest brightnesses, below code 16 of 255, in the components: noise and black level rule there.
 DARK_WEIGHT, DARKEST = 0.2, 64
+
+#: Least distance of a body from the center of its kind: 0.03 stop RMS over the brightnesses from `DARKEST` on.
+LEAST_DISTANCE = 0.03 * np.sqrt(SAMPLES - DARKEST)
 
 #: Standard deviation of the logarithm of a draw's distance from the mean: tails heavier than a Gaussian's.
 TAILS = 0.25
@@ -63,7 +63,7 @@ class InCameraResponses:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}
-        center = geometric_median(np.stack(list(rows.values())))
+        center = _center(list(rows.values()))
         centers = {kind: _shrunk_center([rows[b.key] for b in bodies if b.kind == kind], center) for kind in KINDS}
         deviations = {
             body.key: (stacks[body.key] - centers.get(body.kind, center)) / np.sqrt(len(stacks[body.key]))
@@ -99,24 +99,16 @@ def response_of(logarithms: Float64Array) -> Float64Array:
     return np.interp(IRRADIANCE, irradiance / irradiance[-1], BRIGHTNESS)
 
 
-def geometric_median(rows: Float64Array) -> Float64Array:
-    """Return what has the least sum of distances from rows of log2 irradiance, (N, 1024): shape (1024,).
-
-    A few cameras are far from all others, and badly measured stacks are, too; they pull a mean along. A distance is RMS
-    over the brightnesses from `DARKEST` on, in stops. The iteration is that of Weiszfeld (1937).
-    """
-    center: Float64Array = rows.mean(axis=0)
-    for _ in range(STEPS):
-        distances = np.sqrt(np.mean((rows - center)[:, DARKEST:] ** 2, axis=1))
-        center = np.average(rows, axis=0, weights=1 / np.maximum(distances, LEAST_DISTANCE))
-    return center
+def _center(rows: Sequence[Float64Array]) -> Float64Array:
+    """Return the geometric median of bodies, shape (1024,): a few lie far from all others, and pull a mean along."""
+    return geometric_median(np.stack(rows), compared=slice(DARKEST, None), least_distance=LEAST_DISTANCE)
 
 
 def _shrunk_center(rows: Sequence[Float64Array], center: Float64Array) -> Float64Array:
     """Return the center of the bodies of a kind, shape (1024,), drawn towards that of all by `PSEUDO_BODIES`."""
     if not rows:
         return center
-    return center + (geometric_median(np.stack(rows)) - center) * len(rows) / (len(rows) + PSEUDO_BODIES)
+    return center + (_center(rows) - center) * len(rows) / (len(rows) + PSEUDO_BODIES)
 
 
 def _spread(bodies: Sequence[Body], squares: dict[str, float], kind: str) -> float:

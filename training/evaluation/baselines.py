@@ -12,7 +12,7 @@ from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE
+from training.data.curves import IRRADIANCE, geometric_median
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
@@ -100,18 +100,6 @@ def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCur
     bounds = (-MOST_LOWERED, -MOST_RAISED * at_shoulder)
     found = minimize_scalar(distance, bounds=bounds, method="bounded")
     return scaled(float(found.x))
-
-
-def geometric_median(curves: Float64Array, *, steps: int = 500) -> Float64Array:
-    """Return the curve, shape (1024,), with the least sum of distances to `curves`, shape (N, 1024).
-
-    Source: Weiszfeld's iteration, from the mean.
-    """
-    median = curves.mean(axis=0)
-    for _ in range(steps):
-        nearness = 1 / np.maximum(np.linalg.norm(curves - median, axis=1), 1e-9)
-        median = nearness @ curves / nearness.sum()
-    return median
 
 
 def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:

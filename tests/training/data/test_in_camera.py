@@ -5,14 +5,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.metrics import shape_error
 from crfnet_core.response import ResponseCurve
-from training.data.in_camera import (
-    COMPONENTS,
-    KINDS,
-    InCameraResponses,
-    geometric_median,
-    log_irradiance,
-    response_of,
-)
+from training.data.in_camera import COMPONENTS, KINDS, InCameraResponses, log_irradiance, response_of
 from training.data.real.bodies import Body
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -67,11 +60,6 @@ def test_a_body_counts_once_however_many_stacks_it_has(bodies):
     one = [*bodies, body("x", "camera", 0.6)]
     for kind in KINDS:
         np.testing.assert_allclose(InCameraResponses.of(many).centers[kind], InCameraResponses.of(one).centers[kind])
-
-
-def test_the_geometric_median_of_three_levels_is_the_middle_one():
-    rows = np.repeat([[0.0], [1.0], [5.0]], 1024, axis=1)
-    np.testing.assert_allclose(geometric_median(rows), 1.0, atol=0.05)
 
 
 def test_one_odd_body_hardly_moves_the_center_of_its_kind(bodies):

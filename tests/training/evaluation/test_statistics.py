@@ -6,9 +6,9 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.metrics import estimation_error, peak_signal_to_noise
 from crfnet_core.response import ResponseCurve
+from training.data.curves import geometric_median
 from training.evaluation.baselines import (
     constant_curves,
-    geometric_median,
     mean_in_log_irradiance,
     nearest_power,
     oracle_curves,
