@@ -109,8 +109,8 @@ def test_a_run_is_averaged_with_the_model_that_it_began_from(exported, tmp_path)
     (model / "run.json").write_text(json.dumps(record | {"start": "random weights"}))
     run.mkdir()
     (run / "run.json").write_text(json.dumps(record | {"start": start_record(model)}))
-    state = load_network(exported / "run").net.state_dict()
-    name = next(iter(dict(load_network(exported / "run").net.named_parameters())))
+    net = load_network(exported / "run").net
+    state, name = net.state_dict(), next(name for name, _ in net.named_parameters())
     torch.save({"net": state | {name: state[name] + 2}}, run / "last.pt")
     found = torch.load(average([run, model], [1, 1], tmp_path / "mean"), weights_only=True)["net"]
     torch.testing.assert_close(found[name], state[name] + 1)

@@ -5,14 +5,12 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import onnx
 import torch
-from onnx import numpy_helper
 from torch import Tensor, nn
 
 from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
-from training.network.start import HALF_SUFFIX
+from training.network.start import graph_tensors
 
 #: In front of the parameters' names in the graph of an exported network.
 GRAPH_PREFIX = "answers.network."
@@ -148,12 +146,8 @@ def _checkpoint_state(source: Path) -> dict[str, Tensor]:
 
 def _exported_state(graph: Path) -> dict[str, Tensor]:
     """Return the parameters in an exported graph; the biases of convolutions become those of the normalizations."""
-    values = {
-        tensor.name.removeprefix(GRAPH_PREFIX).removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
-        for tensor in onnx.load(graph).graph.initializer
-        if tensor.name.startswith(GRAPH_PREFIX)
-    }
-    state = {name: torch.from_numpy(value.astype("float32")) for name, value in values.items()}
+    tensors = graph_tensors(graph).items()
+    state = {name.removeprefix(GRAPH_PREFIX): tensor for name, tensor in tensors if name.startswith(GRAPH_PREFIX)}
     for name in [name for name in state if name.endswith(".bias") and not name.startswith("head.")]:
         layers, index, _ = name.rsplit(".", 2)
         state[f"{layers}.{int(index) + 1}.bias"] = state.pop(name)

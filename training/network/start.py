@@ -49,6 +49,14 @@ def start_record(source: Path | None) -> str:
     return f"{name}, SHA-256 {file_sha256(file)}"
 
 
+def graph_tensors(graph: Path) -> dict[str, Tensor]:
+    """Return name -> constant of an exported graph, in single precision."""
+    return {
+        tensor.name.removesuffix(HALF_SUFFIX): torch.from_numpy(numpy_helper.to_array(tensor).astype("float32"))
+        for tensor in onnx.load(graph).graph.initializer
+    }
+
+
 def _weights_file(source: Path) -> Path:
     """Return the file that holds the weights."""
     return source / "model.onnx" if source.is_dir() else source
@@ -56,19 +64,16 @@ def _weights_file(source: Path) -> Path:
 
 def _packaged_state(net: PhotographNet, graph: Path) -> dict[str, Tensor]:
     """Return the parameters in a graph. Those that the export transposed have lost their names: shapes tell them."""
-    arrays = {
-        tensor.name.removesuffix(HALF_SUFFIX): numpy_helper.to_array(tensor)
-        for tensor in onnx.load(graph).graph.initializer
-    }
+    tensors = graph_tensors(graph)
     state = {}
     for name, parameter in net.named_parameters():
         shape = tuple(parameter.shape)
-        found = [array for key, array in arrays.items() if key == GRAPH_PREFIX + name and array.shape == shape]
-        found = found or [array.T for array in arrays.values() if array.ndim == 2 and array.shape == shape[::-1]]
+        found = [tensor for key, tensor in tensors.items() if key == GRAPH_PREFIX + name and tensor.shape == shape]
+        found = found or [tensor.T for tensor in tensors.values() if tensor.ndim == 2 and tensor.shape == shape[::-1]]
         if len(found) != 1:
             raise SystemExit(f"{graph}: is not a network of this kind and size: it holds {len(found)} of {name}")
-        state[name] = torch.from_numpy(found[0].astype("float32"))
+        state[name] = found[0]
     for name, buffer in net.named_buffers():
-        if GRAPH_PREFIX + name in arrays and buffer.is_floating_point():
-            state[name] = torch.from_numpy(arrays[GRAPH_PREFIX + name].astype("float32"))
+        if GRAPH_PREFIX + name in tensors and buffer.is_floating_point():
+            state[name] = tensors[GRAPH_PREFIX + name]
     return state
