@@ -12,7 +12,7 @@ from training.data.scenes import LUMINANCE
 
 #: Fractions of photographs: without colour, under an illumination gradient, with another large-scale contrast, and
 #: with a power law on the irradiance.
-GRAY, GRADIENT, CONTRAST, POWER = 0.08, 0.3, 0.2, 0.3
+GRAY, GRADIENT, CONTRAST, POWER = 0.25, 0.3, 0.2, 0.3
 
 #: Range of the standard deviation of the logarithm of the luminance up to which texture is taken out.
 TEXTURE = (0.05, 0.7)

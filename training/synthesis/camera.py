@@ -68,8 +68,8 @@ class Capture:
             blur=0.4 * 10 ** rng.uniform(0, 1) if rng.random() < 0.3 else 0.0,
             sharpening=rng.uniform(0.1, 0.8) if rng.random() < 0.3 else 0.0,
             grain=rng.uniform(0.3, 2) / 255 if rng.random() < 0.3 else 0.0,
-            jpeg_quality=int(rng.integers(45, 99)) if rng.random() < 0.6 else None,
-            subsampled=bool(rng.random() < 0.5),
+            jpeg_quality=int(rng.integers(45, 99)) if rng.random() < 0.75 else None,
+            subsampled=bool(rng.random() < 0.65),
         )
 
     @property
