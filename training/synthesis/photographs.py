@@ -40,6 +40,10 @@ REACH = ((2, 8), (2, 12))
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
 DEFOCUSED = 0.35
 
+#: Fraction of the photographs of a scene without colour whose file has none either: its channels are equal, also where
+#: the noise of a sensor would have made them differ.
+ONE_CHANNEL = 0.7
+
 #: Standard deviation, in stops, of the gains of the illuminant: of plain captures, and of cameras that balance white.
 CASTS = (0.4, 0.12)
 
@@ -155,6 +159,8 @@ class PhotographSource:
             windows = simulate_capture(irradiance, curve, capture, rng)
         else:
             windows = develop(irradiance, curve, draw_development(kind, rng), rng, windows=WINDOWS)
+        if np.array_equal(light[..., 0], light[..., 1]) and rng.random() < ONE_CHANNEL:
+            windows = np.repeat(windows[..., 1:2], 3, axis=-1)
         return TrainingPhotograph(windows, curve, chosen, fold)
 
     def _exposure(self, light: Float32Array, curve: Float64Array, kind: FrameKind, rng: np.random.Generator) -> float:

@@ -6,10 +6,11 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.curves import CurveSource
 from training.data.scenes import Scene
+from training.synthesis import augmentation
 from training.synthesis.augmentation import composited, recolor, relight
 from training.synthesis.camera import reference_luminance
 from training.synthesis.camera_draws import WINDOWS
-from training.synthesis.photographs import FOLDS, LEAST_FILLED, PhotographSource
+from training.synthesis.photographs import FOLDS, LEAST_FILLED, ONE_CHANNEL, PhotographSource
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -55,6 +56,13 @@ def test_augmentation_treats_all_windows_alike_and_leaves_them_unchanged(scene):
         assert turned.shape == light.shape
         np.testing.assert_allclose(turned[0], turned[1], rtol=1e-5)
     np.testing.assert_array_equal(light, before)
+
+
+def test_most_photographs_of_gray_scenes_have_equal_channels_also_with_noise(source, monkeypatch):
+    monkeypatch.setattr(augmentation, "GRAY", 1.0)
+    photos = [photo for seed in range(20) for photo in source.draw(np.random.default_rng(seed))]
+    is_equal = [np.ptp(photo.windows, axis=-1).max() == 0 for photo in photos]
+    assert ONE_CHANNEL - 0.1 < np.mean(is_equal) < 0.95
 
 
 def test_a_photograph_shows_scenes_of_its_fold_only(scene):
