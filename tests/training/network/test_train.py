@@ -15,7 +15,7 @@ from training.network.train import TrainingConfig, train
 from training.synthesis.photographs import FOLDS
 
 SIZES = NetworkConfig(width=32, dropout=0.1)
-RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3)
+RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3, averaged_steps=2)
 
 
 @pytest.fixture(scope="module")
@@ -43,7 +43,7 @@ def read_log(run):
 
 
 def test_training_learns_and_logs(shards, tmp_path):
-    last = train(shards, tmp_path / "run", TrainingConfig(epochs=8, batch=32, learning_rate=3e-3), SIZES)
+    last = train(shards, tmp_path / "run", replace(RECIPE, epochs=8), SIZES)
     errors = read_log(tmp_path / "run")
     assert len(errors) == 8
     assert errors[-1] < 0.7 * errors[0]
@@ -69,6 +69,23 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(shards, tmp_path, monkey
     assert read_log(tmp_path / "halves") == read_log(tmp_path / "whole")
     first, second = (torch.load(tmp_path / run / "last.pt", weights_only=True)["net"] for run in ("whole", "halves"))
     assert all(torch.equal(first[name], second[name]) for name in first)
+
+
+def test_a_run_yields_the_average_of_its_weights(shards, tmp_path):
+    last = train(shards, tmp_path / "averaged", replace(RECIPE, epochs=1, averaged_steps=4), SIZES)
+    alone = train(shards, tmp_path / "alone", replace(RECIPE, epochs=1, averaged_steps=1), SIZES)
+    averaged, moving = (torch.load(last, weights_only=True)[part] for part in ("net", "moving"))
+    own, others = (torch.load(alone, weights_only=True)[part] for part in ("net", "moving"))
+    assert all(torch.equal(own[name], others[name]) for name in own)
+    weight = "photograph.location.weight"
+    assert torch.equal(others[weight], moving[weight])
+    assert not torch.allclose(averaged[weight], moving[weight])
+
+
+def test_the_learning_rate_ends_at_its_part_of_the_highest(shards, tmp_path):
+    last = train(shards, tmp_path / "run", replace(RECIPE, epochs=2, last_rate=0.25), SIZES)
+    (group,) = torch.load(last, weights_only=True)["optimizer"]["param_groups"]
+    assert group["lr"] == pytest.approx(0.25 * RECIPE.learning_rate, rel=0.1)
 
 
 def test_held_out_curves_can_be_left_out(shards, tmp_path):
