@@ -73,7 +73,7 @@ format: $(DEV)/ready  ## let ruff format and mend what it can
 
 model: $(TRAIN)/ready  ## train, export and evaluate the network anew (hours): make model DATA=FOLDER MODEL=FOLDER
 	@test -d "$(DATA)/dorf" || { echo "make model DATA=FOLDER: a folder with dorf, camera_curves and linear"; exit 2; }
-	@test -n "$(MODEL)" -a ! -e "$(MODEL)" || { echo "make model DATA=FOLDER MODEL=crfnet_core/models/photograph-statistics-2.3: a folder that does not exist yet"; exit 2; }
+	@test -n "$(MODEL)" -a ! -e "$(MODEL)" || { echo "make model DATA=FOLDER MODEL=crfnet_core/models/photograph-statistics-2.5: a folder that does not exist yet"; exit 2; }
 	$(TRAIN)/bin/python -m training.data.emor_basis --data $(DATA)
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos
 	$(TRAIN)/bin/python -m training.network.shards --data $(DATA) --out $(RUN)/photos --split validation --photographs 1000

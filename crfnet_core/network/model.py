@@ -16,7 +16,7 @@ from crfnet_core.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
 MODELS = Path(__file__).parents[1] / "models"
-DEFAULT_MODEL = MODELS / "photograph-statistics-2.3"
+DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 
 #: Size in bytes of the largest model.onnx that is read, and characters of the longest text in a model.json.
 MAX_GRAPH_SIZE = 256 * 2**20
