@@ -37,8 +37,8 @@ COMPETITORS = 2048
 class TrainingConfig:
     """The recipe: AdamW under one cycle of the learning rate, and a moving average of the weights.
 
-    The average (Polyak & Juditsky, 1992) is what a run yields. It takes the place of most of the decrease of the learning
-    rate: the weights go on moving, and their mean is better on new scenes than any of them.
+    The average (Polyak & Juditsky, 1992) is what a run yields. It takes the place of most of the decrease of the
+    learning rate: the weights go on moving, and their mean is better on new scenes than any of them.
 
     Parameters
     ----------
@@ -47,7 +47,7 @@ class TrainingConfig:
     learning_rate, weight_decay : float
         The highest learning rate of the cycle, and the decay of AdamW.
     last_rate : float
-        The learning rate at the end of the cycle, as a part of the highest.
+        The learning rate at the end of the cycle, as a part of the highest; above 0.
     averaged_steps : float
         Steps that the moving average of the weights reaches back, exponentially; 1 for no average.
     all_windows : float
@@ -77,7 +77,7 @@ class TrainingConfig:
 
 @dataclass
 class TrainingState:
-    """All that a run needs to go on from where it stopped; `averaged` holds the moving average of the weights of `net`."""
+    """All that a run needs to go on from where it stopped; `averaged` is the moving average of the weights of `net`."""
 
     net: PhotographNet
     averaged: AveragedModel
@@ -237,8 +237,15 @@ def main() -> None:
     parser.add_argument("--epochs", type=int, default=defaults.epochs)
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
     parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
-    parser.add_argument("--last-rate", type=float, default=defaults.last_rate)
-    parser.add_argument("--averaged-steps", type=float, default=defaults.averaged_steps)
+    parser.add_argument(
+        "--last-rate", type=float, default=defaults.last_rate, help="learning rate at the end, as a part of the highest"
+    )
+    parser.add_argument(
+        "--averaged-steps",
+        type=float,
+        default=defaults.averaged_steps,
+        help="steps that the average of the weights reaches back; 1 for none",
+    )
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
     parser.add_argument("--without-fold", type=int, choices=range(FOLDS), help="leave out and validate on these scenes")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
