@@ -38,7 +38,7 @@ class TrainingConfig:
     """The recipe: AdamW under one cycle of the learning rate, and a moving average of the weights.
 
     The average (Polyak & Juditsky, 1992) is what a run yields. It takes the place of most of the decrease of the
-    learning rate: the weights go on moving, and their mean is better on new scenes than any of them.
+    learning rate: the weights go on moving, and their mean does better on new scenes (training/EXPERIMENTS.md).
 
     Parameters
     ----------
@@ -137,7 +137,6 @@ def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfi
         state.resume(run / CHECKPOINT)
     elif init is not None:
         start_from(state.net, init)
-        state.averaged.module.load_state_dict(state.net.state_dict())
     loss = _loss(photographs, config)
     while state.epoch < config.epochs:
         train_loss = _train_epoch(state, loss, photographs, config)
