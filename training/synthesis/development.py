@@ -154,7 +154,7 @@ def develop(
         gain = development.tone_mapping.gain(planes)
         planes = [plane * gain for plane in planes]
     planes = hue_kept(planes, curve) if development.keeps_hue else [looked_up(plane, curve) for plane in planes]
-    finish = replace(development.finish, chroma_gain=0.0) if _is_gray(irradiance) else development.finish
+    finish = replace(development.finish, chroma_gain=0.0) if is_gray(irradiance) else development.finish
     codes = rounded(finish.applied(planes))
     if development.jpeg is not None:
         codes = development.jpeg.compressed(codes)
@@ -209,7 +209,7 @@ def point_sampled(codes: Uint8Array, each: int, scatter: int, rng: np.random.Gen
     return np.concatenate(parts)
 
 
-def _is_gray(irradiance: Float32Array) -> bool:
+def is_gray(irradiance: Float32Array) -> bool:
     """Return whether the channels of frames are equal, judged by some of their samples."""
     some = irradiance[:, ::8, ::8]
     return bool((some[..., :1] == some).all())

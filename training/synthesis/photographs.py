@@ -14,7 +14,7 @@ from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
 from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
-from training.synthesis.development import develop
+from training.synthesis.development import develop, is_gray
 from training.synthesis.resampling import THUMBNAIL_STEP, AffineResampling
 from training.synthesis.unusual import UnusualKind, random_exposure, unusual_windows
 
@@ -40,8 +40,8 @@ REACH = ((2, 8), (2, 12))
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
 DEFOCUSED = 0.35
 
-#: Fraction of the photographs of a scene without colour whose file has none either: its channels are equal, also where
-#: the noise of a sensor would have made them differ.
+#: Fraction of the plain captures of a scene without colour whose file has none either: its channels are equal, also
+#: where noise would have made them differ. Cameras that develop always write such files.
 ONE_CHANNEL = 0.7
 
 #: Standard deviation, in stops, of the gains of the illuminant: of plain captures, and of cameras that balance white.
@@ -157,10 +157,10 @@ class PhotographSource:
         if kind is FrameKind.PLAIN:
             capture = Capture() if rng.random() < CLEAN else Capture.draw(rng)
             windows = simulate_capture(irradiance, curve, capture, rng)
+            if is_gray(light) and rng.random() < ONE_CHANNEL:
+                windows = np.repeat(windows[..., 1:2], 3, axis=-1)
         else:
             windows = develop(irradiance, curve, draw_development(kind, rng), rng, windows=WINDOWS)
-        if np.array_equal(light[..., 0], light[..., 1]) and rng.random() < ONE_CHANNEL:
-            windows = np.repeat(windows[..., 1:2], 3, axis=-1)
         return TrainingPhotograph(windows, curve, chosen, fold)
 
     def _exposure(self, light: Float32Array, curve: Float64Array, kind: FrameKind, rng: np.random.Generator) -> float:
