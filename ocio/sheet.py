@@ -83,7 +83,7 @@ def draw_sheet(
     with sheet_figure(path, overwrite=overwrite) as figure:
         _draw_heading(figure, estimate)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
-        before, after = _picture_axes(figure, portrait=preview.shape[0] > preview.shape[1])
+        before, after = _picture_axes(figure, side_by_side=preview.shape[0] >= preview.shape[1])
         _draw_photograph(before, preview, estimate, stride)
         _draw_linear(after, preview, estimate.curve)
 
@@ -145,9 +145,9 @@ def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
     axes.legend([handles[i] for i in order], [labels[i] for i in order], loc="lower right", frameon=False, fontsize=10)
 
 
-def _picture_axes(figure: Figure, *, portrait: bool) -> tuple[Axes, Axes]:
-    """Return the axes of the photograph and of the linear plate: side by side if portrait, else one above the other."""
-    if portrait:
+def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:
+    """Return the axes of the photograph and of the linear plate: side by side, or one above the other."""
+    if side_by_side:
         boxes = [(left, BOTTOM, 0.215, HEIGHT) for left in (0.532, 0.757)]
     else:
         half = HEIGHT / 2 - 0.018

@@ -66,6 +66,14 @@ def test_any_shape_of_photograph_can_be_drawn(estimate, tmp_path, shape):
     assert (tmp_path / "a.png").stat().st_size > 10_000
 
 
+@pytest.mark.parametrize(("shape", "is_beside"), [((300, 300), True), ((300, 200), True), ((200, 300), False)])
+def test_square_photographs_and_portraits_lie_beside_their_linear_plate(estimate, tmp_path, shape, is_beside):
+    """Whichever shows them larger: the upper half of the sheet then has a picture next to the curve."""
+    sheet.draw_sheet(tmp_path / "a.png", np.full((*shape, 3), 0.5, np.float32), estimate)
+    next_to_the_curve = read_codes(tmp_path / "a.png")[300:500, 970:1100, :3]
+    assert (next_to_the_curve.min() < 255) == is_beside
+
+
 @pytest.mark.parametrize("verdict", Verdict)
 @pytest.mark.parametrize("name", ["plain.jpg", "long name " * 20 + ".jpg", "写真 $x_1$ \\frac 🎬.jpg"])
 def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, verdict, name):
