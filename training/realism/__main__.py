@@ -3,7 +3,8 @@
 A classifier learns to tell photographs of DATA/real_bodies from simulated ones with the measured responses of the same
 bodies, from the features that the network reads, by cue. It is judged on other bodies and on other scenes. Real
 photographs of three kinds are compared with plain captures and with simulated ones of the same kind: point-sampled
-ones, those made small before, and crops at full resolution.
+ones, those made small before, and crops at full resolution. A last row tells simulated photographs of panoramas from
+those of perspective scenes, which differ in their subjects only: no camera can be simulated more alike than that.
 """
 
 from __future__ import annotations
@@ -13,7 +14,9 @@ from pathlib import Path
 
 import numpy as np
 
-from training.data.scenes import read_scenes
+from crfnet_core.types import Float32Array
+from training.data.curves import CurveSource
+from training.data.scenes import Scene, read_scenes
 from training.realism.classifier import separation, single_aucs
 from training.realism.feature_names import feature_names
 from training.realism.samples import (
@@ -44,6 +47,17 @@ def table(real: dict[RealSet, SampleSet], simulated: dict[FrameKind, SampleSet])
             if shown in simulated:
                 lines.append(f"| {against} | {shown} | " + " | ".join(_cells(simulated[shown], real[against])) + " |")
     return lines
+
+
+def subject_row(scenes: list[Scene], curves: CurveSource, luminance: Float32Array, *, count: int, seed: int) -> str:
+    """Return a line of the table: plain captures of panoramas and of perspective scenes, as many of each."""
+    perspective = [scene for scene in scenes if not scene.is_panorama]
+    panoramas = [scene for scene in scenes if scene.is_panorama][: len(perspective)]
+    first, second = (
+        simulated_samples(part, curves, CameraShares.only(FrameKind.PLAIN), luminance, count=count, seed=seed)
+        for part in (panoramas, perspective)
+    )
+    return "| simulated: perspective scenes | panoramas | " + " | ".join(_cells(first, second)) + " |"
 
 
 def _cells(first: SampleSet, second: SampleSet) -> list[str]:
@@ -82,7 +96,9 @@ def main() -> None:
         )
         for kind in options.kind
     }
-    print("\n".join(table(real, simulated)))
+    known = read_scenes(options.data / "linear", "train")
+    subjects = subject_row(known, curves, luminance, count=options.photographs, seed=options.seed)
+    print("\n".join([*table(real, simulated), subjects]))
     for against, kind in KINDS.items():
         if kind in simulated:
             print(f"\n{against}, {kind}: features that separate most")
