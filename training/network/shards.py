@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import math
+from collections.abc import Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, fields
 from enum import IntEnum
@@ -180,8 +181,18 @@ def shard_files(folder: Path, split: str) -> list[Path]:
 def read_shards(folder: Path, split: str) -> Shards:
     """Return all photographs of a split that are there; FileNotFoundError if there are none."""
     shards = [np.load(path) for path in shard_files(folder, split)]
-    parts = (np.concatenate([shard[field.name] for shard in shards]) for field in fields(Shards))
-    return Shards(*map(torch.from_numpy, parts))
+    return Shards(*(_joined(shards, field.name) for field in fields(Shards)))
+
+
+def _joined(shards: Sequence[Mapping[str, np.ndarray]], name: str) -> Tensor:
+    """Return an array of all shards, (P, ...), filled one by one: to concatenate them takes twice the memory."""
+    first, count = shards[0][name], sum(len(shard["folds"]) for shard in shards)
+    joined, end = torch.empty((count, *first.shape[1:]), dtype=torch.from_numpy(first).dtype), 0
+    for shard in shards:
+        part = torch.from_numpy(shard[name])
+        joined[end : end + len(part)] = part
+        end += len(part)
+    return joined
 
 
 def main() -> None:

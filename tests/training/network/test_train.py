@@ -1,5 +1,5 @@
 import json
-from dataclasses import replace
+from dataclasses import fields, replace
 
 import numpy as np
 import pytest
@@ -106,6 +106,16 @@ def test_a_fold_of_scenes_can_be_left_out_and_validated_on(shards, tmp_path):
 def test_absent_shards_are_named(tmp_path):
     with pytest.raises(FileNotFoundError, match="no shards of the split train"):
         read_shards(tmp_path, "train")
+
+
+def test_photographs_of_all_shards_are_read_in_order(shards):
+    photographs = read_shards(shards, "train")
+    files = [np.load(shards / f"train_{number:04d}.npz") for number in range(2)]
+    for field in fields(photographs):
+        expected = np.concatenate([file[field.name] for file in files])
+        found = getattr(photographs, field.name).numpy()
+        assert found.dtype == expected.dtype
+        np.testing.assert_array_equal(found, expected)
 
 
 def test_a_run_starts_from_the_weights_of_another(shards, tmp_path):
