@@ -20,7 +20,7 @@ from crfnet_core.files import atomic_write
 from training.network.model import NetworkConfig, PhotographNet
 from training.network.start import start_from, start_record
 from training.network.train import CHECKPOINT
-from training.provenance import RUN_FILE, Record, file_sha256, read_run, write_json
+from training.provenance import RUN_FILE, Record, read_run, write_json
 
 
 def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
@@ -72,8 +72,13 @@ def weighted_mean(networks: Sequence[dict[str, Tensor]], parts: Sequence[float])
 def _are_related(runs: Sequence[Path], records: Sequence[Record]) -> bool:
     """Return whether all networks have one size, and began from the same weights or from one of the others."""
     sizes = {json.dumps(record["recipe"]["network"], sort_keys=True) for record in records}
-    starts = {record["start"] for record in records} - {start_record(run) for run in runs if _is_model(run)}
+    starts = {record["start"] for record in records} - {start_record(_source(run)) for run in runs}
     return len(sizes) == 1 and len(starts) == 1
+
+
+def _source(folder: Path) -> Path:
+    """Return what another run is given to start from this one: the folder of a model, or the checkpoint of a run."""
+    return folder if _is_model(folder) else folder / CHECKPOINT
 
 
 def _is_model(folder: Path) -> bool:
@@ -94,7 +99,7 @@ def _part(run: Path, record: Record, part: float) -> Record:
     """Return what is recorded of one of the runs."""
     return {
         "share": round(part, 6),
-        "checkpoint": start_record(run) if _is_model(run) else f"SHA-256 {file_sha256(run / CHECKPOINT)}",
+        "checkpoint": start_record(_source(run)),
         "commit": record["commit"],
         "recipe": record["recipe"],
         "data": {key: record["data"][key] for key in ("files", "sha256")},
