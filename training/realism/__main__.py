@@ -4,7 +4,7 @@ A classifier learns to tell photographs of DATA/real_bodies from simulated ones 
 bodies, from the features that the network reads, by cue. It is judged on other bodies and on other scenes. Real
 photographs of three kinds are compared with plain captures and with simulated ones of the same kind: point-sampled
 ones, those made small before, and crops at full resolution. A last row tells simulated photographs of panoramas from
-those of perspective scenes, which differ in their subjects only: no camera can be simulated more alike than that.
+those of perspective scenes, which differ in their subjects only: so much is not the camera's fault.
 """
 
 from __future__ import annotations
@@ -45,7 +45,7 @@ def table(real: dict[RealSet, SampleSet], simulated: dict[FrameKind, SampleSet])
     for against, kind in KINDS.items():
         for shown in (FrameKind.PLAIN, kind):
             if shown in simulated:
-                lines.append(f"| {against} | {shown} | " + " | ".join(_cells(simulated[shown], real[against])) + " |")
+                lines.append(_row(against, shown, simulated[shown], real[against]))
     return lines
 
 
@@ -57,14 +57,13 @@ def subject_row(scenes: list[Scene], curves: CurveSource, luminance: Float32Arra
         simulated_samples(part, curves, CameraShares.only(FrameKind.PLAIN), luminance, count=count, seed=seed)
         for part in (panoramas, perspective)
     )
-    return "| simulated: perspective scenes | panoramas | " + " | ".join(_cells(first, second)) + " |"
+    return _row("simulated: perspective scenes", "panoramas", first, second)
 
 
-def _cells(first: SampleSet, second: SampleSet) -> list[str]:
-    """Return the separation by each cue and by all."""
-    return [
-        str(separation(first.features[cue], second.features[cue], first.groups, second.groups)) for cue in (*CUES, ALL)
-    ]
+def _row(against: str, shown: str, first: SampleSet, second: SampleSet) -> str:
+    """Return a line of the table: what is told apart, and the separation by each cue and by all."""
+    areas = (separation(first.features[cue], second.features[cue], first.groups, second.groups) for cue in (*CUES, ALL))
+    return "| " + " | ".join([against, shown, *map(str, areas)]) + " |"
 
 
 def separating(first: SampleSet, second: SampleSet, *, count: int = 12) -> list[str]:

@@ -12,23 +12,22 @@ from training.realism.samples import ALL, CUES, SampleSet, simulated_samples
 from training.synthesis.camera import reference_luminance
 from training.synthesis.camera_draws import CameraShares, FrameKind
 
+CURVES = CurveSource(np.linspace(0, 1, 1024)[None] ** 0.4, (), camera_fraction=0, plain_fraction=1)
+
+
+def made_scenes(count, *, is_panorama=False):
+    """Return scenes of smooth colored light with some noise."""
+    rng, (y, x) = np.random.default_rng(5), np.mgrid[:300, :500] / 100
+    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
+    pixels = (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32)
+    return [Scene(str(number), pixels, is_panorama) for number in range(count)]
+
 
 def test_every_feature_has_a_name():
     counts = np.ones((2, LENGTH), np.float32)
     samples = SampleSet.of(counts, [0, 1])
     assert len(feature_names()) == samples.features[ALL].shape[1]
     assert sum(samples.features[cue].shape[1] for cue in CUES) == samples.features[ALL].shape[1]
-
-
-CURVES = CurveSource(np.linspace(0, 1, 1024)[None] ** 0.4, (), camera_fraction=0, plain_fraction=1)
-
-
-def made_scenes(count, *, is_panorama=False, size=(300, 500)):
-    """Return scenes of smooth colored light with some noise."""
-    rng, (y, x) = np.random.default_rng(5), np.mgrid[: size[0], : size[1]] / 100
-    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal(size))
-    pixels = (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32)
-    return [Scene(str(number), pixels, is_panorama) for number in range(count)]
 
 
 def test_simulated_photographs_come_evenly_from_the_scenes():
