@@ -25,6 +25,10 @@ POSITIONS_TRIED = 400
 #: The shorter side of a photograph holds at least this many windows.
 WINDOWS_ACROSS = 2
 
+#: Windows begin at even rows and columns: JPEG and video keep the colour of 2 x 2 pixels together, and in training,
+#: where windows are compressed as pictures of their own, these pixels always begin at a window's first.
+GRID = 2
+
 
 @dataclass(frozen=True)
 class Window:
@@ -83,9 +87,9 @@ def select_windows(
 ) -> tuple[Window, ...]:
     """Return the windows to analyse (CRF-net paper, Sec. 3.2).
 
-    Positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least `coverage`
-    bins filled. If `POSITIONS_TRIED` positions do not give enough of them, the best-covering others fill the number:
-    look at `Window.covers_range`.
+    Even positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least
+    `coverage` bins filled. If `POSITIONS_TRIED` positions do not give enough of them, the best-covering others fill
+    the number: look at `Window.covers_range`.
 
     Parameters
     ----------
@@ -130,8 +134,8 @@ def cut_windows(pixels: Pixels, windows: Sequence[Window]) -> Float32Array:
 
 
 def _positions(height: int, width: int, step: int, seed: int) -> list[tuple[int, int]]:
-    """Return up to `POSITIONS_TRIED` distinct random window corners (x, y)."""
+    """Return up to `POSITIONS_TRIED` distinct random window corners (x, y), multiples of `GRID`."""
     extent = Window(0, 0, step, 0).extent
-    rows, columns = height - extent + 1, width - extent + 1
+    rows, columns = ((side - extent) // GRID + 1 for side in (height, width))
     drawn = np.random.default_rng(seed).choice(rows * columns, min(POSITIONS_TRIED, rows * columns), replace=False)
-    return [(int(position % columns), int(position // columns)) for position in drawn]
+    return [(GRID * int(position % columns), GRID * int(position // columns)) for position in drawn]

@@ -105,6 +105,18 @@ def test_every_window_lies_within_the_photograph():
         assert 0 <= window.y <= 910 - window.extent
 
 
+@pytest.mark.parametrize(("height", "width"), [(500, 1000), (910, 1300), (240, 240)])
+def test_windows_begin_at_even_rows_and_columns(height, width):
+    windows = select_windows(noise(height, width), count=20)
+    assert len({(window.x, window.y) for window in windows}) == 20
+    assert all(window.x % 2 == 0 and window.y % 2 == 0 for window in windows)
+
+
+def test_a_photograph_of_few_positions_gives_few_windows():
+    windows = select_windows(noise(WINDOW_SIZE + 1, WINDOW_SIZE + 2))
+    assert {(window.x, window.y) for window in windows} == {(0, 0), (2, 0)}
+
+
 def test_the_photograph_is_not_changed():
     pixels = noise(300, 300)
     before = pixels.copy()
