@@ -124,6 +124,25 @@ def test_the_expected_errors_are_means_of_the_metrics_over_the_bank(blurred, ban
     assert blurred.expected_distance == pytest.approx(blurred.weights @ distances)
 
 
+def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
+    """The evidence of exponent 0.2 would move it four times as far again, if it were right; the share is 0.4."""
+    prior = even_prior(evidence=0.2)
+    before = Posterior.of(bank, prior).curve
+    for number in (1, 3, 6):
+        posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[number], precision=2.0)])
+        spread = posterior.weights @ [estimation_error(true, posterior.curve) for true in curves(bank)]
+        expected = 0.6 * spread + 0.4 * 4 * estimation_error(before, posterior.curve)
+        assert posterior.expected_error == pytest.approx(expected, rel=1e-2)
+
+
+@pytest.mark.parametrize("exponent", [0.0, 1.0])
+def test_evidence_that_counts_in_full_or_not_at_all_leaves_no_such_doubt(bank, exponent):
+    evidence = evidence_for(bank.weights[3], precision=1.0)
+    posterior = Posterior.of(bank, even_prior(evidence=exponent), [evidence])
+    errors = [estimation_error(true, posterior.curve) for true in curves(bank)]
+    assert posterior.expected_error == pytest.approx(posterior.weights @ errors, rel=1e-2)
+
+
 def test_the_answer_has_nearly_the_least_expected_shape_error(blurred, bank):
     """Hardly any member of the bank would have been the better answer."""
     members = curves(bank)
