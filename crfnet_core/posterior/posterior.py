@@ -8,6 +8,7 @@ from functools import cached_property
 
 import numpy as np
 
+from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior.evidence import Evidence
 from crfnet_core.posterior.families import STATED_ODDS, Family
 from crfnet_core.posterior.prior import Prior
@@ -34,17 +35,14 @@ class Posterior:
         The probability of each response, given that one of them is right; their sum is 1.
     unexplained : float
         The probability that none of them is.
-    prior_weights : ndarray, float64, shape (N,), optional
-        The weights before any photograph was seen; None if none was.
-    evidence : float
-        The exponent on the likelihood of ordinary responses, in [0, 1]: see `Prior`.
+    prior : Prior, optional
+        What was known before photographs were seen; None if none was.
     """
 
     bank: ResponseBank
     weights: Float64Array
     unexplained: float
-    prior_weights: Float64Array | None = None
-    evidence: float = 1.0
+    prior: Prior | None = None
 
     def __eq__(self, other: object) -> bool:
         """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
@@ -68,7 +66,6 @@ class Posterior:
             Fraction of the evidence that is independent, in (0, 1]: see `independent_share`.
         """
         logarithms = _log_prior(bank, prior)
-        prior_weights = np.exp(logarithms - _log_sum(logarithms)) if evidences else None
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
         if evidences:
             likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
@@ -85,7 +82,7 @@ class Posterior:
         explained = _log_sum(logarithms)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - unexplained, 700.0))))
-        return cls(bank, weights, probability, prior_weights, prior.evidence)
+        return cls(bank, weights, probability, prior if evidences else None)
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -101,18 +98,23 @@ class Posterior:
         Linear and log members count only if no other does: between them and the others there is no answer in the
         middle, and where they win, the answer is not to be trusted anyway.
         """
-        return _answer(self.bank, self.weights)
+        ordinary = np.where(self.bank.ordinary, self.weights, 0)
+        weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
+        irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
+        irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
+        uniform = np.linspace(0, 1, SAMPLES)
+        return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
 
     @cached_property
     def expected_error(self) -> float:
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         answer = self.curve.brightness
         spread = float(_weighed(self.weights, self.bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1)))
-        if self.prior_weights is None or self.evidence == 0:
+        if self.prior is None or self.prior.evidence in (0, 1):
             return spread
-        moved = float(np.linalg.norm(answer - _answer(self.bank, self.prior_weights).brightness))
-        doubt = (1 - self.evidence) / 2
-        return (1 - doubt) * spread + doubt * (1 / self.evidence - 1) * moved
+        moved = estimation_error(Posterior.of(self.bank, self.prior).curve, self.curve)
+        doubt = (1 - self.prior.evidence) / 2
+        return (1 - doubt) * spread + doubt * (1 / self.prior.evidence - 1) * moved
 
     @cached_property
     def expected_shape_error(self) -> float:
@@ -141,16 +143,6 @@ class Posterior:
         ends = [[np.interp(level, *knot) for knot in zip(cumulative, ordered, strict=True)] for level in levels]
         uniform = np.arange(SAMPLES)
         return np.stack([np.interp(uniform, BAND_SAMPLES, end) for end in ends])
-
-
-def _answer(bank: ResponseBank, weights: Float64Array) -> ResponseCurve:
-    """Return the geometric mean of the inverse responses of a bank by their weights, shape (N,): Eq. 25."""
-    ordinary = np.where(bank.ordinary, weights, 0)
-    shares = ordinary / ordinary.sum() if ordinary.any() else weights
-    irradiance = np.exp2(_weighed(shares, bank.log_irradiance, lambda rows: rows))
-    irradiance = (irradiance - irradiance[0]) / (irradiance[-1] - irradiance[0])
-    uniform = np.linspace(0, 1, SAMPLES)
-    return ResponseCurve.from_samples(np.interp(uniform, np.maximum.accumulate(irradiance), uniform))
 
 
 def _weighed(
