@@ -7,6 +7,7 @@ from pathlib import Path
 
 import torch
 from torch import Tensor, nn
+from torch.optim.swa_utils import AveragedModel
 
 from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
@@ -24,6 +25,8 @@ class TrainingState:
     ----------
     network : CRFNet
         The network itself, not wrapped for several processes, so that any number of them can go on.
+    averaged : AveragedModel
+        The moving average of its weights.
     optimizer : Optimizer
         The optimizer, with its momenta.
     step : int
@@ -33,6 +36,7 @@ class TrainingState:
     """
 
     network: CRFNet
+    averaged: AveragedModel
     optimizer: torch.optim.Optimizer
     step: int = 0
     rows: list[list[float]] = field(default_factory=list)
@@ -43,18 +47,21 @@ class TrainingState:
         return [row[2] for row in self.rows]
 
     def save(self, path: Path) -> None:
-        """Write the checkpoint, whole or not at all."""
-        state = {"network": self.network.state_dict(), "optimizer": self.optimizer.state_dict()}
-        _save(state | {"step": self.step, "rows": self.rows}, path)
+        """Write the checkpoint, whole or not at all; its "network" is the average, "moving" the weights that go on."""
+        parts = {"network": self.averaged.module, "moving": self.network, "optimizer": self.optimizer}
+        states = {name: part.state_dict() for name, part in parts.items()}
+        _save(states | {"step": self.step, "rows": self.rows}, path)
 
     def save_best(self, path: Path) -> None:
-        """Write the weights and the log so far."""
-        _save({"network": self.network.state_dict(), "step": self.step, "rows": self.rows}, path)
+        """Write the average and the log so far."""
+        _save({"network": self.averaged.module.state_dict(), "step": self.step, "rows": self.rows}, path)
 
     def resume(self, path: Path, device: torch.device) -> None:
         """Go on from a checkpoint."""
         state = torch.load(path, map_location=device, weights_only=True)
-        self.network.load_state_dict(state["network"])
+        self.network.load_state_dict(state["moving"])
+        self.averaged.module.load_state_dict(state["network"])
+        self.averaged.n_averaged.fill_(state["step"])
         self.optimizer.load_state_dict(state["optimizer"])
         self.step, self.rows = state["step"], state["rows"]
 

@@ -6,6 +6,7 @@ import math
 from dataclasses import dataclass
 
 import torch
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from training.crfnet2017.network import CRFNet
 
@@ -37,6 +38,9 @@ class Recipe:
     squared : bool
         Whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance
         itself, which is E_est.
+    averaged_steps : float
+        Steps that the moving average of the weights reaches back, exponentially; 1 for no average. The average is what
+        a run is validated by and yields, as in `training.network.train`.
     """
 
     optimizer: str = "adamw"
@@ -50,6 +54,7 @@ class Recipe:
     channels_last: bool = True
     clip: float = 1.0
     squared: bool = False
+    averaged_steps: float = 300.0
 
 
 #: `default` is our recipe for few windows. `paper` is the paper's as far as we know it. We had a summary of its text,
@@ -68,6 +73,7 @@ RECIPES = {
         channels_last=False,
         clip=0.0,
         squared=True,
+        averaged_steps=1.0,
     ),
 }
 
@@ -122,3 +128,9 @@ def make_optimizer(network: CRFNet, recipe: Recipe) -> torch.optim.Optimizer:
     if recipe.optimizer == "sgd":
         return torch.optim.SGD(groups, recipe.learning_rate, recipe.momentum, weight_decay=recipe.weight_decay)
     return torch.optim.AdamW(groups, recipe.learning_rate, weight_decay=recipe.weight_decay, fused=True)
+
+
+def make_average(network: CRFNet, recipe: Recipe) -> AveragedModel:
+    """Return the moving average of the weights of a network, and of the statistics of its normalizations."""
+    average = get_ema_multi_avg_fn(1 - 1 / recipe.averaged_steps)
+    return AveragedModel(network, multi_avg_fn=average, use_buffers=True)

@@ -127,12 +127,13 @@ class Trainer:
         if recipe.clip:
             nn.utils.clip_grad_norm_(self.network.parameters(), recipe.clip)
         optimizer.step()
+        self.state.averaged.update_parameters(self.state.network)
         self.state.step += 1
         return loss.detach()
 
     def validation_figure(self) -> float:
-        """Return the mean figure of the held-out windows: top-1 accuracy, or E_est."""
-        network = self.state.network.eval()
+        """Return the mean figure of the held-out windows by the average: top-1 accuracy, or E_est."""
+        network = self.state.averaged.module.eval()
         figures = []
         with torch.inference_mode():
             for batch in self.validation.split(VALIDATION_BATCH):

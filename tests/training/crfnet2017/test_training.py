@@ -17,7 +17,7 @@ from training.crfnet2017.checkpoints import TrainingState, fold_normalization, s
 from training.crfnet2017.export import ShippedCRFNet, load_network
 from training.crfnet2017.likelihood import Likelihood
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
+from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_average, make_optimizer
 from training.crfnet2017.stages import StageTask
 from training.crfnet2017.train import train
 from training.crfnet2017.trainer import ProcessContext, Trainer
@@ -32,7 +32,7 @@ CPU = torch.device("cpu")
 #: What an answer may be worth.
 LIKELIHOOD = Likelihood(np.linspace(0.2, 0.9, 5), np.linspace(-1, 1, 5), np.tril(np.full((5, 5), 0.5)), -2.0)
 
-EXACT = Recipe(batch=2, mixed=False, channels_last=False)
+EXACT = Recipe(batch=2, mixed=False, channels_last=False, averaged_steps=2.0)
 PLAIN = Recipe("sgd", 0.01, batch=2, mixed=False, channels_last=False, clip=0.0)
 REGRESSION = RunConfig("regress", EXACT, steps=2, validate_every=2)
 
@@ -126,7 +126,7 @@ def test_the_first_stage_learns(pack):
     task = StageTask("classify", pack.curves, squared=False, device=CPU)
     torch.manual_seed(0)
     network = CRFNet(task.outputs)
-    state = TrainingState(network, make_optimizer(network, config.recipe))
+    state = TrainingState(network, make_average(network, config.recipe), make_optimizer(network, config.recipe))
     batch = draw_windows(pack, 2, np.random.default_rng(5))
     trainer = Trainer(config, task, state, ProcessContext(CPU), pack, batch)
     losses = [float(trainer.step(batch)) for _ in range(3)]
@@ -147,6 +147,20 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(work_folder, run):
     state = train(work_folder / "pack", work_folder / "halves", REGRESSION, validation_windows=3)
     assert state.step == 2
     assert equal(weights_of(work_folder / "halves" / "last.pt"), weights_of(run / "last.pt"))
+
+
+def test_a_run_yields_the_moving_average_of_its_weights(work_folder, run):
+    train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3, stop=1)
+    first = torch.load(work_folder / "averaged" / "last.pt", weights_only=True)
+    train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3)
+    second = torch.load(work_folder / "averaged" / "last.pt", weights_only=True)
+    assert equal(first["network"], first["moving"])
+    assert not torch.equal(second["network"]["head.weight"], second["moving"]["head.weight"])
+    trained = [name for name, _ in CRFNet().named_parameters()]
+    for name in trained:
+        mean = (second["moving"][name] + first["moving"][name]) / 2
+        assert torch.allclose(second["network"][name], mean, rtol=1e-5, atol=1e-7)
+    assert equal(weights_of(work_folder / "averaged" / "best.pt"), second["network"])
 
 
 def test_another_configuration_is_refused(work_folder, run):
