@@ -8,11 +8,11 @@ import numpy as np
 from scipy.optimize import minimize_scalar
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, geometric_median
+from training.data.headroom import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
@@ -28,11 +28,8 @@ ORACLE_GAMMA = "oracle: best gamma"
 ORACLE_HEADROOM = "oracle: mean of the other bodies, best headroom"
 ORACLE_DORF = "oracle: nearest curve of DoRF"
 
-#: Brightness above which a response bends into white; how much lies above is the headroom that the oracle chooses.
-SHOULDER = LAST_SHAPE_CODE / 255
-
-#: Stops by which the oracle lowers a response at most, and the fraction of the shoulder that it uses up at most.
-MOST_LOWERED, MOST_RAISED = 3.0, 0.95
+#: Stops of headroom that the oracle adds at most, and the fraction of the shoulder that it uses up at most.
+MOST_ADDED, MOST_USED = 3.0, 0.95
 
 
 def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
@@ -80,26 +77,14 @@ def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
 
 
 def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCurve:
-    """Return `curve` with the headroom of least E_est against a true response; its shape stays.
-
-    Headroom is where white is reached. Up to brightness `SHOULDER` the irradiance is multiplied by one factor, which
-    is an exposure and leaves the shape error as it is; above, its logarithm is stretched so that it still ends at 1.
-    """
-    brightness = np.linspace(0, 1, SAMPLES)
-    logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)
-    at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
-
-    def scaled(stops: float) -> ResponseCurve:
-        top = logarithm * (at_shoulder + stops) / at_shoulder
-        moved = np.where(brightness[1:] <= SHOULDER, logarithm + stops, top)
-        return _of_inverse(np.exp2(moved))
+    """Return `curve` with the headroom of least E_est against a true response; its shape stays."""
 
     def distance(stops: float) -> float:
-        return float(np.linalg.norm(true.brightness - scaled(stops).brightness))
+        return float(np.linalg.norm(true.brightness - with_headroom(curve, stops).brightness))
 
-    bounds = (-MOST_LOWERED, -MOST_RAISED * at_shoulder)
+    bounds = (MOST_USED * float(np.log2(curve.inverse(SHOULDER))), MOST_ADDED)
     found = minimize_scalar(distance, bounds=bounds, method="bounded")
-    return scaled(float(found.x))
+    return with_headroom(curve, float(found.x))
 
 
 def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:
