@@ -59,6 +59,8 @@ def offered_cameras(
 ) -> list[CameraAnswer]:
     """Return the cameras that fit a photograph, with how far its own estimate is from their responses.
 
+    None fits one that a program developed from a raw file, because its response is not the camera's.
+
     Parameters
     ----------
     own : ResponseEstimate
@@ -68,7 +70,9 @@ def offered_cameras(
     prior : Prior, optional
         As of `crfnet_core.estimate_response`.
     """
-    offers = []
+    offers: list[CameraAnswer] = []
+    if any(origin.is_developed for origin in own.origins):
+        return offers
     for camera in matching_cameras(settings):
         with suppress(CameraError):  # evidence of another network alone
             offers.append(compared(own, camera, prior=prior))

@@ -5,34 +5,22 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
+#: Programs that develop raw files to tones of their own; those of camera makers imitate the camera.
+DEVELOPERS = (
+    *("lightroom", "camera raw", "capture one", "captureone", "darktable", "rawtherapee", "ufraw", "dcraw", "dxo"),
+    *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power"),
+)
+
 #: Parts of the names, in lower case. Each stands at the beginning of a word; firmware ("Ver.1.02", "HDR+ 1.0",
 #: "Digital Camera X-E1 Ver2.00", "15.3.1", "G960USQS9FUG2") holds none of them.
 EDITORS = (
+    *DEVELOPERS,
     # Adobe
-    *("adobe", "photoshop", "lightroom", "camera raw"),
-    # raw developers, of camera makers too
-    *(
-        "capture one",
-        "captureone",
-        "darktable",
-        "rawtherapee",
-        "ufraw",
-        "dcraw",
-        "dxo",
-        "silkypix",
-        "raw file converter",
-    ),
+    *("adobe", "photoshop"),
+    # raw developers of camera makers
     *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
-    *(
-        "olympus workspace",
-        "olympus viewer",
-        "olympus master",
-        "om workspace",
-        "photofunstudio",
-        "iridient",
-        "aperture ",
-    ),
-    *("phocus", "filmpack", "photolab", "rawpower", "raw power"),
+    *("olympus workspace", "olympus viewer", "olympus master", "om workspace", "photofunstudio"),
+    *("silkypix", "raw file converter", "filmpack"),
     # editors on computers
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
@@ -64,7 +52,13 @@ NO_EDITORS = ("windows photo viewer", "adobe bridge")
 #: What `Software` is exactly after a change in Google Photos or Picasa Web.
 EXACT = ("google", "google photos")
 
-_EDITOR = re.compile(r"(?<![a-z])(?:" + "|".join(map(re.escape, EDITORS)) + ")")
+
+def _any_of(names: Sequence[str]) -> re.Pattern[str]:
+    """Return the pattern of any of these names at the beginning of a word."""
+    return re.compile(r"(?<![a-z])(?:" + "|".join(map(re.escape, names)) + ")")
+
+
+_EDITOR, _DEVELOPER = _any_of(EDITORS), _any_of(DEVELOPERS)
 
 
 def editor_name(software: str, history: Sequence[str] = ()) -> str:
@@ -86,3 +80,8 @@ def is_editor(software: str) -> bool:
     if any(part in name for part in NO_EDITORS):
         return False
     return name in EXACT or bool(_EDITOR.search(name))
+
+
+def is_developer(software: str) -> bool:
+    """Return whether a program is mostly used to develop raw files, to tones that are not the camera's."""
+    return bool(_DEVELOPER.search(software.casefold()))

@@ -10,7 +10,7 @@ from crfnet_core.metadata.devices import Device
 from crfnet_core.metadata.origin import Encoding, FileOrigin
 
 #: Families of responses: three of renderings inside the device, then what programs and other media do.
-FAMILIES = ("phone", "compact", "camera", "edited", "film", "linear", "log", "unexplained")
+FAMILIES = ("phone", "compact", "camera", "developed", "edited", "film", "linear", "log", "unexplained")
 
 #: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.
 LEAST_FACTOR = 0.005
@@ -18,39 +18,41 @@ LEAST_FACTOR = 0.005
 #: Finding -> P(finding | family) in the order of `FAMILIES`, up to a common factor; 1 says nothing.
 FACTORS: dict[str, tuple[float, ...]] = {
     # EXIF of a device is kept by editors and lost by scans and frames; apps write linear and log pictures, rarely.
-    Device.PHONE: (1, 0.03, 0.03, 0.3, 0.02, 0.02, 0.05, 0.2),
+    Device.PHONE: (1, 0.03, 0.03, 0.1, 0.3, 0.02, 0.02, 0.05, 0.2),
     # A maker gives its compacts and its cameras much the same rendering; compacts have no log pictures.
-    Device.COMPACT: (0.03, 1, 0.15, 0.3, 0.02, 0.02, 0.02, 0.2),
-    # As before; those who develop raw files to linear pictures, or grab log frames, use such cameras.
-    Device.CAMERA: (0.03, 0.1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
+    Device.COMPACT: (0.03, 1, 0.15, 0.1, 0.3, 0.02, 0.02, 0.02, 0.2),
+    # As before; those who develop raw files, to linear pictures too, or grab log frames, use such cameras.
+    Device.CAMERA: (0.03, 0.1, 1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
-    Device.SCANNER: (0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    Device.SCANNER: (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
     # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
     # data, renderings and screenshots never had it.
-    "no camera": (0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),
+    "no camera": (0.2, 0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),
     # Who saves from an editor mostly changed tones, though some only scale or turn; developers also write the rest.
-    "editor": (1, 1, 1, 5, 2, 2, 1, 2),
+    "editor": (1, 1, 1, 3, 5, 2, 2, 1, 2),
+    # The same program may have edited what it developed. Few use such programs for the camera's own files.
+    "developed": (0.01, 0.01, 0.01, 1, 0.05, 0.01, 0.1, 0.05, 0.2),
     # Nothing but the camera has written the file; its picture may still be flat on purpose, or an app's.
-    "as the camera wrote it": (1, 1, 1, 0.05, 0.1, 0.1, 0.3, 0.4),
+    "as the camera wrote it": (1, 1, 1, 0.02, 0.05, 0.1, 0.1, 0.3, 0.4),
     # Who scales for the web often edits before; linear and log pictures are for work and keep their size.
-    "scaled": (1, 1, 1, 1.5, 1, 0.5, 0.5, 1.2),
+    "scaled": (1, 1, 1, 1.5, 1.5, 1, 0.5, 0.5, 1.2),
     # The program that encoded it again is a messenger, a site or an editor.
-    "encoded again": (1, 1, 1, 1.5, 1, 0.7, 0.7, 1.2),
+    "encoded again": (1, 1, 1, 1.5, 1.5, 1, 0.7, 0.7, 1.2),
     # The shapes count only where no device is named. 3:2 is that of reflex and mirrorless cameras, and of 35 mm film.
-    "3:2": (0.15, 0.15, 1, 0.8, 1, 0.7, 0.3, 0.6),
+    "3:2": (0.15, 0.15, 1, 1, 0.8, 1, 0.7, 0.3, 0.6),
     # Phones, compacts and Micro Four Thirds take 4:3, and old video does.
-    "4:3": (1, 1, 0.35, 0.7, 0.6, 0.7, 0.4, 0.7),
+    "4:3": (1, 1, 0.35, 0.4, 0.7, 0.6, 0.7, 0.4, 0.7),
     # Phones and video take 16:9; cameras and compacts only if asked to.
-    "16:9": (1, 0.4, 0.3, 0.7, 0.7, 0.8, 2, 1),
+    "16:9": (1, 0.4, 0.3, 0.3, 0.7, 0.7, 0.8, 2, 1),
     # Phones as long as their screens, and cinema.
-    "2:1": (1, 0.1, 0.1, 0.5, 0.5, 0.5, 1, 0.8),
+    "2:1": (1, 0.1, 0.1, 0.3, 0.5, 0.5, 0.5, 1, 0.8),
     # The profile was written by a program that knew: it says what the values are.
-    Encoding.LINEAR: (0.02, 0.02, 0.02, 0.1, 0.05, 1, 0.05, 0.3),
-    Encoding.LOG: (0.02, 0.02, 0.02, 0.1, 0.1, 0.05, 1, 0.3),
+    Encoding.LINEAR: (0.02, 0.02, 0.02, 0.05, 0.1, 0.05, 1, 0.05, 0.3),
+    Encoding.LOG: (0.02, 0.02, 0.02, 0.05, 0.1, 0.1, 0.05, 1, 0.3),
     # DPX holds scanned film, log and video frames; no still camera writes it.
-    Encoding.FOOTAGE: (0.05, 0.05, 0.1, 0.5, 1, 0.5, 1, 0.5),
+    Encoding.FOOTAGE: (0.05, 0.05, 0.1, 0.2, 0.5, 1, 0.5, 1, 0.5),
     # Every camera takes movies, and programs make them.
-    Encoding.MOVIE: (1, 1, 1, 1, 1, 1, 1, 1),
+    Encoding.MOVIE: (1, 1, 1, 1, 1, 1, 1, 1, 1),
 }
 
 
@@ -74,7 +76,8 @@ def findings(origin: FileOrigin) -> list[str]:
         origin.device: origin.device != Device.UNKNOWN,
         "no camera": is_still and not origin.camera,
         origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
-        "editor": bool(origin.editor),
+        "developed": origin.is_developed,
+        "editor": bool(origin.editor) and not origin.is_developed,
         "scaled": origin.is_scaled is True,
         "encoded again": origin.is_resaved is True and not origin.editor and not origin.is_scaled,
         "as the camera wrote it": origin.is_resaved is False,

@@ -35,6 +35,8 @@ class FileMetadata:
         The program that wrote the file last, or the camera's firmware: EXIF Software.
     history : tuple of str
         Programs in the XMP history (stEvt:softwareAgent), the first first.
+    raw_file : str
+        The file that a program of Adobe developed: Camera Raw's crs:RawFileName in XMP. It may be an ordinary picture.
     renderer : str
         The program that rendered the picture, which no camera took.
     year : int, optional
@@ -65,6 +67,7 @@ class FileMetadata:
     model: str = ""
     software: str = ""
     history: tuple[str, ...] = ()
+    raw_file: str = ""
     renderer: str = ""
     year: int | None = None
     iso: int | None = None
@@ -109,6 +112,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         model=_text(header, "Model"),
         software=_text(header, "Software"),
         history=tuple(part.strip() for part in history.split(";") if part.strip()),
+        raw_file=_text(header, "crs:RawFileName"),
         renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
         year=_year(_text(header, "Exif:DateTimeOriginal") or _text(header, "exif:DateTimeOriginal")),
         iso=_number(header, "Exif:PhotographicSensitivity"),

@@ -9,12 +9,15 @@ from enum import StrEnum
 from typing import Any
 
 from crfnet_core.metadata.devices import Device, camera_name, device_of
-from crfnet_core.metadata.editors import editor_name
+from crfnet_core.metadata.editors import editor_name, is_developer
 from crfnet_core.metadata.file_metadata import FileMetadata
 from crfnet_core.metadata.jpeg import ijg_quality
 
 #: The editor of a file with a segment of Adobe that names no program.
 ADOBE = "a program of Adobe"
+
+#: Ends of the names of files that are no raw files, in lower case.
+ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".heif", ".webp", ".avif", ".jxl")
 
 #: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
 #: 18:9 to 20:9 are the screens of phones.
@@ -97,6 +100,8 @@ class FileOrigin:
         The same in plain words, one sentence part each, for people.
     renderer : str
         The program that rendered the picture, which no camera took; empty if none is known.
+    is_developed : bool
+        Whether a program developed the photograph from a raw file: XMP names the file, or the editor is such a program.
     """
 
     device: Device
@@ -109,6 +114,7 @@ class FileOrigin:
     encoding: Encoding
     words: tuple[str, ...]
     renderer: str = ""
+    is_developed: bool = False
 
     @property
     def is_sent_copy(self) -> bool:
@@ -130,7 +136,8 @@ class FileOrigin:
             picture_shape=str(entry["picture_shape"]),
             encoding=Encoding(entry["encoding"]),
             words=tuple(map(str, entry["words"])),
-            renderer=str(entry.get("renderer", "")),  # the first documents have none
+            renderer=str(entry.get("renderer", "")),  # the first documents have neither this nor the next
+            is_developed=bool(entry.get("is_developed", False)),
         )
 
 
@@ -143,6 +150,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return what the metadata says of how the file was made; see the fields of `FileOrigin`."""
     device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if metadata.has_adobe else "")
+    is_developed = _is_developed(metadata, editor)
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
@@ -159,11 +167,12 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
         encoding=encoding,
         words=(
             f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
-            *_saved_words(editor, is_scaled, is_resaved, quality),
+            *_saved_words(editor, is_developed, is_scaled, is_resaved, quality),
             *_scaled_words(metadata, is_scaled),
             *_encoding_words(metadata, encoding),
         ),
         renderer=metadata.renderer,
+        is_developed=is_developed,
     )
 
 
@@ -174,6 +183,13 @@ def picture_shape(width: int, height: int) -> str:
         return "other"
     near = (name for name, (ratio, margin) in SHAPES.items() if abs(longer / shorter / ratio - 1) <= margin)
     return next(near, "other")
+
+
+def _is_developed(metadata: FileMetadata, editor: str) -> bool:
+    """Return whether a program developed the photograph from a raw file; Adobe's also name files that are not raw."""
+    if metadata.raw_file:
+        return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
+    return is_developer(editor)
 
 
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
@@ -233,8 +249,12 @@ def _taken_words(camera: str, device: Device) -> str:
     return f"taken by {camera}, {_DEVICES[device]}" if device else f"taken by {camera}"
 
 
-def _saved_words(editor: str, is_scaled: bool | None, is_resaved: bool | None, quality: int | None) -> list[str]:
+def _saved_words(
+    editor: str, is_developed: bool, is_scaled: bool | None, is_resaved: bool | None, quality: int | None
+) -> list[str]:
     """Return who saved the file, if that is known."""
+    if is_developed:
+        return [f"developed from a raw file by {editor or ADOBE}"]
     if editor:
         return [f"saved by {editor}"]
     if is_resaved is False:

@@ -11,13 +11,15 @@ class Family(StrEnum):
     """Where a response comes from.
 
     The first three are renderings that cameras write themselves, apart because phones leave another headroom and shape
-    than compact cameras and cameras with interchangeable lenses. `UNEXPLAINED` holds no responses: it stands for
-    pictures that no response of the bank explains, such as screenshots or tone-mapped HDR.
+    than compact cameras and cameras with interchangeable lenses. `DEVELOPED` is what programs make of raw files: the
+    same shape, but more headroom. `UNEXPLAINED` holds no responses: it stands for pictures that no response of the bank
+    explains, such as screenshots or tone-mapped HDR.
     """
 
     PHONE = "phone"
     COMPACT = "compact"
     CAMERA = "camera"
+    DEVELOPED = "developed"
     EDITED = "edited"
     FILM = "film"
     LINEAR = "linear"
@@ -37,6 +39,7 @@ STATED_ODDS = (Family.LINEAR, Family.LOG, Family.UNEXPLAINED)
 #: Groups of families in words for people, in the order in which they are asked.
 FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
     IN_CAMERA: "a camera's own rendering",
+    (Family.DEVELOPED,): "developed from a raw file by a program",
     (Family.EDITED, Family.FILM): "edited or unusual",
     (Family.LINEAR,): "nearly linear: do not trust",
     (Family.LOG,): "log-like: do not trust",
@@ -68,7 +71,8 @@ class LikelyKind:
         if not families:
             return None
         kinds = [
-            cls(members, words, sum(families[family] for family in members)) for members, words in FAMILY_WORDS.items()
+            cls(members, words, sum(families.get(family, 0.0) for family in members))
+            for members, words in FAMILY_WORDS.items()
         ]
         return max(kinds, key=lambda kind: kind.probability)
 

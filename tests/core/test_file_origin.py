@@ -91,6 +91,23 @@ def test_saved_again_or_not(fields, is_resaved):
 
 
 @pytest.mark.parametrize(
+    ("fields", "is_developed"),
+    [
+        ({"software": "Adobe Photoshop Lightroom Classic 9.2 (Macintosh)"}, True),
+        ({"software": "darktable 3.4"}, True),
+        ({"software": "Ver.1.00", "history": ("Capture One 20 Macintosh",)}, True),
+        ({"software": "Adobe Photoshop CC 2015 (Macintosh)"}, False),
+        ({"software": "Adobe Photoshop CC 2015 (Macintosh)", "raw_file": "_DSC9957.NEF"}, True),
+        ({"software": "Adobe Photoshop Lightroom 5.7 (Windows)", "raw_file": "IMG_0001.JPG"}, False),
+        ({"software": "Digital Photo Professional"}, False),  # imitates the camera
+        ({"software": "Ver.1.00"}, False),
+    ],
+)
+def test_developed_from_a_raw_file_or_not(fields, is_developed):
+    assert origin(**OWN_CAMERA, **fields).is_developed is is_developed
+
+
+@pytest.mark.parametrize(
     ("profile", "file_format", "encoding"),
     [
         ("sRGB IEC61966-2.1", "JPEG", Encoding.UNKNOWN),
@@ -124,6 +141,13 @@ def test_encoding_by_profile(profile, file_format, encoding):
                 "taken by Canon EOS 20D, a camera with interchangeable lenses",
                 "saved by GIMP 2.8",
                 "scaled from 7008 x 4672 to 3504 x 2336 pixels after the camera wrote it",
+            ),
+        ),
+        (
+            OWN_CAMERA | {"raw_file": "1.CR2", "has_adobe": True},
+            (
+                "taken by Canon EOS 20D, a camera with interchangeable lenses",
+                "developed from a raw file by a program of Adobe",
             ),
         ),
         (IJG, ("the file names no camera", "encoded again by a program, as JPEG of quality 92")),
@@ -172,6 +196,13 @@ def test_an_editor_makes_edited_five_times_as_likely():
     plain = family_factors(origin(make="DJI", model="FC220"))
     edited = family_factors(origin(make="DJI", model="FC220", software="GIMP 2.8"))
     assert edited["edited"] / edited["camera"] == pytest.approx(5 * plain["edited"] / plain["camera"])
+
+
+def test_what_was_developed_is_no_rendering_of_the_camera():
+    assert largest(**OWN_CAMERA, software="darktable 3.4") == "developed"
+    assert largest(**OWN_CAMERA, software="GIMP 2.8") == "developed"  # no editor's file need be the camera's rendering
+    factors = family_factors(origin(**OWN_CAMERA, software="darktable 3.4"))
+    assert factors["camera"] < 0.02
 
 
 def test_the_shape_counts_only_where_no_device_is_known():

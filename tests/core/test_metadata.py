@@ -101,19 +101,36 @@ def test_adobes_segment_names_an_editor_where_no_text_does(tmp_path):
     assert file_origin(read(tmp_path / "a.jpg")).editor == ADOBE
 
 
-def test_an_editor_that_stands_in_the_xmp_history_only(tmp_path):
+def with_xmp(path, description, **entries):
+    """Write a JPEG file with these entries and an XMP segment, and return its metadata."""
     xmp = (
         b'http://ns.adobe.com/xap/1.0/\0<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf='
-        b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#"><rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
+        b'"http://www.w3.org/1999/02/22-rdf-syntax-ns#">' + description + b"</rdf:RDF></x:xmpmeta>"
+    )
+    path.write_bytes(with_jpeg_segment(jpeg(path, **entries), 0xE1, xmp))
+    return read(path)
+
+
+def test_an_editor_that_stands_in_the_xmp_history_only(tmp_path):
+    description = (
+        b'<rdf:Description xmlns:xmpMM="http://ns.adobe.com/xap/1.0/mm/"'
         b' xmlns:stEvt="http://ns.adobe.com/xap/1.0/sType/ResourceEvent#"><xmpMM:History><rdf:Seq>'
         b'<rdf:li stEvt:action="saved" stEvt:softwareAgent="Adobe Photoshop CC (Macintosh)"/></rdf:Seq>'
-        b"</xmpMM:History></rdf:Description></rdf:RDF></x:xmpmeta>"
+        b"</xmpMM:History></rdf:Description>"
     )
-    content = jpeg(tmp_path / "a.jpg", Software="Ver.1.0")
-    (tmp_path / "a.jpg").write_bytes(with_jpeg_segment(content, 0xE1, xmp))
-    metadata = read(tmp_path / "a.jpg")
+    metadata = with_xmp(tmp_path / "a.jpg", description, Software="Ver.1.0")
     assert metadata.history == ("Adobe Photoshop CC (Macintosh)",)
     assert file_origin(metadata).editor == "Adobe Photoshop CC (Macintosh)"
+
+
+def test_the_raw_file_that_camera_raw_developed(tmp_path):
+    description = (
+        b'<rdf:Description xmlns:crs="http://ns.adobe.com/camera-raw-settings/1.0/"'
+        b' crs:RawFileName="_DSC0001.NEF" crs:AlreadyApplied="True"/>'
+    )
+    metadata = with_xmp(tmp_path / "a.jpg", description, Software="Adobe Photoshop CC (Macintosh)")
+    assert metadata.raw_file == "_DSC0001.NEF"
+    assert file_origin(metadata).is_developed
 
 
 def test_names_are_shown_without_control_characters(tmp_path):

@@ -8,14 +8,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.posterior import Family
+from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses
+from training.data.headroom import with_headroom
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
 
+#: Stops by which programs that develop raw files leave more headroom than cameras: they make the picture brighter, and
+#: bend what then lies above white into the shoulder. The measured body whose files say so has 0.8.
+DEVELOPED_HEADROOM = 0.6
+
 #: Ranges of the powers of nearly linear data, and of the factor a of log curves log(1 + a E).
 LINEAR_POWERS, LOG_FACTORS = (0.82, 1.25), (30.0, 6000.0)
+
+
+def developed(responses: Float64Array) -> Float64Array:
+    """Return responses of cameras, shape (N, 1024), as programs develop raw files: with more headroom."""
+    curves = [ResponseCurve.from_samples(response) for response in responses]
+    return np.stack([with_headroom(curve, DEVELOPED_HEADROOM).brightness for curve in curves])
 
 
 def edited(responses: Float64Array, rng: np.random.Generator) -> Float64Array:
@@ -89,6 +101,8 @@ class ResponseFamilies:
             return nearly_linear(count, rng)
         if family is Family.LOG:
             return log_like(count, rng)
+        if family is Family.DEVELOPED:
+            return developed(self.in_camera(Family.CAMERA, count, rng))
         if family is Family.EDITED:
             kinds = (Family.PHONE, Family.COMPACT, Family.CAMERA)
             drawn = [self.in_camera(kinds[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]

@@ -27,6 +27,7 @@ COUNTS = {
     Family.FILM: 600,
     Family.LINEAR: 40,
     Family.LOG: 60,
+    Family.DEVELOPED: 200,
 }
 
 

@@ -1,5 +1,7 @@
 """Photographs accumulate, and a photograph is compared with a camera's response."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -21,6 +23,7 @@ from crfnet_core.cameras import (
 )
 from crfnet_core.cameras.answer import brightness_per_stop
 from crfnet_core.errors import CameraError, CRFNetError, PhotoError
+from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior import Prior, Verdict
 from tests.helpers.cameras import photograph
@@ -214,3 +217,5 @@ def test_cameras_of_the_make_and_model_fit_the_nearest_sensitivity_first(
     offers = offered_cameras(own, settings)
     assert [offer.name for offer in offers] == ["high", "low"]
     assert offers[0] == compared(own, library.get("high"))
+    developed = file_origin(FileMetadata(raw_file="1.ARW"))
+    assert offered_cameras(replace(own, origins=(developed,)), settings) == []

@@ -28,7 +28,8 @@ def test_no_evidence_returns_the_prior(bank):
     posterior = Posterior.of(bank, prior)
     for family, members in SMALL_BANK.items():
         np.testing.assert_allclose(posterior.weights[bank.of(family)], 0.2 / len(members))
-    assert posterior.families == pytest.approx(dict(prior.shares) | {Family.COMPACT: 0, Family.EDITED: 0})
+    unknown = dict.fromkeys((Family.COMPACT, Family.DEVELOPED, Family.EDITED), 0)
+    assert posterior.families == pytest.approx(dict(prior.shares) | unknown)
 
 
 @pytest.mark.parametrize("number", [1, 3, 6])

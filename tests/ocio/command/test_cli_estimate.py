@@ -129,6 +129,16 @@ def test_an_editor_is_warned_of(estimate, codes, tmp_path):
     assert "\nWarning: saved by GIMP 2.10, which may have changed the tones" in out
 
 
+def test_a_photograph_that_was_developed_from_a_raw_file_is_told_from_the_cameras_own(estimate, codes, tmp_path):
+    entries = {"Make": "NIKON CORPORATION", "Model": "NIKON D800"}
+    photo = write_image(tmp_path / "raw.jpg", codes, Software="Adobe Photoshop Lightroom Classic 9.2", **entries)
+    out = estimate(photo).out
+    assert ", developed from a raw file by Adobe Photoshop Lightroom Classic 9.2" in out
+    assert "\nWarning: developed from a raw file by Adobe Photoshop Lightroom Classic 9.2, and not by the camera" in out
+    found = json.loads((tmp_path / "out" / "raw.json").read_text(encoding="utf-8"))["families"]
+    assert found["developed"] > 0.5
+
+
 def test_the_luts_hold_the_inverse_of_the_response(look, true_response):
     lut = read_spi1d(look / "plate.spi1d")
     found = json.loads((look / "plate.json").read_text(encoding="utf-8"))["response"]["brightness"]

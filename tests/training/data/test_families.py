@@ -8,9 +8,11 @@ from crfnet_core.posterior import Family
 from crfnet_core.response import ResponseCurve
 from training.data.curves import CurveSource
 from training.data.families import (
+    DEVELOPED_HEADROOM,
     LINEAR_POWERS,
     EditedResponses,
     ResponseFamilies,
+    developed,
     edited,
     log_like,
     nearly_linear,
@@ -45,6 +47,14 @@ def test_most_edits_are_small_and_a_few_are_large():
     assert np.median(errors) < 0.3
     assert errors.max() > 3 * np.median(errors)
     assert errors.min() > 0
+
+
+def test_developed_responses_have_more_headroom_and_the_same_shape():
+    before = 1 - (1 - UNIFORM[None] ** np.array([[0.6], [0.7]])) ** 2
+    for first, second in zip(before, developed(before), strict=True):
+        camera, program = (ResponseCurve.from_samples(row) for row in (first, second))
+        assert np.log2(camera.inverse(0.5) / program.inverse(0.5)) == pytest.approx(DEVELOPED_HEADROOM, abs=0.01)
+        assert shape_error(camera, program) < 0.01
 
 
 def test_nearly_linear_responses_are_powers_near_1():

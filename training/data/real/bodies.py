@@ -30,7 +30,7 @@ class Body:
 
 
 def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
-    """Return the bodies of DATA/real and DATA/real_bodies.
+    """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
 
     Parameters
     ----------
@@ -41,7 +41,11 @@ def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> lis
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
     left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}
-    kept = [photograph for photograph in photographs if model_key(photograph) not in left_out]
+    kept = [
+        photograph
+        for photograph in photographs
+        if model_key(photograph) not in left_out and not photograph.is_developed
+    ]
     return [_body(key, kept) for key in sorted({photograph.body_key for photograph in kept})]
 
 

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.image_io import read_metadata
+from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.response import ResponseCurve
 from training.data.real.case_metadata import is_original, metadata_of_case
 from training.data.real.file_origin import Editing, editing, is_scaled
@@ -89,6 +90,11 @@ class RealPhotograph:
     def body_key(self) -> str:
         """What bodies are told apart by: two folders may write a name in different case."""
         return self.body.casefold()
+
+    @property
+    def is_developed(self) -> bool:
+        """Whether the file says that a program developed it from a raw file: its response is none of the camera's."""
+        return file_origin(self.metadata or read_metadata(self.photograph)).is_developed
 
     def truth(self) -> ResponseCurve:
         """Return the measured response."""

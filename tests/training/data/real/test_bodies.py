@@ -6,6 +6,7 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
+from crfnet_core.metadata import FileMetadata
 from training.data.real import bodies as module
 from training.data.real.bodies import measured_bodies, model_key
 from training.data.real.file_origin import Editing
@@ -14,13 +15,14 @@ from training.data.real.photographs import RealPhotograph
 UNIFORM = np.linspace(0, 1, 1024)
 
 
-def photograph(folder, name, body, fold, *, stack="1", kind="camera"):
+def photograph(folder, name, body, fold, *, stack="1", kind="camera", raw_file=""):
     """A photograph of DATA/real or DATA/real_bodies, without pixels."""
     measured = folder / "gt" / f"{body}{stack}.csv"
     measured.parent.mkdir(parents=True, exist_ok=True)
     np.savetxt(measured, np.stack([UNIFORM, UNIFORM**0.45], axis=1), delimiter=",", header="e,b")
     path = folder / "photos" / f"{name}.jpg"
-    return RealPhotograph(name, body, kind, "A", "", True, Editing.UNKNOWN, False, fold, path, measured)
+    metadata = FileMetadata(raw_file=raw_file)
+    return RealPhotograph(name, body, kind, "A", "", True, Editing.UNKNOWN, False, fold, path, measured, metadata)
 
 
 @pytest.fixture
@@ -72,3 +74,10 @@ def test_folds_of_two_folders_are_not_the_same_fold(photographs):
 
 def test_a_model_is_known_without_what_stands_in_brackets(photographs):
     assert [model_key(one) for one in photographs["real"]] == ["nikon d90", "nikon d90", "canon s45"]
+
+
+def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_path):
+    photographs["real"].append(photograph(tmp_path / "real", "r4", "Nikon D800", "Nikon D800", raw_file="1.NEF"))
+    photographs["real"].append(photograph(tmp_path / "real", "r5", "Nikon D700", "Nikon D700", raw_file="1.jpg"))
+    assert "nikon d700" in keys()
+    assert "nikon d800" not in keys()
