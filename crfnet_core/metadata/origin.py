@@ -13,7 +13,7 @@ from crfnet_core.metadata.editors import editor_name, is_developer
 from crfnet_core.metadata.file_metadata import FileMetadata
 from crfnet_core.metadata.jpeg import ijg_quality
 
-#: The editor of a file with a segment of Adobe that names no program.
+#: The editor of a file that has a segment of Adobe, or names a raw file, but no program.
 ADOBE = "a program of Adobe"
 
 #: Ends of the names of files that are no raw files, in lower case.
@@ -149,7 +149,8 @@ def _known(entry: object) -> bool | None:
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return what the metadata says of how the file was made; see the fields of `FileOrigin`."""
     device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
-    editor = editor_name(metadata.software, metadata.history) or (ADOBE if metadata.has_adobe else "")
+    is_adobes = metadata.has_adobe or bool(metadata.raw_file)
+    editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
     is_developed = _is_developed(metadata, editor)
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
@@ -254,7 +255,7 @@ def _saved_words(
 ) -> list[str]:
     """Return who saved the file, if that is known."""
     if is_developed:
-        return [f"developed from a raw file by {editor or ADOBE}"]
+        return [f"developed from a raw file by {editor}"]
     if editor:
         return [f"saved by {editor}"]
     if is_resaved is False:

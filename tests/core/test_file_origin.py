@@ -144,7 +144,7 @@ def test_encoding_by_profile(profile, file_format, encoding):
             ),
         ),
         (
-            OWN_CAMERA | {"raw_file": "1.CR2", "has_adobe": True},
+            OWN_CAMERA | {"raw_file": "1.CR2"},
             (
                 "taken by Canon EOS 20D, a camera with interchangeable lenses",
                 "developed from a raw file by a program of Adobe",
@@ -200,7 +200,7 @@ def test_an_editor_makes_edited_five_times_as_likely():
 
 def test_what_was_developed_is_no_rendering_of_the_camera():
     assert largest(**OWN_CAMERA, software="darktable 3.4") == "developed"
-    assert largest(**OWN_CAMERA, software="GIMP 2.8") == "developed"  # no editor's file need be the camera's rendering
+    assert largest(**OWN_CAMERA, software="GIMP 2.8") == "developed"  # other programs save what was developed
     factors = family_factors(origin(**OWN_CAMERA, software="darktable 3.4"))
     assert factors["camera"] < 0.02
 
