@@ -7,11 +7,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.posterior import Family
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses
-from training.data.headroom import with_headroom
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -20,8 +20,33 @@ EDIT_AMOUNT = (-1.0, 0.8)
 #: bend what then lies above white into the shoulder. The measured body whose files say so has 0.8.
 DEVELOPED_HEADROOM = 0.6
 
+#: Brightness above which a response bends into white.
+SHOULDER = LAST_SHAPE_CODE / 255
+
 #: Ranges of the powers of nearly linear data, and of the factor a of log curves log(1 + a E).
 LINEAR_POWERS, LOG_FACTORS = (0.82, 1.25), (30.0, 6000.0)
+
+
+def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
+    """Return a response with more headroom: white lies so many stops higher above all that is darker.
+
+    Up to brightness `SHOULDER` the irradiance is divided by one factor, which is an exposure and leaves the shape error
+    as it is; above, its logarithm is stretched so that it still ends at 1.
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response.
+    stops : float
+        Headroom to add; above the logarithm, base 2, of the curve's irradiance at the shoulder, which is negative.
+    """
+    brightness = np.linspace(0, 1, SAMPLES)
+    logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)
+    at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
+    top = logarithm * (at_shoulder - stops) / at_shoulder
+    moved = np.where(brightness[1:] <= SHOULDER, logarithm - stops, top)
+    irradiance = np.concatenate([[0.0], np.exp2(moved)])
+    return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))
 
 
 def developed(responses: Float64Array) -> Float64Array:

@@ -12,7 +12,7 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, geometric_median
-from training.data.headroom import SHOULDER, with_headroom
+from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)

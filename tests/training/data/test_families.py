@@ -10,12 +10,14 @@ from training.data.curves import CurveSource
 from training.data.families import (
     DEVELOPED_HEADROOM,
     LINEAR_POWERS,
+    SHOULDER,
     EditedResponses,
     ResponseFamilies,
     developed,
     edited,
     log_like,
     nearly_linear,
+    with_headroom,
 )
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -47,6 +49,17 @@ def test_most_edits_are_small_and_a_few_are_large():
     assert np.median(errors) < 0.3
     assert errors.max() > 3 * np.median(errors)
     assert errors.min() > 0
+
+
+@pytest.mark.parametrize("stops", [0.0, 0.5, 1.0, -0.1])
+def test_headroom_divides_the_irradiance_below_the_shoulder_and_keeps_white(stops):
+    curve = ResponseCurve.from_samples(1 - (1 - UNIFORM**0.6) ** 2)
+    found = with_headroom(curve, stops)
+    below = np.array([0.3, 0.5, 0.9])
+    np.testing.assert_allclose(found.inverse(below), curve.inverse(below) / 2**stops, rtol=0.01)
+    assert found.inverse(1.0) == pytest.approx(1)
+    assert (np.diff(found.inverse(np.linspace(SHOULDER, 1, 20))) > 0).all()
+    assert shape_error(curve, found) < 0.01
 
 
 def test_developed_responses_have_more_headroom_and_the_same_shape():

@@ -10,7 +10,7 @@ pytest.importorskip("matplotlib", reason="training needs the train extra")
 from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.response import ResponseCurve
-from training.data.headroom import with_headroom
+from training.data.families import with_headroom
 from training.data.real.file_origin import Editing, editing, is_scaled
 from training.data.real.photographs import RealPhotograph
 from training.evaluation.baselines import nearest_of, with_best_headroom
