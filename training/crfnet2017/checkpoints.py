@@ -11,6 +11,7 @@ from torch.optim.swa_utils import AveragedModel
 
 from crfnet_core.files import atomic_write
 from training.crfnet2017.network import CRFNet
+from training.network.moving_average import resume_average
 from training.network.start import graph_tensors
 
 #: In front of the parameters' names in the graph of an exported network.
@@ -60,8 +61,7 @@ class TrainingState:
         """Go on from a checkpoint."""
         state = torch.load(path, map_location=device, weights_only=True)
         self.network.load_state_dict(state["moving"])
-        self.averaged.module.load_state_dict(state["network"])
-        self.averaged.n_averaged.fill_(state["step"])
+        resume_average(self.averaged, state["network"])
         self.optimizer.load_state_dict(state["optimizer"])
         self.step, self.rows = state["step"], state["rows"]
 

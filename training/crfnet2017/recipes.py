@@ -6,7 +6,6 @@ import math
 from dataclasses import dataclass
 
 import torch
-from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 
 from training.crfnet2017.network import CRFNet
 
@@ -128,9 +127,3 @@ def make_optimizer(network: CRFNet, recipe: Recipe) -> torch.optim.Optimizer:
     if recipe.optimizer == "sgd":
         return torch.optim.SGD(groups, recipe.learning_rate, recipe.momentum, weight_decay=recipe.weight_decay)
     return torch.optim.AdamW(groups, recipe.learning_rate, weight_decay=recipe.weight_decay, fused=True)
-
-
-def make_average(network: CRFNet, recipe: Recipe) -> AveragedModel:
-    """Return the moving average of the weights of a network, and of the statistics of its normalizations."""
-    average = get_ema_multi_avg_fn(1 - 1 / recipe.averaged_steps)
-    return AveragedModel(network, multi_avg_fn=average, use_buffers=True)

@@ -19,10 +19,11 @@ import torch.distributed
 from training.crfnet2017.checkpoints import TrainingState, start_from
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.pack import ScenePack, pack_files, read_pack
-from training.crfnet2017.recipes import RECIPES, RunConfig, make_average, make_optimizer
+from training.crfnet2017.recipes import RECIPES, RunConfig, make_optimizer
 from training.crfnet2017.stages import STAGES, StageTask
 from training.crfnet2017.trainer import ProcessContext, Trainer, join_processes
 from training.crfnet2017.windows import draw_windows, render_windows
+from training.network.moving_average import moving_average
 from training.provenance import data_record, record_run
 
 #: Validation windows, the same for every run on a pack.
@@ -86,7 +87,8 @@ def _start(config: RunConfig, task: StageTask, scenes: ScenePack, context: Proce
         start_from(network, Path(config.init), render_windows(windows, torch.from_numpy(scenes.curves)))
     order = torch.channels_last if config.recipe.channels_last else torch.contiguous_format
     network = network.to(context.device, memory_format=order)
-    state = TrainingState(network, make_average(network, config.recipe), make_optimizer(network, config.recipe))
+    averaged = moving_average(network, config.recipe.averaged_steps)
+    state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
     if last.exists():
         state.resume(last, context.device)
     return state

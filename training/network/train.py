@@ -9,12 +9,13 @@ from pathlib import Path
 
 import torch
 from torch import Tensor
-from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
+from torch.optim.swa_utils import AveragedModel
 from tqdm import tqdm
 
 from crfnet_core.files import atomic_write
 from training.network.loss import EvidenceLoss
 from training.network.model import NetworkConfig, PhotographNet
+from training.network.moving_average import moving_average, resume_average
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
 from training.network.start import start_from, start_record
 from training.provenance import data_record, record_run
@@ -100,8 +101,7 @@ class TrainingState:
     def resume(self, path: Path) -> None:
         """Go on from a checkpoint."""
         entries = torch.load(path, weights_only=True)
-        self.averaged.module.load_state_dict(entries["net"])
-        self.averaged.n_averaged.fill_(1)  # from now on an average, no copy
+        resume_average(self.averaged, entries["net"])
         self.net.load_state_dict(entries["moving"])
         self.optimizer.load_state_dict(entries["optimizer"])
         self.schedule.load_state_dict(entries["schedule"])
@@ -192,8 +192,7 @@ def _start(network: NetworkConfig, config: TrainingConfig, photographs: int) -> 
         div_factor=FIRST_DIVISOR,
         final_div_factor=1 / (FIRST_DIVISOR * config.last_rate),
     )
-    average = get_ema_multi_avg_fn(1 - 1 / config.averaged_steps)
-    return TrainingState(net, AveragedModel(net, multi_avg_fn=average, use_buffers=True), optimizer, schedule)
+    return TrainingState(net, moving_average(net, config.averaged_steps), optimizer, schedule)
 
 
 def _train_epoch(state: TrainingState, loss: EvidenceLoss, shards: Shards, config: TrainingConfig) -> float:

@@ -17,7 +17,7 @@ from training.crfnet2017.checkpoints import TrainingState, fold_normalization, s
 from training.crfnet2017.export import ShippedCRFNet, load_network
 from training.crfnet2017.likelihood import Likelihood
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_average, make_optimizer
+from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
 from training.crfnet2017.stages import StageTask
 from training.crfnet2017.train import train
 from training.crfnet2017.trainer import ProcessContext, Trainer
@@ -25,6 +25,7 @@ from training.crfnet2017.windows import WindowStream, draw_windows, render_windo
 from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import write_config
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded
+from training.network.moving_average import moving_average
 from training.provenance import read_run
 
 CPU = torch.device("cpu")
@@ -126,7 +127,8 @@ def test_the_first_stage_learns(pack):
     task = StageTask("classify", pack.curves, squared=False, device=CPU)
     torch.manual_seed(0)
     network = CRFNet(task.outputs)
-    state = TrainingState(network, make_average(network, config.recipe), make_optimizer(network, config.recipe))
+    averaged = moving_average(network, config.recipe.averaged_steps)
+    state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
     batch = draw_windows(pack, 2, np.random.default_rng(5))
     trainer = Trainer(config, task, state, ProcessContext(CPU), pack, batch)
     losses = [float(trainer.step(batch)) for _ in range(3)]
@@ -149,7 +151,7 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(work_folder, run):
     assert equal(weights_of(work_folder / "halves" / "last.pt"), weights_of(run / "last.pt"))
 
 
-def test_a_run_yields_the_moving_average_of_its_weights(work_folder, run):
+def test_a_run_yields_the_moving_average_of_its_weights(work_folder):
     train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3, stop=1)
     first = torch.load(work_folder / "averaged" / "last.pt", weights_only=True)
     train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3)

@@ -1,0 +1,25 @@
+"""The moving average of the weights of a training, which is what a run yields (Polyak & Juditsky, 1992)."""
+
+from __future__ import annotations
+
+from torch import Tensor, nn
+from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
+
+
+def moving_average(network: nn.Module, steps: float) -> AveragedModel:
+    """Return the exponential average of a network's weights and of the statistics of its normalizations.
+
+    Parameters
+    ----------
+    network : nn.Module
+        The network; give it to `AveragedModel.update_parameters` after each step.
+    steps : float
+        How far the average reaches back; 1 for no average.
+    """
+    return AveragedModel(network, multi_avg_fn=get_ema_multi_avg_fn(1 - 1 / steps), use_buffers=True)
+
+
+def resume_average(averaged: AveragedModel, weights: dict[str, Tensor]) -> None:
+    """Go on, in place, from the weights of an average: the next step adds to them, and does not replace them."""
+    averaged.module.load_state_dict(weights)
+    averaged.n_averaged.fill_(1)
