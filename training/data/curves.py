@@ -11,7 +11,7 @@ import numpy as np
 import scipy.io
 from scipy.interpolate import PchipInterpolator
 
-from crfnet_core.response import SAMPLES
+from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array
 
@@ -42,6 +42,12 @@ def camera_response(base: PchipInterpolator, headroom: float) -> Float64Array:
     """Return f(E) = sRGB(base(min(1, s E))), divided by f(1), shape (1024,), for the headroom s."""
     encoded = srgb_encode(np.clip(base(np.minimum(1, headroom * IRRADIANCE)), 0, 1))
     return encoded / encoded[-1]
+
+
+def curve_of_inverse(irradiance: Float64Array) -> ResponseCurve:
+    """Return the response whose inverse has these irradiances, shape (1023,), at the uniform brightnesses above 0."""
+    brightness = np.linspace(0, 1, SAMPLES)
+    return ResponseCurve.from_samples(np.interp(IRRADIANCE, np.concatenate([[0.0], irradiance]), brightness))
 
 
 def geometric_median(

@@ -11,7 +11,7 @@ from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.posterior import Family
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses
+from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses, curve_of_inverse
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -45,8 +45,7 @@ def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
     at_shoulder = float(np.log2(curve.inverse(SHOULDER)))
     top = logarithm * (at_shoulder - stops) / at_shoulder
     moved = np.where(brightness[1:] <= SHOULDER, logarithm - stops, top)
-    irradiance = np.concatenate([[0.0], np.exp2(moved)])
-    return ResponseCurve.from_samples(np.interp(IRRADIANCE, irradiance, brightness))
+    return curve_of_inverse(np.exp2(moved))
 
 
 def developed(responses: Float64Array) -> Float64Array:

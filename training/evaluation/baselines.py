@@ -11,7 +11,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, geometric_median
+from training.data.curves import IRRADIANCE, curve_of_inverse, geometric_median
 from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
@@ -94,10 +94,4 @@ def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:
     """
     brightness = np.linspace(0, 1, SAMPLES)
     logarithms = [np.log(curve.inverse(brightness[1:])) for curve in curves]
-    return _of_inverse(np.exp(np.mean(logarithms, axis=0)))
-
-
-def _of_inverse(irradiance: Float64Array) -> ResponseCurve:
-    """Return the response whose inverse has these irradiances, shape (1023,), at the uniform brightnesses above 0."""
-    brightness = np.linspace(0, 1, SAMPLES)
-    return ResponseCurve.from_samples(np.interp(IRRADIANCE, np.concatenate([[0.0], irradiance]), brightness))
+    return curve_of_inverse(np.exp(np.mean(logarithms, axis=0)))
