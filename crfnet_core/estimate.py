@@ -138,13 +138,17 @@ def estimate_of(
 def editor_warnings(origins: Sequence[FileOrigin]) -> list[str]:
     """Return a warning for each program that edited or developed the photographs."""
     editors = dict.fromkeys((origin.editor, origin.is_developed) for origin in origins if origin.editor)
-    return [
-        f"developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop the raw"
-        " file to linear light, which needs no estimate"
-        if is_developed
-        else f"saved by {editor}, which may have changed the tones: give the camera's own file"
-        for editor, is_developed in editors
-    ]
+    return [_editor_warning(editor, is_developed) for editor, is_developed in editors]
+
+
+def _editor_warning(editor: str, is_developed: bool) -> str:
+    """Return what a program may have done to the tones, and what to give instead."""
+    if is_developed:
+        return (
+            f"developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop the"
+            " raw file to linear light, which needs no estimate"
+        )
+    return f"saved by {editor}, which may have changed the tones: give the camera's own file"
 
 
 def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:

@@ -70,9 +70,9 @@ def offered_cameras(
     prior : Prior, optional
         As of `crfnet_core.estimate_response`.
     """
-    offers: list[CameraAnswer] = []
     if any(origin.is_developed for origin in own.origins):
-        return offers
+        return []
+    offers = []
     for camera in matching_cameras(settings):
         with suppress(CameraError):  # evidence of another network alone
             offers.append(compared(own, camera, prior=prior))

@@ -15,14 +15,14 @@ DEVELOPERS = (
 #: "Digital Camera X-E1 Ver2.00", "15.3.1", "G960USQS9FUG2") holds none of them.
 EDITORS = (
     *DEVELOPERS,
-    # Adobe
     *("adobe", "photoshop"),
-    # raw developers of camera makers
+    # raw developers of camera makers, and of the company behind some of them
     *("digital photo professional", "capture nx", "viewnx", "nx studio", "imaging edge", "image data converter"),
     *("olympus workspace", "olympus viewer", "olympus master", "om workspace", "photofunstudio"),
-    *("silkypix", "raw file converter", "filmpack"),
+    *("silkypix", "raw file converter"),
     # editors on computers
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
+    "filmpack",
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
     *(
         "irfanview",
