@@ -37,12 +37,15 @@ class InstallationRecord:
         The LUT folders that were copied beside the config.
     plates : dict of str to str
         The plate of each colour space that was added, by the name of the space; records of old versions have none.
+    files : tuple of str
+        The files in these folders, relative to the config; records of old versions have none.
     """
 
     sha256: str
     backup: str | None
     folders: tuple[str, ...]
     plates: Mapping[str, str] = field(default_factory=dict)
+    files: tuple[str, ...] = ()
 
 
 def own_folder(config: Path) -> Path:
@@ -55,7 +58,8 @@ def read_record(config: Path) -> InstallationRecord | None:
     try:
         entries = read_json(own_folder(config) / RECORD_NAME)
         folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
-        return InstallationRecord(entries["sha256"], entries["backup"], folders, plates)
+        files = tuple(entries.get("files", ()))
+        return InstallationRecord(entries["sha256"], entries["backup"], folders, plates, files)
     except (OSError, ValueError, KeyError, TypeError):
         return None
 

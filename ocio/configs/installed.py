@@ -7,7 +7,7 @@ not match the record was written by somebody else: it is copied to a backup befo
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -128,7 +128,10 @@ def install(
             backup = backed_up(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
-            write_record(config, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}))
+            files = record.files if record and not copied else tuple(_files_in(folder, copied))
+            write_record(
+                config, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}, files)
+            )
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be written ({problem.strerror}); choose another folder") from problem
     is_changed = before != (digest(config), digest(lut_file))
@@ -141,7 +144,8 @@ def restore(folder: Path) -> Restored:
     Raises
     ------
     ConfigError
-        If nothing was installed there, or somebody else has changed the config since.
+        If nothing was installed there, somebody else has changed the config since, or the folder has to go and holds a
+        file of somebody else: a program that finds the folder without a config runs without any.
     """
     config = folder / CONFIG_NAME
     record = read_record(config)
@@ -151,6 +155,8 @@ def restore(folder: Path) -> Restored:
         raise ConfigError(f"{folder}: holds no config with an installed camera response; there is nothing to restore")
     if config.exists() and digest(config) != record.sha256:
         raise ConfigError(f"{config}: was changed by another program since; edit or remove it yourself")
+    if not record.backup:
+        _check_ours(folder, record)
     try:
         if record.backup:
             (folder / record.backup).replace(config)
@@ -228,6 +234,23 @@ def free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: 
         if found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate:
             return candidate
     raise AssertionError("there are names without end")
+
+
+def _check_ours(folder: Path, record: InstallationRecord) -> None:
+    """Raise a ConfigError if a config's folder, which is to be removed, holds a file that was neither copied nor made.
+
+    Records of old versions do not name the copied files: all in the copied folders are taken for them.
+    """
+    ours = {CONFIG_NAME, *record.files, *_files_in(folder, (FOLDER,) if record.files else (FOLDER, *record.folders))}
+    for name in _files_in(folder, (".",)):
+        if name not in ours:
+            raise ConfigError(f"{folder / name}: came neither from us nor with the config; move it elsewhere first")
+
+
+def _files_in(folder: Path, names: Iterable[str]) -> list[str]:
+    """Return all files in some folders of a folder, relative to it, with slashes; sorted."""
+    found = (path for name in names for path in (folder / name).rglob("*") if path.is_file())
+    return sorted(path.relative_to(folder).as_posix() for path in found)
 
 
 def _remove_if_empty(folder: Path) -> bool:

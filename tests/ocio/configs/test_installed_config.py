@@ -78,11 +78,28 @@ def test_an_empty_folder_of_an_earlier_version_goes(folder):
     assert not folder.exists()
 
 
-def test_restoring_keeps_the_files_of_others(folder, base):
+@pytest.mark.parametrize("name", ["mine.txt", "luts/mine.cube"])
+def test_the_files_of_others_are_kept_and_named_before_anything_goes(folder, base, name):
+    """Blender takes a folder without a config for the user's, too, and runs without AgX."""
     install(folder, base, SPACE, LUT, plate=PLATE)
-    (folder / "mine.txt").write_text("mine")
-    restore(folder)
-    assert tree(folder) == {"mine.txt": b"mine"}
+    (folder / name).write_text("mine")
+    before = tree(folder)
+    with pytest.raises(ConfigError, match=f"{name}: came neither from us nor with the config; move it elsewhere first"):
+        restore(folder)
+    assert tree(folder) == before
+    (folder / name).unlink()
+    assert restore(folder).is_removed
+    assert not folder.exists()
+
+
+def test_a_record_of_an_earlier_version_takes_all_in_the_copied_folders_for_copied(folder, base):
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    record = folder / FOLDER / RECORD_NAME
+    record.write_text(
+        json.dumps({key: value for key, value in json.loads(record.read_text()).items() if key != "files"})
+    )
+    assert restore(folder).is_removed
+    assert not folder.exists()
 
 
 def test_no_file_of_another_project_gets_the_space(folder, base):
