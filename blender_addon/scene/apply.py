@@ -9,6 +9,7 @@ import bpy
 
 from ocio.configs.installed import Installed
 
+from ..work.errors import AddonError
 from ..work.job import Job
 from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
@@ -23,11 +24,13 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     Raises
     ------
     AddonError, CRFNetError
-        If the plate was removed, or the config lacks a colour space that the nodes need; nothing is changed then.
+        If the plate was removed, the compositor is linked from another file, or the config lacks a colour space that
+        the nodes need; nothing is changed then.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
     if completed.is_applied and completed.files is None:
         node_group.check_config()
+        shown_tree(context)
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     stored_estimate.set_primaries(datablock, completed.primaries)
@@ -83,7 +86,8 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
         timing=compositor.timing_of(context, datablock, completed.frames),
     )
     compositor.apply_group(shown_tree(context), wanted)
-    return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before'
+    hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
+    return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before{hint}'
 
 
 def _set_color_space(datablock: Datablock, installed: Installed, job: Job) -> str:
@@ -182,13 +186,16 @@ def _path_like(plate: Datablock, path: str) -> str:
 
 
 def shown_tree(context: bpy.types.Context) -> bpy.types.NodeTree:
-    """Return the compositor tree that the node editor shows, or the scene's if no node editor is active."""
+    """Return the compositor tree that the node editor shows, or the scene's if no node editor is active.
+
+    Raises
+    ------
+    AddonError
+        If it is linked from another file, and so cannot be changed for good.
+    """
     space = context.space_data
-    if (
-        space is not None
-        and space.type == "NODE_EDITOR"
-        and space.tree_type == "CompositorNodeTree"
-        and space.edit_tree
-    ):
-        return space.edit_tree
-    return compositor.compositor_tree(context.scene)
+    is_editor = space is not None and space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree"
+    tree = (space.edit_tree if is_editor else None) or compositor.compositor_tree(context.scene)
+    if tree.library is not None or context.scene.library is not None:
+        raise AddonError(f"The compositor {tree.name} is linked from another file: make it local first")
+    return tree

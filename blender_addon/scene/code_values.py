@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The code values of a plate for the compositor: a hidden copy of its image or clip, which Blender does not linearize.
+"""The code values of a plate for the compositor: a copy of its image or clip, which Blender does not linearize.
 
 The node group needs code values, but an Image node delivers what the image's colour space makes of them. So the nodes
 that are linearised read a copy whose colour space is Non-Color, and the plate itself stays as it is in every editor.
 Whatever colour space the plate gets later, the nodes are right.
+
+A file that is opened again is, for Blender, the first image in the order of names that reads it. So the name of a copy
+begins with that of its plate, and comes behind it.
 """
 
 from __future__ import annotations
@@ -15,7 +18,10 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .plates import CODE_VALUES_OF, Datablock, has_own_file
+from .plates import CODE_VALUES_OF, Datablock, file_state, has_own_file
+
+#: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.
+_READ = "camera_response_read"
 
 
 def code_values(plate: Datablock) -> Datablock:
@@ -24,21 +30,43 @@ def code_values(plate: Datablock) -> Datablock:
     It is an image or a clip like the plate, with the same files. The copy of a packed or painted image is packed.
     """
     earlier = next(_copies(plate), None)
-    if earlier is not None and _is_current(earlier, plate):
-        earlier.colorspace_settings.name = data_space()  # by this, Blender reads the files again, too
-        return earlier
-    copy = _painted_copy(plate) if _is_painted(plate) else _file_copy(plate)
-    if earlier is not None:
-        earlier.user_remap(copy)
-        _collection(plate).remove(earlier)
-    copy.name = f".{plate.name} code values"  # the leading dot hides it in menus
-    copy[CODE_VALUES_OF] = plate
+    if earlier is not None and has_own_file(plate) and _is_alike(earlier, plate):
+        copy = earlier
+        copy.colorspace_settings.name = data_space()  # by this, Blender reads the files again, too
+    else:
+        copy = _painted_copy(plate) if _is_painted(plate) else _file_copy(plate)
+        if earlier is not None:
+            earlier.user_remap(copy)
+            _collection(plate).remove(earlier)
+        copy[CODE_VALUES_OF] = plate
+    copy.name = f"{plate.name} code values"
+    copy[_READ] = file_state(plate)
     return copy
 
 
 def is_outdated(plate: Datablock) -> bool:
-    """Return whether the nodes of a plate show another file than the plate, which has been given a new one since."""
-    return has_own_file(plate) and not all(_is_current(copy, plate) for copy in _copies(plate))
+    """Return whether the nodes of a plate show another file than the plate, or an earlier state of its file.
+
+    Of an image that was painted in Blender nobody knows.
+    """
+    if _is_painted(plate):
+        return False
+    state = file_state(plate)
+    return not all(_is_alike(copy, plate) and copy.get(_READ, state) == state for copy in _copies(plate))
+
+
+def pack_with_plates() -> None:
+    """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again."""
+    for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None}:
+        if plate.packed_file and not all(_is_alike(copy, plate) for copy in _copies(plate)):
+            code_values(plate)
+
+
+def note_files_as_read() -> None:
+    """Note, when a scene has been opened, that the copies show the files as they are now: Blender reads them anew."""
+    for copy in (*bpy.data.images, *bpy.data.movieclips):
+        if _READ in copy and (plate := copy.get(CODE_VALUES_OF)) is not None:
+            copy[_READ] = file_state(plate)
 
 
 def _copies(plate: Datablock) -> Iterator[Datablock]:
@@ -46,9 +74,12 @@ def _copies(plate: Datablock) -> Iterator[Datablock]:
     yield from (copy for copy in _collection(plate) if copy.get(CODE_VALUES_OF) == plate)
 
 
-def _is_current(copy: Datablock, plate: Datablock) -> bool:
-    """Return whether a copy reads the same files as its plate; packed pixels may have changed."""
-    return has_own_file(plate) and (copy.filepath, copy.source) == (plate.filepath, plate.source)
+def _is_alike(copy: Datablock, plate: Datablock) -> bool:
+    """Return whether a copy reads the same files as its plate, or holds a packed file of the same size."""
+    if has_own_file(plate):
+        return has_own_file(copy) and (copy.filepath, copy.source) == (plate.filepath, plate.source)
+    sizes = [image.packed_file.size if image.packed_file else 0 for image in (copy, plate)]
+    return sizes[0] == sizes[1]
 
 
 def _file_copy(plate: Datablock) -> Datablock:

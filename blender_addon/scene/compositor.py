@@ -10,7 +10,7 @@ from typing import TypeAlias
 import bpy
 
 from .node_building import GAP, WIDTH
-from .node_links import compositor_trees, is_group_of, neighbors_behind, nodes_behind
+from .node_links import compositor_trees, is_group_of, linearizes, neighbors_behind, nodes_behind
 from .plates import Datablock, datablock_of_node, shown_by_node
 
 #: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.
@@ -105,7 +105,8 @@ def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
     """Return the scene's compositor tree; a new one hands the render through, so that the picture stays the same."""
     if bpy.app.version < (5, 0, 0):
-        scene.use_nodes = True
+        if scene.node_tree is None:
+            scene.use_nodes = True
         return scene.node_tree
     if scene.compositing_node_group is None:
         tree = bpy.data.node_groups.new("Compositor Nodes", "CompositorNodeTree")
@@ -115,6 +116,11 @@ def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:
         tree.links.new(render.outputs["Image"], output.inputs[0])
         scene.compositing_node_group = tree
     return scene.compositing_node_group
+
+
+def is_switched_off(scene: bpy.types.Scene) -> bool:
+    """Return whether the user has switched off the compositor of a scene, as Blender 4.5 allows."""
+    return bpy.app.version < (5, 0, 0) and not scene.use_nodes
 
 
 def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
@@ -164,7 +170,7 @@ def _show(node: bpy.types.Node, codes: Datablock) -> None:
         node.image = codes
     else:
         node.clip = codes
-    node.label = node.label or codes.name.lstrip(".")
+    node.label = node.label or codes.name
 
 
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
@@ -206,7 +212,7 @@ def _activate(node: bpy.types.Node) -> None:
 
 
 def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
-    """Return a new node for the plate, below all others and linked to the viewer; a tree without one gets one."""
+    """Return a new node for the plate, below all others and linked to a viewer; one that shows something else stays."""
     bottom = min((node.location_absolute.y - node.height for node in tree.nodes), default=0)
     if isinstance(wanted.plate, bpy.types.Image):
         node = tree.nodes.new("CompositorNodeImage")
@@ -216,13 +222,18 @@ def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
     else:
         node = tree.nodes.new("CompositorNodeMovieClip")
     node.location = (0, bottom - 200)
-    viewer = next((other for other in tree.nodes if other.type == "VIEWER"), None)
+    viewer = next((other for other in tree.nodes if other.type == "VIEWER" and _is_free(other)), None)
     if viewer is None:
         viewer = tree.nodes.new("CompositorNodeViewer")
         viewer.location = (700, bottom - 200)
     tree.links.new(node.outputs["Image"], viewer.inputs["Image"])
     tree.nodes.active = viewer
     return node
+
+
+def _is_free(viewer: bpy.types.Node) -> bool:
+    """Return whether a viewer shows nothing, or a plate behind its node group."""
+    return all(linearizes(link.from_node) for link in viewer.inputs["Image"].links)
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:

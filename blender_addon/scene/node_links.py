@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which nodes lie behind a node, through reroutes, other nodes and node groups; and what is linearised twice there."""
+"""Which nodes lie behind a node, through reroutes, other nodes and node groups; what is linearised twice, or not."""
 
 from __future__ import annotations
 
@@ -50,15 +50,27 @@ def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "
 def linearized_twice(plate: Datablock) -> str:
     """Return why a plate is linearised twice in a compositor of the file, and what to do; empty if it is not."""
     for node in (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate):
-        groups = [other for other in nodes_behind(node) if _linearizes(other)]
+        groups = [other for other in nodes_behind(node) if linearizes(other)]
         if groups and shown_by_node(node) == plate and not plate.colorspace_settings.is_data:
             return f'Linearized twice: "{_title(node)}" shows no code values. Apply as Nodes to mend it.'
-        if any(_linearizes(other) for group in groups for other in nodes_behind(group)):
+        if any(linearizes(other) for group in groups for other in nodes_behind(group)):
             return f'Linearized twice: two node groups follow "{_title(node)}". Remove one.'
     return ""
 
 
-def _linearizes(node: bpy.types.Node) -> bool:
+def without_group(plate: Datablock) -> str:
+    """Return that a compositor of the file shows a plate's code values as they are, and what to do; empty if none does.
+
+    So it is where the node group has been deleted, and the links around it were kept or made again.
+    """
+    for node in (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate):
+        behind = list(nodes_behind(node))
+        if shown_by_node(node) != plate and behind and not any(map(linearizes, behind)):
+            return f'"{_title(node)}" shows code values without the node group. Apply as Nodes to mend it.'
+    return ""
+
+
+def linearizes(node: bpy.types.Node) -> bool:
     """Return whether a node holds the node group of a plate, of whatever plate."""
     return node.type == "GROUP" and node.node_tree is not None and PLATE in node.node_tree
 

@@ -27,7 +27,7 @@ OPEN_A_PLATE = {
     "NODE_EDITOR": "Select an Image or Movie Clip node that has a plate",
 }
 
-#: The custom property of a hidden copy whose pixels are code values, see `code_values`; its value is the plate.
+#: The custom property of a copy whose pixels are code values, see `code_values`; its value is the plate.
 CODE_VALUES_OF = "camera_response_code_values_of"
 
 #: The custom property that marks a linear plate that is only shown for comparison; its value is the plate.
@@ -45,16 +45,16 @@ def is_in_editor(context: bpy.types.Context) -> bool:
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, that of the active node.
 
-    While an Image Editor shows the linear plate for comparison, it is the plate. If a plate's node group is active, it
-    is the plate that the group linearises.
+    While an editor shows the linear plate for comparison, or a plate's code values, it is the plate. If a plate's node
+    group is active, it is the plate that the group linearises.
     """
     space = context.space_data
     if space is None:
         return None
     if space.type == "IMAGE_EDITOR":
-        return compared_plate(space.image) or space.image
+        return compared_plate(space.image) or plate_itself(space.image)
     if space.type == "CLIP_EDITOR":
-        return space.clip
+        return plate_itself(space.clip)
     if space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree" and space.edit_tree:
         return _plate_behind(space.edit_tree.nodes.active)
     return None
@@ -70,8 +70,12 @@ def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
 
     Of a node that shows a plate's code values, it is the plate.
     """
-    shown = shown_by_node(node)
-    return None if shown is None else shown.get(CODE_VALUES_OF) or shown
+    return plate_itself(shown_by_node(node))
+
+
+def plate_itself(datablock: Datablock | None) -> Datablock | None:
+    """Return the plate of an image or clip that is the copy of its code values; any other image or clip as it is."""
+    return None if datablock is None else datablock.get(CODE_VALUES_OF) or datablock
 
 
 def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
@@ -154,6 +158,8 @@ def obstacle(datablock: Datablock) -> str:
         return problem
     if datablock.library is not None:
         return f"{datablock.name} is linked from another file: make it local first"
+    if CODE_VALUES_OF in datablock:
+        return "These are the code values of a plate, not the plate: open the photograph itself"
     if datablock.filepath.lower().endswith(".gif"):
         return (
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"

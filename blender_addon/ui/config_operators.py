@@ -48,13 +48,13 @@ class CRF_OT_restore_config(bpy.types.Operator):
         name="Folder",
         description="Folder of the config. Empty: Blender's color management folder",
         subtype="DIR_PATH",
-        options={"SKIP_SAVE"},
+        options={"SKIP_SAVE", "PATH_SUPPORTS_BLEND_RELATIVE"},
     )
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Restore the config, and report what was done."""
-        folder = absolute(self.folder) or color_management.user_folder()
         try:
+            folder = absolute(self.folder) or color_management.user_folder()
             restored = lazy_import.load("ocio.configs.installed").restore(folder)
         except expected_errors() as problem:
             return failed(self, problem)

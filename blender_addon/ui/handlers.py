@@ -2,7 +2,8 @@
 """What happens when a .blend file is opened or saved, and at undo.
 
 When a file is opened, plates get the colour space for which Blender had to be restarted. Before a file is saved and
-around undo, editors that show a linear plate for comparison go back to the plate, so that it is never saved.
+around undo, editors that show a linear plate for comparison go back to the plate, so that it is never saved. The code
+values of plates that were packed are packed, too.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from typing import Any
 
 import bpy
 
-from ..scene import color_management, stored_estimate
+from ..scene import code_values, color_management, stored_estimate
 from .image_editor import analyzed_windows, comparison
 
 
@@ -32,6 +33,18 @@ def end_comparisons(*_arguments: Any) -> None:
 
 
 @bpy.app.handlers.persistent
+def note_files_as_read(_path: str = "") -> None:
+    """Take the code values of all plates for those of their present files, which Blender has just read."""
+    code_values.note_files_as_read()
+
+
+@bpy.app.handlers.persistent
+def pack_code_values(*_arguments: Any) -> None:
+    """Pack the code values of plates that have been packed."""
+    code_values.pack_with_plates()
+
+
+@bpy.app.handlers.persistent
 def end_analyzed_windows(_path: str = "") -> None:
     """Draw no windows over the plates of another file."""
     analyzed_windows.switch_off()
@@ -42,6 +55,8 @@ _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("load_post", set_pending_color_spaces),
     ("load_post", end_comparisons),
     ("load_post", end_analyzed_windows),
+    ("load_post", note_files_as_read),
+    ("save_pre", pack_code_values),
     ("save_pre", end_comparisons),
     ("undo_pre", end_comparisons),
     ("undo_post", end_comparisons),

@@ -100,14 +100,13 @@ def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
 
 
 def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw what no longer fits the estimate: another file, nodes that show the earlier one or linearise twice."""
+    """Draw what no longer fits the estimate: another file, nodes that show the earlier one, linearise twice or not."""
     warnings = []
     if stored_estimate.is_file_changed(datablock, plates.file_state(datablock)):
         warnings.append("The file has changed since the estimate: estimate again.")
     if code_values.is_outdated(datablock):
         warnings.append("Its nodes show the earlier file until it is applied as Nodes.")
-    if twice := node_links.linearized_twice(datablock):
-        warnings.append(twice)
+    warnings += filter(None, (node_links.linearized_twice(datablock), node_links.without_group(datablock)))
     if warnings:
         draw_paragraphs(layout, warnings, letters_of(context), icon="ERROR")
 

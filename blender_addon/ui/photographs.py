@@ -45,10 +45,11 @@ class CRF_OT_add_photographs(bpy.types.Operator):
         photographs = plates.chosen_datablock(context).camera_response_settings.photographs
         for file in self.files:
             try:
-                image = bpy.data.images.load(str(Path(self.directory, file.name)), check_existing=True)
+                loaded = bpy.data.images.load(str(Path(self.directory, file.name)), check_existing=True)
             except RuntimeError:
                 self.report({"ERROR"}, f"{file.name}: cannot be opened as an image")
                 return {"CANCELLED"}
+            image = plates.plate_itself(loaded)
             if image not in [item.image for item in photographs]:
                 photographs.add().image = image
         return {"FINISHED"}

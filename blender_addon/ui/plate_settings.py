@@ -6,7 +6,7 @@ from contextlib import suppress
 import bpy
 
 from .. import lazy_import
-from ..scene import stored_estimate
+from ..scene import compositor, stored_estimate
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
@@ -81,6 +81,7 @@ class PlateChoices:
         description="Folder for new files. Empty: that of the preferences, else that of the plate, else that of the"
         " .blend file; for Color Space, Blender's own",
         subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     depth: bpy.props.EnumProperty(name="Depth", description="Samples of the baked EXR files", items=DEPTHS)
     overwrite: bpy.props.BoolProperty(
@@ -100,7 +101,10 @@ class PlateChoices:
         name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS
     )
     prior_file: bpy.props.StringProperty(
-        name="Prior File", description="JSON file with the share of each kind of response", subtype="FILE_PATH"
+        name="Prior File",
+        description="JSON file with the share of each kind of response",
+        subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     ignore_metadata: bpy.props.BoolProperty(
         name="Ignore Metadata",
@@ -142,8 +146,11 @@ def remember_applied(datablock: bpy.types.ID) -> None:
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:
-    """Return whether the estimate of a plate has been applied with its present settings."""
-    return APPLIED in datablock[stored_estimate.KEY] and not is_to_be_applied(datablock)
+    """Return whether the estimate of a plate has been applied with its present settings, and its nodes are there."""
+    if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
+        return False
+    is_by_nodes = datablock.camera_response_settings.apply == "NODES"
+    return not is_by_nodes or bool(compositor.linearized_nodes(datablock, datablock.name))
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:

@@ -5,6 +5,8 @@ from pathlib import Path
 
 import bpy
 
+from ..work.errors import AddonError
+
 #: The name by which Blender knows the add-on: that of its root package.
 ADDON = __package__.rpartition(".")[0]
 
@@ -44,6 +46,7 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         name="Model",
         description="Folder of another model, with model.onnx and model.json. Empty: the model in the add-on",
         subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     threads: bpy.props.IntProperty(
         name="Threads", description="Processor threads of the estimate. 0: all", min=0, max=256
@@ -59,6 +62,7 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         name="Output Folder",
         description="Folder for baked and exported files. Empty: the plate's own folder",
         subtype="DIR_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
     apply: bpy.props.EnumProperty(
         name="Apply As",
@@ -91,7 +95,14 @@ def absolute(folder: str) -> Path | None:
     """Return the path of a folder chosen in the interface, or None for an empty choice.
 
     Blender writes ``//`` for the folder of the .blend file.
+
+    Raises
+    ------
+    AddonError
+        If there is no .blend file yet.
     """
+    if folder.startswith("//") and not bpy.data.filepath:
+        raise AddonError(f"{folder} is relative to the .blend file: save that first, or choose another path")
     return Path(bpy.path.abspath(folder)) if folder else None
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate.
+"""Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate or to undo.
 
 What the metadata of their files says is the estimator's to judge: `crfnet_core.recognition.tag_refusal`.
 """
@@ -44,8 +44,8 @@ def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     """
     if not _is_guess(plate, file) and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
         raise AddonError(
-            f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so there is no response to"
-            " estimate: choose its color space in Blender, or tick Estimate Anyway under Advanced"
+            f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so it has no camera"
+            " response: choose its color space in Blender, or tick Estimate Anyway under Advanced"
         )
 
 

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
@@ -13,6 +14,7 @@ from typing import TypeAlias
 
 import OpenImageIO as oiio
 
+from crfnet_core.errors import CRFNetError
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
 from ocio.plates.frame_files import read_color_tags
@@ -144,13 +146,16 @@ def _reader(plate: Plate, folder: Path) -> Iterator[FrameReader]:
 
 @contextmanager
 def _temporary_folder(plate: Plate) -> Iterator[Path]:
-    """Yield a temporary folder, and remove it at the end."""
+    """Yield a temporary folder, and remove it at the end; errors name the files in it without the folder."""
     try:
         temporary = tempfile.TemporaryDirectory(prefix="crf_", ignore_cleanup_errors=True)
     except OSError as problem:
         raise _no_room(plate, problem) from None
     with temporary as folder:
-        yield Path(folder)
+        try:
+            yield Path(folder)
+        except CRFNetError as problem:
+            raise type(problem)(str(problem).replace(f"{folder}{os.sep}", "")) from None
 
 
 def _written(plate: Plate, folder: Path, sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:

@@ -116,6 +116,8 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     """
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
+    if job.estimation.stored is not None and not job.estimation.is_forced:
+        check_is_encoded(job.plate, job.plate.file, job.config.path)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
     primaries, offers = _primaries(job, sequence), _offers(job, estimate)
     estimated = CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, offers=offers)

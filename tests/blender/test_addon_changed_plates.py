@@ -14,6 +14,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 CHANGED = "The file has changed since the estimate"
 EARLIER = "Its nodes show the earlier file"
 TWICE = "Linearized twice"
+WITHOUT = "shows code values without the node group"
 
 
 @pytest.fixture
@@ -29,7 +30,7 @@ def told(in_editor):
 
     def draw(image):
         words = " ".join(labels(drawn_in(image, in_editor)))
-        return [warning for warning in (CHANGED, EARLIER, TWICE) if warning in words]
+        return [warning for warning in (CHANGED, EARLIER, TWICE, WITHOUT) if warning in words]
 
     return draw
 
@@ -116,6 +117,89 @@ class TestAnotherFile:
         bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
         other.filepath = image.filepath
         assert told(other) == []
+
+
+class TestOpenedAgain:
+    """Blender hands out the image that has the file already, the first in the order of names."""
+
+    def test_the_plate_is_found_and_not_its_code_values(self, image, plate_file):
+        apply_nodes(image)
+        assert bpy.data.images.load(str(plate_file), check_existing=True) == image
+
+    def test_an_editor_that_shows_the_code_values_has_the_panel_of_the_plate(self, image, in_editor):
+        from blender_addon.scene import plates
+
+        apply_nodes(image)
+        with in_editor("IMAGE_EDITOR") as space:
+            space.image = bpy.data.images["plate.png code values"]
+            assert plates.active_datablock(bpy.context) == image
+            assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
+            assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
+            assert space.image == image
+
+    def test_the_code_values_are_no_plate_of_their_own(self, image):
+        apply_nodes(image)
+        with pytest.raises(RuntimeError, match="open the photograph itself"):
+            bpy.ops.crf.estimate_response(image="plate.png code values", apply="ESTIMATE")
+
+    def test_a_file_that_is_read_anew_by_the_plate_alone_is_told(self, image, told, plate_file, codes):
+        apply_nodes(image)
+        write_image(plate_file, (255 - codes)[:-10])
+        image.reload()
+        assert told(image) == [CHANGED, EARLIER]
+
+
+class TestPacked:
+    def test_the_nodes_survive_the_loss_of_the_file(self, image, tree, plate_file, codes, composited, tmp_path, told):
+        apply_nodes(image)
+        image.pack()
+        assert told(image) == [EARLIER]
+        scene = str(tmp_path / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=scene)
+        assert told(image) == []
+        expected = composited(group_of(tree).outputs[0])
+        plate_file.unlink()
+        bpy.ops.wm.open_mainfile(filepath=scene)
+        from blender_addon.scene.compositor import compositor_tree
+
+        opened = compositor_tree(bpy.context.scene)
+        assert np.abs(composited(group_of(opened).outputs[0]) - expected).max() < 1e-6
+        assert expected[..., :3].max() > 0.5
+
+    def test_a_file_that_changed_before_the_scene_was_opened_is_in_the_nodes(
+        self, image, told, plate_file, codes, tmp_path
+    ):
+        apply_nodes(image)
+        scene = str(tmp_path / "shot.blend")
+        bpy.ops.wm.save_as_mainfile(filepath=scene)
+        write_image(plate_file, (255 - codes)[:-10])
+        bpy.ops.wm.open_mainfile(filepath=scene)
+        assert told(bpy.data.images["plate.png"]) == [CHANGED]
+
+
+def group_of(tree):
+    (node,) = (node for node in tree.nodes if node.type == "GROUP")
+    return node
+
+
+class TestWithoutTheGroup:
+    def test_code_values_that_go_on_as_they_are_are_told(self, image, told, tree, in_editor):
+        apply_nodes(image)
+        group = group_of(tree)
+        source, targets = (
+            group.inputs["Image"].links[0].from_socket,
+            [link.to_socket for link in group.outputs[0].links],
+        )
+        tree.nodes.remove(group)
+        assert told(image) == []  # nothing shows them
+        for target in targets:
+            tree.links.new(source, target)
+        assert told(image) == [WITHOUT]
+        applied = "Applied with these settings."
+        assert applied not in " ".join(labels(drawn_in(image, in_editor)))
+        apply_nodes(image)
+        assert told(image) == []
+        assert applied in " ".join(labels(drawn_in(image, in_editor)))
 
 
 class TestTwice:

@@ -52,6 +52,35 @@ def test_one_viewer_shows_the_last_plate(tree, plates):
         assert group.node_tree["camera_response_of"] == image
 
 
+def test_a_viewer_that_shows_something_else_keeps_it(tree, plates):
+    render, viewer = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeViewer")
+    tree.links.new(render.outputs["Image"], viewer.inputs["Image"])
+    apply(plates[0])
+    assert viewer.inputs["Image"].links[0].from_node == render
+    (other,) = (node for node in of_kind(tree, "VIEWER") if node != viewer)
+    assert other.inputs["Image"].links[0].from_node.type == "GROUP"
+
+
+@pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="later, a compositor cannot be switched off so")
+def test_a_compositor_that_is_switched_off_stays_off_and_the_report_says_so(tree, plates, capfd):
+    bpy.context.scene.use_nodes = False
+    apply(plates[0])
+    assert not bpy.context.scene.use_nodes
+    assert "switched off: tick Use Nodes" in capfd.readouterr().out
+
+
+@pytest.mark.skipif(bpy.app.version < (5, 0, 0), reason="before, the compositor belongs to the scene")
+def test_a_linked_compositor_is_refused_and_nothing_is_stored(tree, plates, tmp_path):
+    library = str(tmp_path / "library.blend")
+    bpy.data.libraries.write(library, {tree})
+    with bpy.data.libraries.load(library, link=True) as (_, here):
+        here.node_groups = [tree.name]
+    bpy.context.scene.compositing_node_group = here.node_groups[0]
+    with pytest.raises(RuntimeError, match="linked from another file: make it local first"):
+        apply(plates[0])
+    assert "camera_response" not in plates[0]
+
+
 def test_the_new_group_is_active_and_the_only_selected_node(tree, plates):
     for image in plates:
         apply(image)

@@ -23,6 +23,17 @@ def test_log_and_linear_color_spaces_are_warned_of(image, color_space):
     assert bpy.ops.crf.estimate_response(image=image.name, force=True) == {"FINISHED"}
 
 
+@pytest.mark.parametrize("color_space", ["AgX Log", "Linear Rec.709"])
+def test_a_stored_response_is_not_applied_to_them_either(image, color_space):
+    """The plate may have got the colour space, or the response of another plate, after its estimate."""
+    bpy.ops.crf.estimate_response(image=image.name)
+    image.colorspace_settings.name = color_space
+    with pytest.raises(RuntimeError, match="is logarithmic or linear, so it has no camera response"):
+        bpy.ops.crf.apply_response(image=image.name, apply="NODES")
+    assert not any(tree.name.startswith("Camera Response") for tree in bpy.data.node_groups)
+    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES", force=True) == {"FINISHED"}
+
+
 @pytest.mark.parametrize("color_space", ["sRGB", "Non-Color", "Display P3", "Rec.1886", "Rec.2020"])
 def test_other_color_spaces_are_not(image, color_space):
     image.colorspace_settings.name = color_space
@@ -73,7 +84,7 @@ def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, t
     assert bpy.ops.crf.apply_response(image=image.name, anyway=True, apply="NODES") == {"FINISHED"}
 
 
-def test_an_exr_plate_is_baked_once_it_is_called_encoded(addon, tmp_path, codes):
+def test_an_exr_plate_is_baked_and_shown_once_it_is_called_encoded(addon, tmp_path, codes, in_editor):
     from ocio.luts.files import write_lut
     from ocio.luts.lut1d import inverse_response_lut
 
@@ -87,4 +98,11 @@ def test_an_exr_plate_is_baked_once_it_is_called_encoded(addon, tmp_path, codes)
     image.colorspace_settings.name = "Non-Color"
     assert bpy.ops.crf.load_lut(**lut) == {"FINISHED"}
     assert bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float") == {"FINISHED"}
-    assert np.abs(read_image(tmp_path / "plate_linear.exr") - curve.inverse(codes / 255)).max() < 1e-5
+    linear = curve.inverse(codes / 255)
+    assert np.abs(read_image(tmp_path / "plate_linear.exr") - linear).max() < 1e-5
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
+        shown = np.array(space.image.pixels[:]).reshape(*codes.shape[:2], 4)[::-1, :, :3]
+        assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
+    assert np.abs(shown - linear).max() < 1e-4  # 16-bit codes are looked up

@@ -126,6 +126,16 @@ def test_files_need_a_folder_that_can_be_written(image, tmp_path):
     assert "camera_response" not in image
 
 
+@pytest.mark.parametrize("choice", [{"folder": "//renders"}, {"prior": "file", "prior_file": "//prior.json"}])
+def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, choice, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    bpy.ops.wm.read_homefile(use_empty=True)
+    image = bpy.data.images.load(str(plate_file))
+    with pytest.raises(RuntimeError, match=r"is relative to the \.blend file: save that first"):
+        bpy.ops.crf.estimate_response(image=image.name, apply="EXPORT", **choice)
+    assert not (tmp_path / "renders").exists()
+
+
 def test_color_space_after_a_restart(image, plate_file, tmp_path, codes, estimate, root):
     from blender_addon.scene.color_management import user_folder
 

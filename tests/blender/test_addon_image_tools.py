@@ -47,19 +47,22 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
     assert names() == before
 
 
-def test_16_bits_and_alpha(addon, tmp_path, estimate, in_editor):
+@pytest.mark.parametrize("is_packed", [False, True])
+def test_16_bits_and_alpha(addon, tmp_path, estimate, in_editor, is_packed):
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 4)).astype(np.uint16)
     path = write_image(tmp_path / "deep.png", samples, oiio__UnassociatedAlpha=1)
     image = bpy.data.images.load(str(path))
+    if is_packed:
+        image.pack()
     bpy.ops.crf.estimate_response(image=image.name)
     expected = estimate(path).curve.inverse(samples[..., :3] / 65535)
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image
         show(after=True)
-        found = pixels_of(space.image)[..., :3]
+        found = pixels_of(space.image)
         show(after=False)
     alpha = samples[..., 3:] / 65535
-    assert min(np.abs(found - expected).max(), np.abs(found - expected * alpha).max()) < 1e-5
+    assert np.abs(found - np.concatenate([expected * alpha, alpha], axis=2)).max() < 1e-5
 
 
 @pytest.mark.parametrize("occasion", ["save", "undo", "disable"])

@@ -97,6 +97,11 @@ def test_a_new_estimate_takes_its_place(image, lut_file):
     assert stored_estimate.origin(image) == ""
 
 
+def test_without_a_file_it_asks_for_one(image):
+    with pytest.raises(RuntimeError, match="No LUT file is chosen"):
+        bpy.ops.crf.load_lut(image=image.name)
+
+
 def test_other_files_are_refused_and_change_nothing(image, tmp_path):
     from ocio.luts.files import write_lut
     from ocio.luts.lut1d import Lut1D

@@ -63,6 +63,13 @@ def test_a_gif_is_called_a_gif(addon, tmp_path):
         bpy.ops.crf.estimate_response(image=image.name)
 
 
+def test_errors_name_a_packed_plate_and_not_the_temporary_file(addon, tmp_path, codes):
+    image = bpy.data.images.load(str(write_image(tmp_path / "small.png", codes[:30, :40])))
+    image.pack()
+    with pytest.raises(RuntimeError, match=r"Error: small\.png: "):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
 def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes, in_editor):
     from blender_addon.scene.plates import obstacle, plate_of
     from blender_addon.work.frame_files import frames_of

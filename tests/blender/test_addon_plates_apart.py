@@ -198,7 +198,7 @@ class TestNothingIsLinearizedTwice:
         wanted = compositor.PlateNodes(
             plate=image,
             name="plate",
-            codes=bpy.data.images[".plate.png code values"],
+            codes=bpy.data.images["plate.png code values"],
             group=bpy.data.node_groups["Camera Response plate"],
             exposure=1,
         )
@@ -278,12 +278,11 @@ class TestTheRestStaysAsItIs:
         assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
         assert np.abs(np.array(image.pixels[:]) - pixels.ravel()).max() < 1e-6
 
-    def test_only_the_group_is_in_the_menus(self, image, tree):
-        """A leading dot hides the copy of the plate and the LUT; neither outlives its user."""
+    def test_the_lut_is_hidden_and_the_copy_stands_behind_its_plate(self, image, tree):
+        """A leading dot hides the LUT; neither it nor the copy outlives its user."""
         apply(image)
         others = [other for other in bpy.data.images if other != image and other.type == "IMAGE"]
-        assert len(others) == 2
-        assert all(other.name.startswith(".") for other in others)
+        assert sorted(other.name for other in others) == [".Camera Response plate LUT", "plate.png code values"]
         assert not any(datablock.use_fake_user for datablock in (*others, *bpy.data.node_groups))
 
     def test_the_copy_follows_the_plate(self, image, tree, codes, tmp_path):

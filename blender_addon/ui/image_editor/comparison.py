@@ -15,7 +15,8 @@ import bpy
 import numpy as np
 
 from ... import lazy_import
-from ...scene.plates import COMPARED_PLATE, compared_plate, is_heif
+from ...scene.color_management import running_config
+from ...scene.plates import COMPARED_PLATE, compared_plate, is_heif, plate_itself, plate_of
 from ...work.errors import AddonError
 
 if TYPE_CHECKING:
@@ -55,9 +56,14 @@ def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: 
 
 
 def end(space: bpy.types.SpaceImageEditor) -> None:
-    """Show the plate again in an editor that shows its linear one, which is removed unless another editor shows it."""
+    """Show the plate again in an editor that shows its linear one, which is removed unless another editor shows it.
+
+    An editor that shows the code values for the compositor shows the plate, too.
+    """
     linear, plate = space.image, compared_plate(space.image)
     if linear is None or COMPARED_PLATE not in linear:
+        if plate_itself(linear) != linear:
+            space.image = plate_itself(linear)
         return
     space.image = plate
     if all(other.image != linear for other in _image_editors()):
@@ -85,11 +91,11 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     ------
     AddonError
         If Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels are not code values.
-    PhotoError
-        If its file cannot be read.
+    CRFNetError
+        If its file cannot be read, or does not hold encoded values.
     """
     width, height = image.size
-    if is_heif(image) and not image.packed_file:  # where Blender has a decoder, its codes are others by a few
+    if is_heif(image):  # where Blender has a decoder, its codes are others by a few
         return _codes_of_file(image, user)
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
@@ -97,7 +103,7 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
         raise AddonError(
             f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
         )
-    if image.is_float and not image.packed_file:  # its pixels are linear light by the color space, not code values
+    if image.is_float:  # its pixels are linear light by the color space, not code values
         return _codes_of_file(image, user)
     flat = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(flat)
@@ -106,10 +112,20 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
-    """Return the code values in the file of an image, as `code_values` does."""
-    read_photo = lazy_import.load("crfnet_core.image_io").read_photo
-    path = image.filepath_from_user(image_user=user)
-    return read_photo(Path(bpy.path.abspath(path, library=image.library))).pixels[::-1]
+    """Return the code values in the file of an image, packed or not, as `code_values` does."""
+    frame_files, encoding_check = lazy_import.load(".work.frame_files"), lazy_import.load(".work.encoding_check")
+    plate = plate_of(image)
+    is_encoded = encoding_check.holds_encoded_values(
+        plate, running_config(), is_forced=image.camera_response_settings.force
+    )
+    with frame_files.frame_reader(plate) as read:
+        shown = Path(bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library))
+        (path,) = read(frame_files.FrameSequence((shown,)), None).paths
+        frame = lazy_import.load("ocio.plates.frame_files").read_frame(path, is_encoded=is_encoded)
+    channels = [frame.samples / np.float32(frame.largest)]
+    if frame.alpha is not None:
+        channels.append(frame.alpha[..., None])
+    return np.clip(np.concatenate(channels, axis=2, dtype=np.float32), 0, 1)[::-1]
 
 
 def linear_pixels(

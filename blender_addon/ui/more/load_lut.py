@@ -8,7 +8,7 @@ import bpy
 
 from ... import lazy_import
 from ...scene import color_management, plates, stored_estimate
-from ...work.errors import expected_errors
+from ...work.errors import AddonError, expected_errors
 from ...work.wording import LOADED, loaded_line
 from .. import running
 from ..image_editor import comparison
@@ -29,7 +29,12 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
-    filepath: bpy.props.StringProperty(name="File", description="The LUT file", subtype="FILE_PATH")
+    filepath: bpy.props.StringProperty(
+        name="File",
+        description="The LUT file",
+        subtype="FILE_PATH",
+        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+    )
     filter_glob: bpy.props.StringProperty(default="*.spi1d;*.cube;*.clf", options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
@@ -52,6 +57,8 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         try:
             plate = self.chosen_plate(context)
             primaries = self._primaries(plate)
+            if not Path(self.filepath).name:
+                raise AddonError("No LUT file is chosen: choose a .spi1d, .cube or .clf file")
             path = Path(bpy.path.abspath(self.filepath))
             lut = lazy_import.load("ocio.luts.files").read_lut(path)
             curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)

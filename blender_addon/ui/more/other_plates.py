@@ -87,9 +87,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
             result = failed(self, problem)
             return {"FINISHED"} if done else result
         running.redraw_editors(context.window_manager)
-        self.report(
-            {"INFO"}, f"{source.name}: its response is that of {done} more plates now; {_what_was_done(source)}"
-        )
+        self.report({"INFO"}, f"{source.name}: {_count(done)} its response now; {_what_was_done(source)}")
         return {"FINISHED"}
 
     def _chosen(self, source: plates.Datablock) -> list[plates.Datablock]:
@@ -104,7 +102,8 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
 def other_plates(source: plates.Datablock) -> Iterator[plates.Datablock]:
     """Yield the images and clips of the file that a response can be applied to, hidden ones and the source excepted."""
     for datablock in (*bpy.data.images, *bpy.data.movieclips):
-        if datablock != source and not datablock.name.startswith(".") and not plates.obstacle(datablock):
+        is_plate = not datablock.name.startswith(".") and plates.CODE_VALUES_OF not in datablock
+        if datablock != source and is_plate and not plates.obstacle(datablock):
             yield datablock
 
 
@@ -144,6 +143,11 @@ def _apply(context: bpy.types.Context, source: plates.Datablock, job: "Job") -> 
     datablock.camera_response_settings.apply = source.camera_response_settings.apply
     if completed.is_applied:
         remember_applied(datablock)
+
+
+def _count(plates_done: int) -> str:
+    """Return in words how many other plates have the response."""
+    return "one more plate has" if plates_done == 1 else f"{plates_done} more plates have"
 
 
 def _what_was_done(source: plates.Datablock) -> str:
