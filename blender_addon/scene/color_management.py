@@ -41,7 +41,7 @@ def environment_config() -> str:
     """
     names = CONFIG_VARIABLES[::-1] if bpy.app.version >= (5, 0, 0) else CONFIG_VARIABLES[:1]
     demanded = next((os.environ[name] for name in names if os.environ.get(name)), "")
-    is_usual = demanded and Path(demanded).resolve() in (_own_config().resolve(), _user_config().resolve())
+    is_usual = demanded and Path(demanded).resolve() in (own_config().resolve(), _user_config().resolve())
     return "" if is_usual else demanded
 
 
@@ -52,7 +52,7 @@ def user_folder() -> Path:
 
 def running_config() -> str:
     """Return the config that this Blender was started with: the environment's, the user's or Blender's own."""
-    return environment_config() or str(_user_config() if _user_config().is_file() else _own_config())
+    return environment_config() or str(_user_config() if _user_config().is_file() else own_config())
 
 
 def _user_config() -> Path:
@@ -60,6 +60,6 @@ def _user_config() -> Path:
     return user_folder() / CONFIG_NAME
 
 
-def _own_config() -> Path:
+def own_config() -> Path:
     """Return the config that comes with Blender."""
     return Path(bpy.utils.system_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)

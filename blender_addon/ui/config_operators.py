@@ -135,7 +135,8 @@ def is_restart_due() -> bool:
 def draw_restart(layout: bpy.types.UILayout, letters: int, pending: str = "") -> None:
     """Draw that a restart is due, and the button that does it, or the one that must come before.
 
-    Nothing is drawn while no restart is due and no color space is waited for.
+    Nothing is drawn while no restart is due and no color space is waited for, unless Blender was updated and still runs
+    on a config that was built on its earlier version's.
 
     Parameters
     ----------
@@ -147,6 +148,16 @@ def draw_restart(layout: bpy.types.UILayout, letters: int, pending: str = "") ->
         The color space that the plate waits for; empty if it waits for none.
     """
     if not is_restart_due():
+        if missing := _missing(color_management.user_folder(), _fingerprint()):
+            box = layout.box()
+            draw_text(
+                box,
+                f"Blender runs on a config of its earlier version, which lacks {len(missing)} of its color spaces, such"
+                f" as {missing[0]}. Restore its own, restart, and apply the plates' color spaces again.",
+                letters,
+                icon="ERROR",
+            )
+            box.operator(CRF_OT_restore_config.bl_idname, icon="LOOP_BACK")
         if pending:  # the environment names the config, so that Blender must be started with another one
             draw_text(layout, f'"{pending}" comes with a restart.', letters, icon="COLOR")
         return
@@ -184,6 +195,18 @@ def _installed(folder: Path, _fingerprint: str) -> tuple[str, ...]:
     """Return the names of the installed color spaces; the fingerprint makes a changed config be read again."""
     try:
         return lazy_import.load("ocio.configs.installed").installed_color_spaces(folder)
+    except expected_errors():
+        return ()
+
+
+@lru_cache(maxsize=1)
+def _missing(folder: Path, _fingerprint: str) -> tuple[str, ...]:
+    """Return the color spaces of this Blender that the user's config lacks, if the add-on has built it."""
+    if color_management.environment_config():
+        return ()
+    try:
+        installed = lazy_import.load("ocio.configs.installed")
+        return installed.missing_color_spaces(folder, color_management.own_config())
     except expected_errors():
         return ()
 

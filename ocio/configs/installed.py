@@ -187,6 +187,25 @@ def installed_color_spaces(folder: Path) -> tuple[str, ...]:
     return tuple(space.getName() for space in load_config(config).getColorSpaces() if _installed_lut(space))
 
 
+def missing_color_spaces(folder: Path, base: Path) -> tuple[str, ...]:
+    """Return the colour spaces of a program's own config, `base`, that the config of `folder` lacks, which it replaces.
+
+    There are some after the program has been updated: the config in the folder was built on that of its earlier
+    version. There are none if nothing was installed there, or the folder had a config of somebody else's before.
+
+    Raises
+    ------
+    ConfigError
+        If OpenColorIO refuses one of the configs.
+    """
+    config = folder / CONFIG_NAME
+    record = read_record(config)
+    if record is None or record.backup or not config.exists():
+        return ()
+    wanted, there = ([space.getName() for space in load_config(file).getColorSpaces()] for file in (base, config))
+    return tuple(name for name in wanted if name not in there)
+
+
 def uninstall(folder: Path, name: str) -> None:
     """Take an installed colour space, its file rules and its LUT out of the config of `folder`.
 

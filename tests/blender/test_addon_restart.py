@@ -1,5 +1,7 @@
 """What is in the user's config: told until Blender is restarted, listed, and taken out again."""
 
+import hashlib
+import json
 from types import SimpleNamespace
 
 import pytest
@@ -53,6 +55,30 @@ def test_a_restart_is_due_until_it_is_done(image, user_config, in_editor, monkey
         assert config_operators.is_restart_due()
         bpy.ops.crf.restore_config()
         assert config_operators.is_restart_due()  # the config that Blender runs on is gone
+
+
+def test_a_config_of_an_earlier_blender_is_told_and_restored(image, user_config, in_editor, monkeypatch):
+    """Load Previous Settings brings the earlier version's config along."""
+    from blender_addon.ui import config_operators
+
+    text = user_config.read_text()
+    name = "AgX Log"
+    before, after = text.split(f"    name: {name}\n")
+    user_config.write_text(f"{before}    name: of an earlier Blender\n{after}")
+    _take_for_ours(user_config)
+    monkeypatch.setattr(config_operators, "_read_at_start", config_operators._fingerprint())
+    drawn = drawn_in(image, in_editor)
+    assert f"which lacks 1 of its color spaces, such as {name}." in " ".join(labels(drawn))
+    assert "crf.restore_config" in [entry[1] for entry in drawn if entry[0] == "operator"]
+    assert bpy.ops.crf.restore_config() == {"FINISHED"}
+    assert "earlier version" not in " ".join(labels(drawn_in(image, in_editor)))
+
+
+def _take_for_ours(config):
+    """Let the record say that the config is as the add-on has written it."""
+    record = config.parent / "camera_response" / "installed.json"
+    entries = json.loads(record.read_text())
+    record.write_text(json.dumps(entries | {"sha256": hashlib.sha256(config.read_bytes()).hexdigest()}))
 
 
 def test_the_panel_restarts_a_file_that_has_a_name(image, user_config, in_editor, tmp_path):

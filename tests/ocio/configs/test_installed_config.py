@@ -5,13 +5,14 @@ import re
 from dataclasses import replace
 
 import numpy as np
+import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import ConfigError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
 from ocio.configs.installation_record import FOLDER, RECORD_NAME
-from ocio.configs.installed import install, installed_color_spaces, restore, uninstall
+from ocio.configs.installed import install, installed_color_spaces, missing_color_spaces, restore, uninstall
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
@@ -251,6 +252,21 @@ def test_what_was_installed_is_listed_and_nothing_else(folder, base):
     install(folder, base, SPACE, LUT, plate=PLATE)
     install(folder, base, OTHER_SPACE, OTHER_LUT, plate="/shot/other.png")
     assert installed_color_spaces(folder) == ("CRF plate", "CRF other")
+
+
+def test_what_a_newer_version_of_the_program_adds_is_missing(folder, base, tmp_path):
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    assert missing_color_spaces(folder, base) == ()
+    newer = loaded(base)
+    newer.addColorSpace(OCIO.ColorSpace(name="new in this version"))
+    (tmp_path / "newer.ocio").write_text(newer.serialize())
+    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ("new in this version",)
+    restore(folder)
+    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ()
+    folder.mkdir()
+    (folder / CONFIG_NAME).write_text(portable_config([]).serialize())  # the user's own
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ()
 
 
 def test_one_color_space_is_taken_out_and_the_others_stay(folder, base, tolerance):
