@@ -117,6 +117,7 @@ def estimate_of(
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
     makes = tuple(photograph.make for photograph in photographs)
     recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
+    doubts = _doubts(photographs, origins)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=posterior.mean_weights,
@@ -125,10 +126,10 @@ def estimate_of(
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
         families=posterior.families,
-        verdict=Verdict.DO_NOT_TRUST if recognition else Verdict.of(posterior),
+        verdict=_verdict(posterior, recognition, doubts),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition),
+        warnings=_warnings(photographs, origins, recognition, doubts),
         model=model,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -176,17 +177,36 @@ def _window_estimates(
     )
 
 
+def _doubts(photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin]) -> list[str]:
+    """Return why an estimate cannot be good, in words; the expected errors leave it out."""
+    doubts, cameras = [], list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
+    if len(cameras) > 1:
+        doubts.append(f"photographs of different cameras ({', '.join(cameras)}): estimate each camera by itself")
+    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
+        doubts.append(
+            "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure"
+        )
+    return doubts
+
+
+def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[str]) -> Verdict:
+    """Return how far to trust the answer of a posterior."""
+    verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.of(posterior)
+    return Verdict.USABLE if doubts and verdict is Verdict.GOOD else verdict
+
+
 def _warnings(
-    photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin], recognition: Recognition | None
+    photographs: Sequence[AnalyzedPhotograph],
+    origins: Sequence[FileOrigin],
+    recognition: Recognition | None,
+    doubts: Sequence[str],
 ) -> tuple[str, ...]:
     """Return what makes a poor estimate likely, in words."""
     warnings = [recognition.reason] if recognition else []
-    warnings += editor_warnings(origins)
+    warnings += [*editor_warnings(origins), *doubts]
     windows = [window for photograph in photographs for window in photograph.windows]
     if windows and not any(window.covers_range for window in windows):
         warnings.append("no window covers the range of brightness: expect a poor estimate")
     if all(photograph.is_gray for photograph in photographs):
         warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
-    if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        warnings.append("mostly clipped: take a photograph with another exposure")
     return tuple(warnings)

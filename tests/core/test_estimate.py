@@ -211,6 +211,23 @@ def test_a_clipped_photograph_is_warned_of():
     assert "mostly clipped" in warnings_of(clipped)[0]
 
 
+def test_photographs_of_different_cameras_are_warned_of():
+    other = replace(CAMERA, model="NIKON D800")
+    (warning,) = warnings_of([photo(metadata=CAMERA), photo(seed=1, metadata=other)])
+    assert warning == "photographs of different cameras (NIKON D90, NIKON D800): estimate each camera by itself"
+    assert warnings_of([photo(metadata=CAMERA), photo(seed=1, metadata=CAMERA), photo(seed=2)]) == ()
+
+
+def test_what_the_expected_errors_leave_out_keeps_an_answer_from_being_good():
+    """The network of the test is sure of its answer."""
+    network, prior = FakeNetwork([evidence_for(CENTRE)] * 2), even_prior()
+    one, other = (photo(seed=seed, metadata=replace(CAMERA, model=f"NIKON D{seed}")) for seed in (1, 2))
+    clipped = photo(metadata=CAMERA)
+    clipped.pixels[:200] = 0
+    verdicts = [asked(made, network, prior=prior).verdict for made in (one, [one, one], [one, other], clipped)]
+    assert verdicts == [Verdict.GOOD, Verdict.GOOD, Verdict.USABLE, Verdict.USABLE]
+
+
 def test_a_small_photograph_is_named():
     with pytest.raises(PhotoError, match=r"plate01\.jpg: the photograph is 400 x 100 pixels"):
         estimate_response(photo(shape=(100, 400)), network=FakeNetwork([]))

@@ -23,7 +23,7 @@ from crfnet_core.recognition import (
     recognize,
     tag_refusal,
 )
-from crfnet_core.recognition.log_footage import BLACK_FACTOR, HIGH_WHITE_FACTOR, LOW_WHITE_FACTOR
+from crfnet_core.recognition.log_footage import BLACK_FACTOR, HIGH_WHITE_FACTOR, LIFTED_BLACK, LOW_WHITE_FACTOR
 from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
 
@@ -53,6 +53,14 @@ def test_the_levels_of_an_ordinary_picture_say_nothing():
 def test_a_lifted_black_with_a_clipped_white_says_less():
     faded = quantized(0.1 + 0.9 * ordinary_picture().astype(float))
     assert log_factor(Levels.of(faded)) == pytest.approx(BLACK_FACTOR * HIGH_WHITE_FACTOR)
+
+
+@pytest.mark.parametrize(("darkest", "brightest"), [(0.18, 0.18), (0.18, 0.4), (0.31, 0.9), (0.5, 0.95)])
+def test_walls_gray_cards_and_skies_are_no_log_footage(darkest, brightest):
+    """Their black is lifted, but their range is short, or their black higher than any log curve puts it."""
+    picture = quantized(darkest + (brightest - darkest) * ordinary_picture().astype(float))
+    assert Levels.of(picture).black > LIFTED_BLACK
+    assert log_factor(Levels.of(picture)) == 1
 
 
 @pytest.mark.parametrize("name", log_curves())
