@@ -7,9 +7,8 @@ import json
 import math
 import os
 import re
+import secrets
 import stat
-import tempfile
-import threading
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -20,7 +19,8 @@ from crfnet_core.errors import CRFNetError
 #: Size in bytes of the largest JSON file that is read.
 MAX_JSON_SIZE = 16 * 2**20
 
-_UMASK_LOCK = threading.Lock()
+#: Bytes that file systems take for a file's name.
+LONGEST_NAME = 255
 
 
 def read_bytes(path: Path, *, most: int) -> bytes:
@@ -105,25 +105,26 @@ def atomic_write(
     Yields
     ------
     Path
-        An empty file in the same folder and with the same suffix, to be filled by the caller.
+        An empty file in the same folder and with the same suffix, to be filled by the caller. Its permissions are those
+        of any new file.
 
     Raises
     ------
     CRFNetError
         As `check_target`, or when the disk refuses the file.
     """
-    path = check_target(path, overwrite=overwrite, error=error)
-    handle, name = tempfile.mkstemp(prefix=f".{path.stem}.", suffix=path.suffix, dir=path.parent)
-    os.close(handle)
-    temporary = Path(name)
+    path = Path(path)
+    temporary = _temporary_name(path)
     try:
-        yield temporary
-        temporary.chmod(0o666 & ~_umask())
-        temporary.replace(path)
+        check_target(path, overwrite=overwrite, error=error)
+        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        try:
+            yield temporary
+            temporary.replace(path)
+        finally:
+            temporary.unlink(missing_ok=True)
     except OSError as problem:
         raise error(f"{path}: cannot be written ({problem.strerror or problem})") from problem
-    finally:
-        temporary.unlink(missing_ok=True)
 
 
 def atomic_write_text(
@@ -132,6 +133,11 @@ def atomic_write_text(
     """Write `text` as UTF-8, its line ends as they are; options and errors are those of `atomic_write`."""
     with atomic_write(path, overwrite=overwrite, error=error) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
+
+
+def shortened(name: str, most: int) -> str:
+    """Return a file's name cut to at most `most` bytes, between two characters; bytes that are no text are left out."""
+    return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")
 
 
 def json_text(document: Mapping[str, Any]) -> str:
@@ -150,9 +156,7 @@ def _finite(text: str) -> float:
     return number if math.isfinite(number := float(text)) else _refused(text)
 
 
-def _umask() -> int:
-    """Return the process's file mode creation mask; it can only be read by setting it, so one thread at a time."""
-    with _UMASK_LOCK:
-        mask = os.umask(0)
-        os.umask(mask)
-    return mask
+def _temporary_name(path: Path) -> Path:
+    """Return the name of a hidden file beside a file, `.stem.XXXXXXXX.suffix`, its stem cut where the name is long."""
+    ending = f".{secrets.token_hex(4)}{path.suffix}"
+    return path.with_name(f".{shortened(path.stem, LONGEST_NAME - 1 - len(os.fsencode(ending)))}{ending}")

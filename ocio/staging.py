@@ -18,14 +18,17 @@ STALE_SECONDS = 600
 #: How the names of temporary folders begin.
 _PREFIX = ".crfnet-"
 
+#: The folder in a temporary one for the files that its own replace.
+_EARLIER = "earlier"
+
 
 @contextmanager
 def staged_files(folder: Path, *, overwrite: bool = True) -> Iterator[Path]:
     """Yield a temporary folder in `folder`; if the block succeeds, its files take their names in `folder` together.
 
-    Check before whether files of these names may be replaced. If the block fails, or one of the names cannot
-    be taken (a file that is locked, a full disk), `folder` is as it was. Temporary folders that a killed run left there
-    are removed once they are `STALE_SECONDS` old.
+    Check before whether files of these names may be replaced. If the block fails, or one of the names cannot be taken
+    (a file that is locked, a full disk, an interruption), `folder` is as it was. Temporary folders that a killed run
+    left there are removed once they are `STALE_SECONDS` old; earlier files in them go back where their names are free.
 
     Parameters
     ----------
@@ -47,36 +50,37 @@ def staged_files(folder: Path, *, overwrite: bool = True) -> Iterator[Path]:
     except CRFNetError as problem:
         raise type(problem)(str(problem).replace(str(temporary), str(folder))) from problem
     finally:
-        shutil.rmtree(temporary, ignore_errors=True)
+        _remove(temporary, folder)
 
 
 def _publish(temporary: Path, folder: Path, *, overwrite: bool) -> None:
-    """Move the files of one folder into another, or none of them; earlier files of these names are gone then."""
+    """Move the files of one folder into another, or none of them; earlier files of these names move into `_EARLIER`."""
     files = sorted(path for path in temporary.iterdir())
     if not overwrite and (there := [path.name for path in files if os.path.lexists(folder / path.name)]):
         raise PlateError(f"{folder / there[0]}: was written by another process meanwhile; choose another folder")
-    earlier = temporary / "earlier"
+    earlier = temporary / _EARLIER
     earlier.mkdir()
-    taken: list[Path] = []
+    target = folder
     try:
         for path in files:
             target = folder / path.name
             if os.path.lexists(target):
                 target.rename(earlier / path.name)
-            taken.append(target)
             path.rename(target)
-    except OSError as problem:
-        for target in taken:
-            _take_back(target, earlier / target.name)
+    except BaseException as problem:
+        for path in files:
+            _take_back(path, folder / path.name, earlier / path.name)
+        if not isinstance(problem, OSError):
+            raise
         raise PlateError(f"{target}: cannot be written ({problem.strerror or problem}); check the file") from problem
 
 
-def _take_back(target: Path, earlier: Path) -> None:
-    """Put the earlier file back into its place, or remove the new one where there was none."""
+def _take_back(path: Path, target: Path, earlier: Path) -> None:
+    """Put the earlier file back into its place, or remove the new one if it was moved there and there was none."""
     with suppress(OSError):
         if os.path.lexists(earlier):
             earlier.replace(target)
-        else:
+        elif not os.path.lexists(path):
             target.unlink(missing_ok=True)
 
 
@@ -85,4 +89,14 @@ def _remove_stale(folder: Path) -> None:
     for path in folder.glob(f"{_PREFIX}*"):
         with suppress(OSError):
             if time.time() - path.stat().st_mtime > STALE_SECONDS:
-                shutil.rmtree(path, ignore_errors=True)
+                _remove(path, folder)
+
+
+def _remove(temporary: Path, folder: Path) -> None:
+    """Remove a temporary folder, unless an earlier file in it whose name is free cannot go back."""
+    earlier = temporary / _EARLIER
+    with suppress(OSError):
+        for path in earlier.iterdir() if earlier.is_dir() else ():
+            if not os.path.lexists(folder / path.name):
+                path.rename(folder / path.name)
+        shutil.rmtree(temporary, ignore_errors=True)

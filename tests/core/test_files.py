@@ -1,7 +1,11 @@
+import os
+import re
+import stat
+
 import pytest
 
 from crfnet_core.errors import CRFNetError, LutError
-from crfnet_core.files import atomic_write
+from crfnet_core.files import LONGEST_NAME, atomic_write, shortened
 
 
 def test_a_file_takes_its_name_when_it_is_whole(tmp_path):
@@ -46,3 +50,47 @@ def test_the_file_has_the_permissions_of_any_other(tmp_path):
     with atomic_write(tmp_path / "plate.cube"):
         pass
     assert (tmp_path / "plate.cube").stat().st_mode == (tmp_path / "other").stat().st_mode
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX permissions")
+def test_the_mask_of_permissions_holds_and_is_left_alone(tmp_path, monkeypatch):
+    """It belongs to the process: while it is another, files of other threads have wrong permissions."""
+    earlier = os.umask(0o027)
+    try:
+        monkeypatch.setattr(os, "umask", lambda mask: pytest.fail("the mask was changed"))
+        with atomic_write(tmp_path / "plate.cube"):
+            pass
+    finally:
+        monkeypatch.undo()
+        os.umask(earlier)
+    assert stat.S_IMODE((tmp_path / "plate.cube").stat().st_mode) == 0o640
+
+
+@pytest.mark.parametrize("character", ["a", "\u00e9", "\u5199", "\U0001f4f7"])
+def test_the_longest_names_are_written(tmp_path, character):
+    ending = ".cube"
+    name = shortened(character * LONGEST_NAME, LONGEST_NAME - len(ending)) + ending
+    with atomic_write(tmp_path / name) as temporary:
+        assert temporary.suffix == ending
+        temporary.write_text("whole")
+    assert [path.name for path in tmp_path.iterdir()] == [name]
+
+
+def test_a_name_that_is_too_long_is_told(tmp_path):
+    with pytest.raises(LutError, match="cannot be written"), atomic_write(tmp_path / ("a" * 300), error=LutError):
+        pass
+    assert list(tmp_path.iterdir()) == []
+
+
+def test_the_temporary_name_says_which_file_it_is_of(tmp_path):
+    """So that what a killed run leaves can be found and removed: see `ocio.plates.linear`."""
+    with atomic_write(tmp_path / "plate.0001.exr") as temporary:
+        assert re.fullmatch(r"\.plate\.0001\.[a-z0-9]{8}\.exr", temporary.name)
+
+
+@pytest.mark.parametrize(
+    ("name", "most", "expected"),
+    [("plate", 5, "plate"), ("plate", 4, "plat"), ("\u00e9\u00e9", 3, "\u00e9"), ("a\udcffb", 9, "ab"), ("a", -1, "")],
+)
+def test_names_are_cut_between_characters(name, most, expected):
+    assert shortened(name, most) == expected
