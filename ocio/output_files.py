@@ -5,13 +5,13 @@ from __future__ import annotations
 import itertools
 import os
 import re
-from collections import Counter
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
+from crfnet_core.files import shortened
 from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
@@ -20,6 +20,9 @@ from ocio.options import OutputOptions
 
 #: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
 LONGEST_STEM = 200
+
+#: How the name of a sheet ends, after the stem.
+SHEET_ENDING = "_sheet.png"
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class OutputFiles:
             clf=folder / f"{stem}.clf",
             config=folder / CONFIG_NAME,
             linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos if has_linear),
-            sheet=folder / f"{stem}_sheet.png" if has_sheet else None,
+            sheet=folder / f"{stem}{SHEET_ENDING}" if has_sheet else None,
             report=folder / f"{stem}.json",
             color_space=f"CRF {stem}",
             forward=tuple(folder / f"{stem}_forward{suffix}" for suffix in WRITERS) if has_forward else (),
@@ -132,7 +135,7 @@ class OutputFiles:
         return PlateColorSpace(
             name=self.color_space,
             lut_file=self.spi1d.name,
-            aliases=(re.sub(r"\W+", "_", self.color_space).lower(),),
+            aliases=_aliases(self.color_space),
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_pattern=file_pattern or plate_pattern(photo.name),
             exposure=exposure,
@@ -145,12 +148,17 @@ def plain_stem(photo: Path) -> str:
 
     It is cut to `LONGEST_STEM` bytes, so that every file named after it can be written.
     """
-    return _plain(photo.stem).encode(errors="surrogateescape")[:LONGEST_STEM].decode(errors="ignore")
+    return shortened(_plain(photo.stem), LONGEST_STEM)
 
 
 def _plain(name: str) -> str:
     """Return a name with `_` for what configs, patterns or other systems interpret."""
     return re.sub(r"[$%#*?\\:]", "_", name)
+
+
+def _aliases(color_space: str) -> tuple[str, ...]:
+    """Return the alias of a colour space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
+    return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
 
 
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:
@@ -190,8 +198,8 @@ def check_outputs(
     Raises
     ------
     PlateError
-        If the folder cannot be made or written to, two estimates or photographs would share a file, a file exists and
-        may not be replaced, or a photograph itself would be replaced.
+        If the folder cannot be made or written to, a file exists and may not be replaced, or a photograph itself would
+        be replaced.
     """
     outputs = tuple(outputs)
     targets = [path for files in outputs for path in files.own]
@@ -227,8 +235,6 @@ def check_targets(
         See `check_outputs`.
     """
     check_folder(folder)
-    if twice := sorted(path.name for path, times in Counter(targets).items() if times > 1):
-        raise PlateError(f"two photographs would both be written as {twice[0]}; rename one or use two folders")
     originals = {os.path.realpath(photo) for photo in photos}
     every = [*targets, *shared]
     for path in every:

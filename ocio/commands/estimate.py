@@ -19,7 +19,7 @@ from ocio.defaults import ESTIMATES
 from ocio.movies.frames import MovieFrames
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
-from ocio.pipeline import PhotographEstimate, PhotographRecord
+from ocio.pipeline import OutputPlan, PhotographEstimate, PhotographRecord
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -45,9 +45,10 @@ def run(arguments: argparse.Namespace) -> None:
         )
     document = pipeline.write_outputs(plan, estimated)
     if arguments.json:
-        print_json({"folder": str(arguments.out), "estimates": [document]})
+        left = {"left": [path.name for path in plan.left]} if plan.left else {}
+        print_json({"folder": str(arguments.out), "estimates": [document], **left})
     else:
-        _print_estimate(estimated, document, plan.files, plan.plates)
+        _print_estimate(estimated, document, plan)
 
 
 def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: OutputOptions) -> None:
@@ -67,10 +68,9 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
     pipeline.check_records(records)
 
 
-def _print_estimate(
-    estimated: PhotographEstimate, document: Mapping[str, Any], files: OutputFiles, plates: PlateOptions
-) -> None:
+def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], plan: OutputPlan) -> None:
     """Print what was read, found and written, and how to use it."""
+    files = plan.files
     read = [*estimated.movies, *map(str, estimated.facts)]
     lines = [
         *read,
@@ -78,11 +78,15 @@ def _print_estimate(
         *report.light_lines(document),
         *report.offer_lines(estimated.offers),
     ]
-    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files), ""])
+    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
+    if plan.left:
+        names = ", ".join(path.name for path in plan.left)
+        print_lines([f"Warning: of an earlier run, and not of this estimate, are {names}; remove them."])
+    print_lines([""])
     plate = estimated.plates[0]
     if isinstance(plate, MovieFrames):
         print_lines([f"The linear plate is frame {plate.numbers[0]}; the whole movie, with the LUT:"])
-        print_lines([f"  {_linearize_line(estimated.paths[0], files, plates)}"])
+        print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
         return
     print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
     print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files, document))

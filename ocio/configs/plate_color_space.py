@@ -31,7 +31,7 @@ class PlateColorSpace:
     lut_file : str
         The LUT from brightness to irradiance; its name is relative to the config's folder.
     aliases : tuple of str
-        Other names of the space.
+        Other names of the space. A config gets those that it does not use already.
     description : str
         What the response was estimated from.
     encoding : str
@@ -153,7 +153,7 @@ def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
     try:
         color_space = OCIO.ColorSpace(
             name=space.name,
-            aliases=list(space.aliases) if modern else [],
+            aliases=[alias for alias in space.aliases if modern and config.getColorSpace(alias) is None],
             family=FAMILY,
             encoding=space.encoding,
             description=space.description,

@@ -46,7 +46,7 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     Raises
     ------
     ConfigError
-        If two spaces share a name or an alias, or one takes a name of the config.
+        If two spaces share a name, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
     for primaries in ADDED_PRIMARIES:

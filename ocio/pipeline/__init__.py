@@ -6,6 +6,7 @@ folders    the folder that `crfnet estimate` writes: all checks first, then LUTs
 each       many photographs, one response each, with its files
 each_linear  many photographs as linear EXR
 batch      what both have in common: recorded as they end, continued when interrupted
+photographs  which photographs these are
 manifest   the file of these records
 workers    processes of this machine, or a Dask cluster
 calibrations  the folder that `crfnet calibrate` writes, and responses to compare with
@@ -17,7 +18,6 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 """
 
 from ocio.luts.exposure import anchored_exposure
-from ocio.pipeline.batch import find_photographs
 from ocio.pipeline.calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
 from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
 from ocio.pipeline.each import estimate_each, plan_each
@@ -32,6 +32,7 @@ from ocio.pipeline.estimates import (
 from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
 from ocio.pipeline.loading import load_camera_response, load_network, load_prior, model_label
 from ocio.pipeline.manifest import PhotographRecord, check_records
+from ocio.pipeline.photographs import find_photographs
 
 __all__ = [
     "CalibrationPlan",

@@ -10,14 +10,15 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from crfnet_core.errors import CRFNetError, PlateError, one_line
-from crfnet_core.image_io import PHOTOGRAPH_SUFFIXES
+from crfnet_core.errors import CRFNetError, PhotoError, PlateError, one_line
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress, show_progress
 from ocio.options import EstimateOptions, PlateOptions
+from ocio.output_files import check_targets, plain_stem
 from ocio.pipeline.loading import load_network, load_prior
 from ocio.pipeline.manifest import Manifest, PhotographRecord
+from ocio.pipeline.photographs import check_distinct, fault, is_folder
 from ocio.pipeline.workers import cores, worker_pool
 
 
@@ -57,32 +58,27 @@ class Task(ABC):
 AnyTask = TypeVar("AnyTask", bound=Task)
 
 
-def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
-    """Return photographs, and where their files go, relative to the output folder.
+def check_tasks(out: Path, tasks: Sequence[Task], *, shared: Sequence[Path] = ()) -> None:
+    """Check that the files of all tasks can be written, and no two photographs to the same; create nothing.
 
     Parameters
     ----------
-    names : sequence of Path
-        Files, and folders that are searched with all their subfolders for `PHOTOGRAPH_SUFFIXES`. What belongs to a
-        photograph in a subfolder goes into a subfolder of the same name.
+    out : Path
+        The folder to write to; it need not exist yet.
+    tasks : sequence of Task
+        At least one. Those that `run_tasks` will refuse write nothing.
+    shared : sequence of Path
+        Further files, of several photographs.
 
     Raises
     ------
     PlateError
-        If a folder holds no photograph.
+        See `check_distinct` and `ocio.output_files.check_targets`; existing files may be replaced.
     """
-    photographs: dict[Path, Path] = {}
-    for name in names:
-        if not name.is_dir():
-            photographs[name] = Path()
-            continue
-        found = sorted(path for path in name.rglob("*") if path.suffix.lower() in PHOTOGRAPH_SUFFIXES)
-        if not found:
-            raise PlateError(
-                f"{name}: the folder holds no photograph ({', '.join(PHOTOGRAPH_SUFFIXES)}); check the name"
-            )
-        photographs |= {path: path.parent.relative_to(name) for path in found}
-    return photographs
+    pairs = [(target, task.photo) for task in tasks if not fault(task.photo) for target in task.targets]
+    check_distinct(pairs, remedy="give them to two runs, each with its own --out")
+    photos = [task.photo for task in tasks]
+    check_targets(out, [target for target, _ in pairs], photos=photos, shared=shared, overwrite=True)
 
 
 def run_tasks(
@@ -114,23 +110,39 @@ def run_tasks(
     Raises
     ------
     CRFNetError
-        If the manifest is of other settings or a process dies; not if a photograph is bad.
+        If the manifest is of other settings or has files of these names for other photographs, or a process dies; not
+        if a photograph is bad.
     """
     settings = {name: str(value) if isinstance(value, Path) else value for name, value in tasks[0].settings.items()}
     manifest = Manifest(path, settings, overwrite=tasks[0].plates.overwrite)
+    _check_owners(tasks, manifest)
     todo = [task for task in tasks if not _is_done(task, manifest)]
     before = len(tasks) - len(todo)
     show_progress(progress, before, len(tasks))
     for done, record in enumerate(_records(todo, work, workers or cores(), scheduler), before + 1):
         manifest.add(record)
         show_progress(progress, done, len(tasks))
-    manifest.rewrite(dict.fromkeys([*(str(task.photo) for task in tasks), *manifest.records]))
+    earlier = [name for name, record in manifest.records.items() if not (record.error and is_folder(Path(name)))]
+    manifest.rewrite(dict.fromkeys([*(str(task.photo) for task in tasks), *earlier]))
     return manifest
 
 
 def network_and_prior(options: EstimateOptions) -> tuple[ResponseNetwork, Prior]:
     """Return the network, loaded once in a process, and the prior, whose file may change while a worker lives."""
     return _network(options), load_prior(options)
+
+
+def _check_owners(tasks: Sequence[Task], manifest: Manifest) -> None:
+    """Refuse to take the files of another photograph, which an earlier run has written, for those of a task."""
+    written = [(record.folder, Path(name)) for name, record in manifest.records.items() if not record.error]
+    owners = {(folder, plain_stem(photo).casefold()): photo for folder, photo in written}
+    for task in tasks:
+        owner = owners.get((task.folder.as_posix(), plain_stem(task.photo).casefold()), task.photo)
+        is_other = owner.absolute() != task.photo.absolute() and not fault(task.photo)
+        if is_other and any(path.exists() for path in task.targets):
+            raise PlateError(
+                f"{task.targets[0]}: belongs to {owner}; choose another folder for {task.photo}, or add --overwrite"
+            )
 
 
 @lru_cache(maxsize=1)
@@ -161,9 +173,11 @@ def _records(
 def _recorded(work: Callable[[AnyTask], PhotographRecord], task: AnyTask) -> PhotographRecord:
     """Return the record of a task; what goes wrong stands in it."""
     try:
+        if problem := fault(task.photo):
+            raise PhotoError(f"{task.photo}: {problem}")
         return work(task)
-    except (CRFNetError, OSError, MemoryError) as problem:
-        return PhotographRecord(photograph=str(task.photo), error=one_line(problem) or "not enough memory")
+    except (CRFNetError, OSError, MemoryError) as failure:
+        return PhotographRecord(photograph=str(task.photo), error=one_line(failure) or "not enough memory")
 
 
 def _is_done(task: Task, manifest: Manifest) -> bool:

@@ -11,16 +11,18 @@ from typing import Any
 from crfnet_core.errors import PlateError
 from crfnet_core.types import Progress
 from ocio.configs.files import write_config
+from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import ESTIMATES
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.batch import Task, network_and_prior, run_tasks
+from ocio.output_files import OutputFiles, output_folder
+from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_photographs
 from ocio.pipeline.folders import estimated_light, with_light, write_estimate
 from ocio.pipeline.loading import load_camera
 from ocio.pipeline.manifest import Manifest, PhotographRecord
+from ocio.pipeline.photographs import without_outputs
 from ocio.plates.linear_space import linear_space
 from ocio.staging import staged_files
 
@@ -69,7 +71,7 @@ def plan_each(
     out : Path
         The folder to write to; it need not exist yet.
     photographs : mapping of Path to Path
-        As `find_photographs` returns them.
+        As `find_photographs` returns them. Those in `out` itself are left out, if a folder around it was searched.
     options, plates, outputs
         See `EstimateTask`.
 
@@ -87,9 +89,9 @@ def plan_each(
             plates=plates,
             outputs=outputs,
         )
-        for photo, folder in photographs.items()
+        for photo, folder in without_outputs(photographs, out).items()
     )
-    check_outputs(out, [task.files for task in tasks], photos=photographs, overwrite=True)
+    check_tasks(out, tasks, shared=[task.files.config for task in tasks[:1]])
     return tasks
 
 
@@ -161,22 +163,24 @@ def _check_absent(paths: Iterable[Path]) -> None:
 
 
 def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
-    """Write a config into each folder, with the colour spaces of all its photographs that have an estimate."""
-    folders: dict[Path, list[PhotographRecord]] = {}
+    """Write a config into each folder, with the colour spaces of all its photographs whose LUT is there."""
+    folders: dict[Path, dict[Path, tuple[OutputFiles, PhotographRecord]]] = {}
     for record in manifest.records.values():
-        if not record.error:
-            folders.setdefault(out / record.folder, []).append(record)
-    for folder, records in folders.items():
-        photos = [Path(record.photograph) for record in records]
-        files = [OutputFiles.named(folder, [photo]) for photo in photos]
+        folder = out / record.folder
+        own = OutputFiles.named(folder, [Path(record.photograph)])
+        if not record.error and own.spi1d.exists():
+            folders.setdefault(folder, {}).setdefault(own.spi1d, (own, record))
+    for written in folders.values():
+        files = [own for own, _ in written.values()]
         if len(files) > MAX_COLOR_SPACES:
             files[0].config.unlink(missing_ok=True)
             continue
-        spaces = [
-            with_light(
-                own.plate_color_space(photo), record.exposure, record.plate, linear_space(record.plate, output_space)
-            )
-            for own, photo, record in zip(files, photos, records, strict=True)
-        ]
+        spaces = [_color_space(own, record, output_space) for own, record in written.values()]
         check = {files[0].color_space: read_lut(files[0].spi1d).channels[0]}  # they all are made alike
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
+
+
+def _color_space(files: OutputFiles, record: PhotographRecord, output_space: str) -> PlateColorSpace:
+    """Return the colour space of a photograph in the config of its folder."""
+    space = files.plate_color_space(Path(record.photograph))
+    return with_light(space, record.exposure, record.plate, linear_space(record.plate, output_space))

@@ -13,11 +13,12 @@ from ocio.defaults import PLATES
 from ocio.interchange.files import read_response
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import EstimateOptions, PlateOptions
-from ocio.output_files import check_targets, output_folder, plain_stem
-from ocio.pipeline.batch import Task, network_and_prior, run_tasks
+from ocio.output_files import output_folder, plain_stem
+from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_frames, response_lut
 from ocio.pipeline.loading import load_camera_response
 from ocio.pipeline.manifest import PhotographRecord
+from ocio.pipeline.photographs import without_outputs
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linearize_plates
 
@@ -58,7 +59,8 @@ def plan_each_linear(
     out : Path
         The folder to write to; it need not exist yet.
     photographs : mapping of Path to Path
-        As `ocio.pipeline.batch.find_photographs` returns them.
+        As `ocio.pipeline.photographs.find_photographs` returns them. Those in `out` itself are left out, if a folder
+        around it was searched.
     options, plates, lut
         See `LinearTask`.
 
@@ -76,9 +78,9 @@ def plan_each_linear(
             target=out / folder / f"{plain_stem(photo)}.exr",
             lut=lut,
         )
-        for photo, folder in photographs.items()
+        for photo, folder in without_outputs(photographs, out).items()
     )
-    check_targets(out, [task.target for task in tasks], photos=photographs, overwrite=True)
+    check_tasks(out, tasks)
     return tasks
 
 

@@ -22,6 +22,7 @@ from ocio.movies.library import is_movie
 from ocio.movies.selection import chosen_photos
 from ocio.options import EstimateOptions
 from ocio.pipeline.loading import load_camera
+from ocio.pipeline.photographs import each_once
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import FrameSequence, find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
@@ -72,6 +73,8 @@ class PhotographEstimate:
 def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> list[Path]:
     """Return the files to estimate one response from: of a sequence some frames, spread over it, and all else as it is.
 
+    A file that is given twice counts once.
+
     Parameters
     ----------
     names : sequence of Path
@@ -89,7 +92,7 @@ def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> lis
     for name in names:
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
         found += [name] if is_single or is_movie(name) else sample_frames(find_frames(name, frames))
-    return found
+    return each_once(found)
 
 
 def estimate_photographs(

@@ -19,6 +19,7 @@ from ocio.luts.forward import forward_lut
 from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
 from ocio.pipeline.estimates import PhotographEstimate, response_lut
+from ocio.pipeline.photographs import check_distinct
 from ocio.plates.light import PlateLight
 from ocio.plates.linear import linearize_plates
 from ocio.plates.linear_space import LinearSpace
@@ -41,12 +42,15 @@ class OutputPlan:
         How the linear plates are written; `overwrite` holds for every file.
     lut_length : int
         Entries of the LUTs.
+    left : tuple of Path
+        Files of an earlier run with other options that stay there, although they are not of this estimate.
     """
 
     files: OutputFiles
     space: PlateColorSpace
     plates: PlateOptions
     lut_length: int
+    left: tuple[Path, ...] = ()
 
 
 def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
@@ -66,15 +70,24 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     Raises
     ------
     PlateError
-        If a file cannot be written or would replace another, or a photograph: see `check_outputs`.
+        If a file cannot be written or would replace another, or a photograph (see `check_outputs`), or two photographs
+        would have one linear plate.
     ConfigError
         If the colour space cannot be in a config.
     """
     files = OutputFiles.planned(folder, photos, outputs)
+    check_distinct(zip(files.linear, photos, strict=False), remedy="add --no-linear")  # without linear plates, no pairs
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
-    return OutputPlan(files, space, plates, outputs.lut_length)
+    return OutputPlan(files, space, plates, outputs.lut_length, _left(files, photos))
+
+
+def _left(files: OutputFiles, photos: Sequence[Path]) -> tuple[Path, ...]:
+    """Return those files of an earlier run of the same name that this one does not write."""
+    every = OutputFiles.named(files.report.parent, photos, has_forward=True).own if files.report.exists() else ()
+    kept = {*files.own, *(photo.absolute() for photo in photos)}
+    return tuple(path for path in every if path.exists() and not kept & {path, path.absolute()})
 
 
 def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:

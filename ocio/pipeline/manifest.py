@@ -145,9 +145,9 @@ class Manifest:
 
     def _read(self) -> None:
         """Read the records of an earlier run; a last line that was cut short is left out."""
-        lines = self.path.read_text(encoding="utf-8").splitlines(keepends=True)
+        *lines, _ = self.path.read_bytes().split(b"\n")
         try:
-            entries = [json.loads(line) for line in lines if line.endswith("\n")]
+            entries = list(map(json.loads, lines))
             settings = entries[0]["settings"]
             records = [PhotographRecord(**{**entry, "weights": tuple(entry["weights"])}) for entry in entries[1:]]
         except (IndexError, KeyError, TypeError, ValueError) as problem:
@@ -174,5 +174,6 @@ def check_records(records: Sequence[PhotographRecord]) -> None:
 
 
 def _line(entry: Mapping[str, Any]) -> str:
-    """Return a JSON line."""
-    return json.dumps(entry, ensure_ascii=False) + "\n"
+    """Return a JSON line; what is no text in it, as in a file's name, is escaped as JSON has it."""
+    text = json.dumps(entry, ensure_ascii=False) + "\n"
+    return text.encode(errors="backslashreplace").decode()

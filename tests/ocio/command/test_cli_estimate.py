@@ -249,9 +249,17 @@ def test_a_refused_config_leaves_nothing(estimate, plate, tmp_path, monkeypatch)
 
 def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
     (tmp_path / "b").mkdir()
-    done = estimate(plate, shutil.copy(plate, tmp_path / "b"), "--each")
+    other = shutil.copy(plate, tmp_path / "b")
+    done = estimate(plate, other)
     assert done.code == BAD_INPUT
-    assert "two photographs would both be written as" in done.err
+    both = f"{plate} and {other} would both be written as plate_linear.exr"
+    assert f"{both}; rename one, or add --no-linear" in done.err
+
+
+def test_a_photograph_that_is_given_twice_counts_once(estimate, plate, monkeypatch):
+    monkeypatch.chdir(plate.parent)
+    done = estimate(plate, plate.name, plate, "--no-linear", "--json")
+    assert [photo["name"] for photo in json.loads(done.out)["estimates"][0]["photographs"]] == ["plate.jpg"]
 
 
 def test_says_how_to_get_the_sheet_without_matplotlib(crfnet, plate, fixed_model, tmp_path, monkeypatch):

@@ -114,7 +114,8 @@ def test_two_of_one_name_are_refused(linearize, photographs, tmp_path):
     shutil.copy(photographs / "a.jpg", photographs / "a.jpeg")
     done = linearize(photographs)
     assert done.code == BAD_INPUT
-    assert "two photographs would both be written as a.exr" in done.err
+    both = f"{photographs / 'a.jpeg'} and {photographs / 'a.jpg'} would both be written as a.exr"
+    assert f"{both}; rename one, or give them to two runs, each with its own --out" in done.err
     assert not (tmp_path / "out").exists()
 
 

@@ -120,9 +120,10 @@ def test_two_plates_of_one_name_are_refused():
         portable_config([SPACE, PlateColorSpace("crf PLATE01", "other.spi1d")])
 
 
-def test_two_plates_of_one_alias_are_refused():
-    with pytest.raises(ConfigError, match=r"CRF b: cannot be added to the config \(.*alias"):
-        portable_config([PlateColorSpace(f"CRF {name}", "a.spi1d", aliases=("same",)) for name in "ab"])
+def test_an_alias_that_is_taken_is_left_out():
+    spaces = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", aliases=("same",)) for name in "ab"]
+    config = portable_config([*spaces, PlateColorSpace("CRF c", "c.spi1d", aliases=("lin_rec709", "crf_c"))])
+    assert [list(config.getColorSpace(f"CRF {name}").getAliases()) for name in "abc"] == [["same"], [], ["crf_c"]]
 
 
 @pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear"])

@@ -1,0 +1,187 @@
+"""`crfnet estimate --each`: which photographs are found, and their names."""
+
+import json
+import os
+import shutil
+import sys
+from pathlib import Path
+
+import PyOpenColorIO as OCIO
+import pytest
+
+from ocio.arguments.parts import BAD_INPUT
+from ocio.configs.plate_color_space import FAMILY
+from ocio.defaults import ESTIMATES
+from tests.helpers.folders import listed, tree
+
+QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
+
+
+def records(tmp_path):
+    """The lines of the manifest after the settings."""
+    lines = (tmp_path / "out" / ESTIMATES).read_bytes().split(b"\n")
+    return list(map(json.loads, lines[1:-1]))
+
+
+def configured(config):
+    """The photographs in a config, by the names of their colour spaces."""
+    spaces = OCIO.Config.CreateFromFile(str(config)).getColorSpaces()
+    return [space.getName().removeprefix("CRF ") for space in spaces if space.getFamily() == FAMILY]
+
+
+def test_names_of_one_alias_are_two_photographs(estimate, photographs, tmp_path):
+    for name in ("a-b.jpg", "a_b.jpg", "a b.jpg"):
+        shutil.copy(photographs / "a.jpg", photographs / name)
+    done = estimate(photographs, *QUICK)
+    assert (done.code, done.err) == (0, "")
+    config = tmp_path / "out" / "config.ocio"
+    assert configured(config) == ["a b", "a-b", "a", "a_b", "b"]
+    assert OCIO.Config.CreateFromFile(str(config)).getColorSpace("crf_a_b").getName() == "CRF a_b"
+
+
+@pytest.mark.parametrize(
+    ("name", "said"),
+    [
+        ("a.jpeg", "a.jpeg and {folder}/a.jpg would both be written as a.spi1d; rename one, or give them to two runs"),
+        ("A.jpg", "A.jpg and {folder}/a.jpg would be written as A.spi1d and a.spi1d, one name on macOS and Windows"),
+    ],
+)
+def test_two_of_one_name_are_refused_before_any_estimate(estimate, photographs, tmp_path, name, said):
+    shutil.copy(photographs / "a.jpg", photographs / name)
+    if len(listed(photographs)) < 5:
+        pytest.skip("this file system takes A and a for one name")
+    done = estimate(photographs, *QUICK)
+    assert done.code == BAD_INPUT
+    assert said.format(folder=photographs) in done.err
+    assert done.err.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_photograph_that_is_given_twice_is_one(estimate, photographs, tmp_path, monkeypatch):
+    monkeypatch.chdir(photographs)
+    assert estimate("a.jpg", photographs / "a.jpg", "day 2/../a.jpg", *QUICK).code == 0
+    assert [record["photograph"] for record in records(tmp_path)] == ["a.jpg"]
+
+
+def test_files_of_another_photograph_stay(estimate, photographs, tmp_path):
+    """Of one name in another folder, and of an earlier run."""
+    assert estimate(photographs / "a.jpg", *QUICK).code == 0
+    before = tree(tmp_path / "out")
+    done = estimate(photographs / "day 2", *QUICK)
+    assert done.code == BAD_INPUT
+    assert f"a.spi1d: belongs to {photographs / 'a.jpg'}; choose another folder" in done.err
+    assert tree(tmp_path / "out") == before
+    assert estimate(photographs / "day 2", *QUICK, "--overwrite").code == 0
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
+def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
+    for name in (b"\xff.jpg", b"\xfe.jpg", b"a\xff.jpg"):
+        shutil.copy(photographs / "a.jpg", photographs / os.fsdecode(name))
+    for _ in range(2):
+        done = estimate(photographs, *QUICK)
+        assert done.code == BAD_INPUT
+        assert "3 of 6 photographs failed and the others are written; the first: " in done.err
+        assert "a?.jpg: the name is no valid Unicode; rename it" in done.err
+        assert done.err.count("\n") == 1
+        errors = {record["photograph"]: record["error"] for record in records(tmp_path)}
+        assert len(errors) == 6
+        said = f"{photographs}/?.jpg: the name is no valid Unicode; rename it"
+        assert errors[str(photographs / os.fsdecode(b"\xff.jpg"))] == said
+    assert configured(tmp_path / "out" / "config.ocio") == ["a", "b"]
+
+
+@pytest.mark.parametrize("separator", ["\u2028", "\u2029", "\x85"])
+def test_a_name_with_a_separator_of_lines_is_one_line(estimate, photographs, tmp_path, separator):
+    shutil.copy(photographs / "a.jpg", photographs / f"c{separator}d.jpg")
+    assert estimate(photographs, *QUICK).code == 0
+    before = tree(tmp_path / "out")
+    assert estimate(photographs, *QUICK).code == 0
+    assert tree(tmp_path / "out") == before
+
+
+def test_a_line_that_was_cut_within_a_character_is_left_out(estimate, photographs, tmp_path):
+    shutil.copy(photographs / "a.jpg", photographs / "\u5199.jpg")
+    assert estimate(photographs, *QUICK).code == 0
+    manifest = tmp_path / "out" / ESTIMATES
+    whole = manifest.read_bytes()
+    manifest.write_bytes(whole[: whole.rindex("\u5199".encode()) + 1])
+    assert estimate(photographs, *QUICK).code == 0
+    assert sorted(manifest.read_bytes().split(b"\n")) == sorted(whole.split(b"\n"))
+
+
+def test_files_that_are_gone_with_their_photographs_are_in_no_config(estimate, photographs, tmp_path):
+    assert estimate(photographs, *QUICK).code == 0
+    for folder in (photographs, tmp_path / "out"):
+        shutil.rmtree(folder / "day 2")
+    for path in (photographs / "b.JPG", *(tmp_path / "out").glob("b.*")):
+        path.unlink()
+    done = estimate(photographs, *QUICK)
+    assert (done.code, done.err) == (0, "")
+    assert configured(tmp_path / "out" / "config.ocio") == ["a"]
+    assert not (tmp_path / "out" / "day 2").exists()
+
+
+def test_the_output_folder_and_hidden_files_are_no_photographs(crfnet, fixed_model, photographs):
+    (photographs / "._a.jpg").write_bytes(b"what macOS keeps beside a file")
+    (photographs / ".thumbnails").mkdir()
+    shutil.copy(photographs / "a.jpg", photographs / ".thumbnails")
+    out = photographs / "look"
+    arguments = ("estimate", photographs, "--each", "--no-linear", "--workers", "1", "--model", fixed_model)
+    for _ in range(2):
+        done = crfnet(*arguments, "--out", out)
+        assert (done.code, done.err) == (0, "")
+        assert len((out / ESTIMATES).read_text().splitlines()) == 4
+    assert "a_sheet.png" in listed(out)
+
+
+def test_photographs_in_the_output_folder_itself_are_searched_and_sheets_are_not(crfnet, fixed_model, photographs):
+    shutil.copy(photographs / "a.jpg", photographs / "my_sheet.png")
+    arguments = ("estimate", photographs, "--out", photographs, "--model", fixed_model, "--each", "--workers", "1")
+    for _ in range(2):
+        done = crfnet(*arguments, "--no-linear")
+        assert (done.code, done.err) == (0, "")
+    lines = (photographs / ESTIMATES).read_text().splitlines()[1:]
+    names = [Path(json.loads(line)["photograph"]).name for line in lines]
+    assert names == ["a.jpg", "b.JPG", "a.jpg", "my_sheet.png"]
+
+
+def test_an_output_folder_with_all_the_photographs_is_refused(crfnet, fixed_model, photographs, tmp_path):
+    done = crfnet("estimate", tmp_path, "--out", photographs, "--model", fixed_model, *QUICK)
+    assert done.code == BAD_INPUT
+    assert "all photographs lie in the output folder; choose another one" in done.err
+
+
+@pytest.fixture
+def locked(monkeypatch):
+    """The names of folders that nobody may read."""
+    names, scandir = set(), os.scandir
+
+    def refuse(path="."):
+        if not isinstance(path, int) and Path(path).name in names:
+            raise PermissionError(13, "Permission denied", str(path))
+        return scandir(path)
+
+    monkeypatch.setattr(os, "scandir", refuse)
+    return names
+
+
+def test_a_subfolder_that_cannot_be_read_is_named_and_tried_again(estimate, photographs, tmp_path, locked):
+    locked.add("day 2")
+    shutil.copy(photographs / "a.jpg", photographs / "day 2.jpg")
+    done = estimate(photographs, *QUICK)
+    assert done.code == BAD_INPUT
+    said = f"{photographs / 'day 2'}: cannot be read (Permission denied); check its permissions"
+    assert f"1 of 4 photographs failed and the others are written; the first: {said}" in done.err
+    assert [record["error"] for record in records(tmp_path)] == ["", "", "", said]
+    locked.clear()
+    assert estimate(photographs, *QUICK).code == 0
+    assert [record["error"] for record in records(tmp_path)] == [""] * 4
+
+
+def test_a_folder_that_cannot_be_read_is_refused(estimate, photographs, tmp_path, locked):
+    locked.add("photographs")
+    done = estimate(photographs, *QUICK)
+    assert done.code == BAD_INPUT
+    assert f"{photographs}: cannot be read (Permission denied); check its permissions" in done.err
+    assert not (tmp_path / "out").exists()
