@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 import json
 import shutil
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -87,6 +87,23 @@ def backed_up(config: Path, record: InstallationRecord | None) -> str | None:
     name = next(name for name in names if not config.with_name(name).exists())
     shutil.copy2(config, config.with_name(name))
     return name
+
+
+def check_is_ours(folder: Path, record: InstallationRecord) -> None:
+    """Raise a ConfigError if a config's folder, which is to be removed, holds a file that was neither copied nor made.
+
+    Records of old versions do not name the copied files: all in the copied folders are taken for them.
+    """
+    ours = {CONFIG_NAME, *record.files, *files_in(folder, (FOLDER,) if record.files else (FOLDER, *record.folders))}
+    for name in files_in(folder, (".",)):
+        if name not in ours:
+            raise ConfigError(f"{folder / name}: came neither from us nor with the config; move it elsewhere first")
+
+
+def files_in(folder: Path, names: Iterable[str]) -> list[str]:
+    """Return all files in some folders of a folder, relative to it, with slashes; sorted."""
+    found = (path for name in names for path in (folder / name).rglob("*") if path.is_file())
+    return sorted(path.relative_to(folder).as_posix() for path in found)
 
 
 def digest(path: Path) -> str:

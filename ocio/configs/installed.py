@@ -7,7 +7,7 @@ not match the record was written by somebody else: it is copied to a backup befo
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -21,7 +21,9 @@ from ocio.configs.installation_record import (
     RECORD_NAME,
     InstallationRecord,
     backed_up,
+    check_is_ours,
     digest,
+    files_in,
     read_record,
     write_record,
 )
@@ -128,7 +130,7 @@ def install(
             backup = backed_up(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
-            files = record.files if record and not copied else tuple(_files_in(folder, copied))
+            files = record.files if record and not copied else tuple(files_in(folder, copied))
             write_record(
                 config, InstallationRecord(digest(config), backup, folders, {**plates, space.name: plate}, files)
             )
@@ -156,7 +158,7 @@ def restore(folder: Path) -> Restored:
     if config.exists() and digest(config) != record.sha256:
         raise ConfigError(f"{config}: was changed by another program since; edit or remove it yourself")
     if not record.backup:
-        _check_ours(folder, record)
+        check_is_ours(folder, record)
     try:
         if record.backup:
             (folder / record.backup).replace(config)
@@ -253,23 +255,6 @@ def free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: 
         if found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate:
             return candidate
     raise AssertionError("there are names without end")
-
-
-def _check_ours(folder: Path, record: InstallationRecord) -> None:
-    """Raise a ConfigError if a config's folder, which is to be removed, holds a file that was neither copied nor made.
-
-    Records of old versions do not name the copied files: all in the copied folders are taken for them.
-    """
-    ours = {CONFIG_NAME, *record.files, *_files_in(folder, (FOLDER,) if record.files else (FOLDER, *record.folders))}
-    for name in _files_in(folder, (".",)):
-        if name not in ours:
-            raise ConfigError(f"{folder / name}: came neither from us nor with the config; move it elsewhere first")
-
-
-def _files_in(folder: Path, names: Iterable[str]) -> list[str]:
-    """Return all files in some folders of a folder, relative to it, with slashes; sorted."""
-    found = (path for name in names for path in (folder / name).rglob("*") if path.is_file())
-    return sorted(path.relative_to(folder).as_posix() for path in found)
 
 
 def _remove_if_empty(folder: Path) -> bool:

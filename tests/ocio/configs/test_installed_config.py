@@ -1,18 +1,16 @@
 """A plate's colour space in the config that a program reads at its start, and the way back."""
 
 import json
-import re
 from dataclasses import replace
 
 import numpy as np
-import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet_core.errors import ConfigError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
 from ocio.configs.installation_record import FOLDER, RECORD_NAME
-from ocio.configs.installed import install, installed_color_spaces, missing_color_spaces, restore, uninstall
+from ocio.configs.installed import install, installed_color_spaces, restore, uninstall
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
@@ -25,23 +23,6 @@ PLATE = "/shot/plate.png"
 SPACE = PlateColorSpace("CRF plate", "plate.spi1d", file_pattern="plate.*")
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
 OTHER_LUT = inverse_response_lut(ResponseCurve.gamma(1.8))
-
-
-@pytest.fixture
-def base(tmp_path):
-    """The config that a program comes with, with a folder of LUTs."""
-    config = portable_config([])
-    config.addSearchPath("luts")
-    (tmp_path / "program" / "luts").mkdir(parents=True)
-    (tmp_path / "program" / "luts" / "film.spi1d").write_text("a LUT")
-    (tmp_path / "program" / CONFIG_NAME).write_text(config.serialize())
-    return tmp_path / "program" / CONFIG_NAME
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """The folder in which the program looks for the user's config; it does not exist yet."""
-    return tmp_path / "user"
 
 
 def irradiance(config, brightness, space="CRF plate"):
@@ -76,30 +57,6 @@ def test_restoring_leaves_no_folder(folder, base):
 
 def test_an_empty_folder_of_an_earlier_version_goes(folder):
     folder.mkdir()
-    assert restore(folder).is_removed
-    assert not folder.exists()
-
-
-@pytest.mark.parametrize("name", ["mine.txt", "luts/mine.cube"])
-def test_the_files_of_others_are_kept_and_named_before_anything_goes(folder, base, name):
-    """Blender takes a folder without a config for the user's, too, and runs without AgX."""
-    install(folder, base, SPACE, LUT, plate=PLATE)
-    (folder / name).write_text("mine")
-    before = tree(folder)
-    with pytest.raises(ConfigError, match=f"{re.escape(name)}: came neither from us nor with the config; move it"):
-        restore(folder)
-    assert tree(folder) == before
-    (folder / name).unlink()
-    assert restore(folder).is_removed
-    assert not folder.exists()
-
-
-def test_a_record_of_an_earlier_version_takes_all_in_the_copied_folders_for_copied(folder, base):
-    install(folder, base, SPACE, LUT, plate=PLATE)
-    record = folder / FOLDER / RECORD_NAME
-    record.write_text(
-        json.dumps({key: value for key, value in json.loads(record.read_text()).items() if key != "files"})
-    )
     assert restore(folder).is_removed
     assert not folder.exists()
 
@@ -252,21 +209,6 @@ def test_what_was_installed_is_listed_and_nothing_else(folder, base):
     install(folder, base, SPACE, LUT, plate=PLATE)
     install(folder, base, OTHER_SPACE, OTHER_LUT, plate="/shot/other.png")
     assert installed_color_spaces(folder) == ("CRF plate", "CRF other")
-
-
-def test_what_a_newer_version_of_the_program_adds_is_missing(folder, base, tmp_path):
-    install(folder, base, SPACE, LUT, plate=PLATE)
-    assert missing_color_spaces(folder, base) == ()
-    newer = loaded(base)
-    newer.addColorSpace(OCIO.ColorSpace(name="new in this version"))
-    (tmp_path / "newer.ocio").write_text(newer.serialize())
-    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ("new in this version",)
-    restore(folder)
-    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ()
-    folder.mkdir()
-    (folder / CONFIG_NAME).write_text(portable_config([]).serialize())  # the user's own
-    install(folder, base, SPACE, LUT, plate=PLATE)
-    assert missing_color_spaces(folder, tmp_path / "newer.ocio") == ()
 
 
 def test_one_color_space_is_taken_out_and_the_others_stay(folder, base, tolerance):
