@@ -11,6 +11,7 @@ from tqdm import tqdm
 
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
+from crfnet_core.metadata import FileMetadata
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import ResponseBank
@@ -95,7 +96,14 @@ def read_real_photo(photograph: RealPhotograph) -> Photo:
 
 def estimates(photos: Sequence[Photo], network: ResponseNetwork, bank: ResponseBank) -> list[ResponseEstimate]:
     """Return the estimates from photographs of one body, in the order of `ways_of`."""
-    return [estimate_response(photos, network=network, bank=bank, use_metadata=used) for used in (True, False)]
+    asked = ((photos, True), ([without_exif(photo) for photo in photos], True), (photos, False))
+    return [estimate_response(given, network=network, bank=bank, use_metadata=used) for given, used in asked]
+
+
+def without_exif(photo: Photo) -> Photo:
+    """Return the photograph as a web site sends it: its file says nothing but the size of the picture."""
+    height, width = photo.pixels.shape[:2]
+    return replace(photo, metadata=FileMetadata(width=width, height=height, file_format="WebP"))
 
 
 def bank_without_fold(photograph: RealPhotograph, data: Path) -> ResponseBank:

@@ -74,7 +74,7 @@ def unusual_section(reports: dict[str, UnusualReport], real: dict[str, RealRepor
 
 
 def _refused(report: RealReport, models: Sequence[str]) -> str:
-    """Return the table of refused photographs of P4, asked in both ways."""
+    """Return the table of refused photographs of P4, asked in all ways."""
     everything = report.everything or report.trusted
     rows = []
     for name in [way for model in models for way in ways_of(model)]:
