@@ -19,7 +19,7 @@ import numpy as np
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import LutError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array
 from ocio.interchange.response_file import ResponseFile, from_curve
@@ -38,6 +38,8 @@ HUGIN_BASIS = (
 )
 
 NAMES = ("Ra", "Rb", "Rc", "Rd", "Re")
+
+_IMAGE_LINE = re.compile(r"^i .*", re.MULTILINE)
 
 _PARAMETER = re.compile(r"(?<=\s)(R[a-e])(=?)(-?[0-9][0-9.]*(?:[eE][-+]?[0-9]+)?)(?=\s|$)")
 
@@ -91,7 +93,8 @@ def read_hugin(path: Path, *, curve: str = "") -> ResponseFile:
 def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> str:
     """Set the response of all images of an existing Hugin project, and return in words how well five parameters do.
 
-    The rest of the project stays as it is. An image whose parameters are linked to another's keeps the link.
+    The rest of the project stays as it is, byte for byte. An image whose parameters are linked to another's keeps the
+    link.
 
     Raises
     ------
@@ -111,11 +114,13 @@ def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> str:
     def changed(match: re.Match[str]) -> str:
         return match[0] if match[2] else f"{match[1]}{values[match[1]]:.9g}"
 
-    lines = []
-    for line in source.lines:
-        variables, quote, name = line.partition(' n"')
-        lines.append(_PARAMETER.sub(changed, variables) + quote + name if line.startswith("i ") else line)
-    atomic_write_text(path, "\n".join([*lines, ""]), overwrite=overwrite, error=LutError)
+    def changed_line(line: re.Match[str]) -> str:
+        variables, quote, name = line[0].partition(' n"')
+        return _PARAMETER.sub(changed, variables) + quote + name
+
+    text = path.read_bytes().decode("latin-1")  # names of images may be in any encoding: this one keeps every byte
+    with atomic_write(path, overwrite=overwrite, error=LutError) as temporary:
+        temporary.write_bytes(_IMAGE_LINE.sub(changed_line, text).encode("latin-1"))
     error = np.sqrt(np.mean((hugin_response(parameters) - brightness) ** 2))
     named = ", ".join(f"{name}={value:.4g}" for name, value in values.items())
     return f"{named}: off by {100 * error:.2g} % of the brightness range (RMS)"
@@ -130,14 +135,19 @@ def _image_parameters(source: LutText) -> list[tuple[float, ...]]:
     ]
     if not found or not all(image.keys() == set(NAMES) for image in found):
         raise source.error("has no images with Ra to Re; give a project of Hugin (.pto)")
+    by_number = {str(number): image for number, image in enumerate(found)}
     images = []
-    for image in found:
+    for number, image in enumerate(found):
         values = []
         for name in NAMES:
             link, text = image[name]
             if link:
-                link, text = found[int(float(text))][name] if float(text) < len(found) else ("=", "0")
-            values += source.numbers("" if link else text, None, count=1)
+                named = text
+                link, text = by_number.get(named, {}).get(name, ("=", ""))
+                if link:
+                    problem = f"image {number} takes {name} from image {named[:24]}, which has none of its own"
+                    raise source.error(f"{problem}; save the project again in Hugin")
+            values += source.numbers(text, None, count=1)
         images.append(tuple(values))
     return images
 

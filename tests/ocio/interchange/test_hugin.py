@@ -102,6 +102,29 @@ def test_nothing_but_the_response_is_changed(tmp_path, true_response):
     assert changed[0][1].endswith('n"a Ra1 b.jpg"')
 
 
+@pytest.mark.parametrize("end", [b"\n", b"\r\n"])
+def test_names_in_any_encoding_and_line_ends_stay_byte_for_byte(tmp_path, true_response, end):
+    path = project(tmp_path / "a.pto", PARAMETERS[0], name="K_che/IMG_1.jpg")
+    before = path.read_bytes().replace(b"K_che", b"K\xfc\x85che").replace(b"\n", end)
+    path.write_bytes(before)
+    write_response(path, inverse_response_lut(true_response), overwrite=True)
+    after = path.read_bytes()
+    old, new = (content.split(b"\n") for content in (before, after))
+    (place,) = [place for place, (was, now) in enumerate(zip(old, new, strict=True)) if was != now]
+    assert new[place].startswith(b"i w2048 h64")
+    assert old[place].partition(b' n"')[2] == new[place].partition(b' n"')[2]
+    assert after.count(b"\r") == before.count(b"\r")
+
+
+@pytest.mark.parametrize("link", ["=1.2.3", "=-1", "=7", "=1", "=1e0"])
+def test_a_link_that_leads_nowhere_is_one_clear_line(tmp_path, true_response, link):
+    path = project(tmp_path / "a.pto", PARAMETERS[1], (link, "=0", "=0", "=0", "=0"))
+    with pytest.raises(LutError, match=f"a.pto: image 1 takes Ra from image {link[1:]}, which has none of its own"):
+        read_response(path)
+    with pytest.raises(LutError, match="save the project again in Hugin"):
+        write_response(path, inverse_response_lut(true_response), overwrite=True)
+
+
 def test_different_images_need_a_choice(tmp_path):
     path = project(tmp_path / "a.pto", *PARAMETERS[:2])
     with pytest.raises(LutError, match="images 0 and 1 have different responses; choose with crfnet convert --curve 1"):
