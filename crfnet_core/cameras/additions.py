@@ -105,12 +105,12 @@ def add_measured(library: CameraLibrary, name: str, measured: MeasuredResponse, 
 
 
 def remove_photographs(library: CameraLibrary, name: str, photographs: Sequence[str]) -> Camera:
-    """Take photographs out of a camera by their file names, and return it.
+    """Take photographs out of a camera, named as `Camera.photograph` takes them, and return it.
 
     Raises
     ------
     CameraError
-        If the camera or a photograph is not there, or nothing would remain.
+        If the camera or a photograph is not there, several photographs have the name, or nothing would remain.
     """
     library.get(name)  # a wrong name makes no folder
     with library.locked():

@@ -163,9 +163,12 @@ def _measured_estimate(measured: MeasuredResponse) -> ResponseEstimate:
 def brightness_per_stop(curve: ResponseCurve) -> Float64Array:
     """Return by how much brightness rises with a stop more light, at the samples of a response, shape (1024,).
 
-    An error of some stops in the light is one of so many times this in brightness.
+    An error of some stops in the light is one of so many times this in brightness. The jump of a camera that clips
+    below the largest code is none: it stays at white.
     """
-    return np.asarray(np.log(2) * curve.irradiance * np.gradient(curve.brightness, curve.irradiance))
+    rise = np.gradient(curve.brightness, curve.irradiance)
+    rise[-2:] = np.minimum(rise[-2:], rise[-3])
+    return np.asarray(np.log(2) * curve.irradiance * rise)
 
 
 def _other_cameras(camera: Camera, own: ResponseEstimate) -> list[str]:

@@ -18,6 +18,9 @@ from crfnet_core.response import ResponseCurve
 #: Most characters of a camera's name.
 LONGEST_NAME = 100
 
+#: Characters of a photograph's SHA-256 that stand for it where file names do not tell photographs apart.
+KEY_LENGTH = 8
+
 
 @dataclass(frozen=True)
 class CameraSettings:
@@ -173,16 +176,43 @@ class Camera:
         return replace(self, measured=measured)
 
     def without(self, names: Collection[str]) -> Camera:
-        """Return the camera without the photographs of some file names.
+        """Return the camera without some photographs, named as `photograph` takes them.
 
         Raises
         ------
         CameraError
-            If there is no such photograph.
+            If there is no such photograph, or several have the name.
         """
-        if absent := [name for name in names if name not in {photograph.name for photograph in self.photographs}]:
-            raise CameraError(f"{self.name!r} has no photograph {absent[0]}; crfnet camera show lists them")
-        return replace(self, photographs=tuple(one for one in self.photographs if one.name not in names))
+        taken = {self.photograph(name).sha256 for name in names}
+        return replace(self, photographs=tuple(one for one in self.photographs if one.sha256 not in taken))
+
+    def photograph(self, name: str) -> KeptPhotograph:
+        """Return the photograph of a file name, or of the first `KEY_LENGTH` or more characters of its SHA-256.
+
+        Raises
+        ------
+        CameraError
+            If there is no such photograph, or several have the name.
+        """
+        found = [one for one in self.photographs if one.name == name]
+        if not found and len(name) >= KEY_LENGTH:
+            found = [one for one in self.photographs if one.sha256.startswith(name.lower())]
+        if not found:
+            raise CameraError(f"{self.name!r} has no photograph {name}; crfnet camera show lists them")
+        if len(found) > 1:
+            keys = ", ".join(self.key_of(one) for one in found)
+            raise CameraError(f"{self.name!r} has {len(found)} photographs {name}; name one by its SHA-256: {keys}")
+        return found[0]
+
+    def key_of(self, photograph: KeptPhotograph) -> str:
+        """Return what names one of the photographs: its file name, or where several have it, its SHA-256's beginning.
+
+        The beginning has `KEY_LENGTH` characters, and is the whole SHA-256 where that does not tell them apart.
+        """
+        if sum(one.name == photograph.name for one in self.photographs) == 1:
+            return photograph.name
+        key = photograph.sha256[:KEY_LENGTH]
+        return key if sum(one.sha256.startswith(key) for one in self.photographs) == 1 else photograph.sha256
 
     def check_same(self, settings: CameraSettings, what: str) -> None:
         """Refuse what another make or model took; a file that names none may be of any camera."""

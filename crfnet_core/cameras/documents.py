@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import asdict
 from pathlib import Path
 from typing import Any
@@ -29,7 +29,7 @@ LARGEST_NUMBER, LARGEST_DEVIATION = 1e9, 100.0
 
 
 def camera_document(camera: Camera) -> dict[str, Any]:
-    """Return a camera as plain lists, texts and numbers, ready for JSON; `read_camera` makes its equal of the file."""
+    """Return a camera as plain lists, texts and numbers, ready for JSON; `read_camera` gives one with the same."""
     measured = camera.measured
     document = {
         "kind": "camera",
@@ -63,7 +63,7 @@ def read_camera(path: Path) -> Camera:
             measured=_measured(measured) if measured else None,
             photographs=tuple(map(_photograph, document["photographs"])),
         )
-    except (CRFNetError, AttributeError, KeyError, TypeError, ValueError) as problem:
+    except (CRFNetError, AttributeError, KeyError, OverflowError, TypeError, ValueError) as problem:
         raise CameraError(f"{path}: is damaged ({one_line(problem)}); restore or remove it") from None
 
 
@@ -81,16 +81,16 @@ def read_calibration(path: Path) -> MeasuredResponse:
     try:
         frames, camera = document["frames"], document["camera"]
         used = [frame for frame in frames if frame["used"]]
-        iso = {round(frame["iso"]) for frame in used if frame["iso"]}
+        iso = _sensitivities({round(frame["iso"]) for frame in used if frame["iso"]})
         return MeasuredResponse(
             curve=ResponseCurve.from_samples(document["response"]["brightness"]),
             shape_stops=_deviation(document["shape_uncertainty_stops"]),
             scale_stops=_deviation(document["scale_uncertainty_stops"]),
             source=f"{len(used)} exposures",
-            settings=CameraSettings(camera["make"], camera["model"], camera["firmware"], tuple(sorted(iso))),
+            settings=CameraSettings(camera["make"], camera["model"], camera["firmware"], iso),
             warnings=tuple(map(str, document["warnings"])),
         )
-    except (CRFNetError, AttributeError, KeyError, TypeError, ValueError) as problem:
+    except (CRFNetError, AttributeError, KeyError, OverflowError, TypeError, ValueError) as problem:
         raise CameraError(f"{path}: is damaged ({one_line(problem)}); calibrate again") from None
 
 
@@ -174,7 +174,15 @@ def _photograph(entry: Mapping[str, Any]) -> KeptPhotograph:
 def _settings(entry: Mapping[str, Any]) -> CameraSettings:
     """Return the settings in a document."""
     make, model, software = (str(entry[name]) for name in ("make", "model", "software"))
-    return CameraSettings(make, model, software, tuple(map(int, entry["iso"])))
+    return CameraSettings(make, model, software, _sensitivities(entry["iso"]))
+
+
+def _sensitivities(values: Iterable[Any]) -> tuple[int, ...]:
+    """Return ISO sensitivities, sorted."""
+    iso = tuple(sorted(map(int, values)))
+    if iso and not 1 <= iso[0] <= iso[-1] < LARGEST_NUMBER:
+        raise ValueError(f"{iso[0] if iso[0] < 1 else iso[-1]:.3g} is no ISO sensitivity")
+    return iso
 
 
 def _numbers(values: Any, *shape: int) -> Float64Array:

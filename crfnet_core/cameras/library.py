@@ -136,6 +136,8 @@ class CameraLibrary:
 
     def _absent(self, name: str) -> CameraError:
         """Return the error of a camera that is not there, with what is wrong with the library's files."""
+        if self.folder != SHIPPED and CameraLibrary.shipped().find(name):
+            return CameraError(f"{name!r} is a measured camera that comes with crfnet; it cannot be changed or removed")
         damaged = "".join(f"; {problem}" for problem in self.problems())
         return CameraError(f"no camera {name!r} in {self.folder}; crfnet camera list shows them{damaged}")
 

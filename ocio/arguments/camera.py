@@ -7,11 +7,11 @@ from pathlib import Path
 from ocio.arguments.parts import Commands, Parser, add_action, add_command, add_model
 
 EXAMPLES = """examples:
-  crfnet camera add "A7 III" IMG_1.jpg IMG_2.jpg               later with more: each makes the answer better
+  crfnet camera add "A7 III" IMG_1.jpg IMG_2.jpg               one response for all plates; more may be added later
   crfnet camera add "A7 III" --from-calibration camera/a7.json    its measured response, from crfnet calibrate
   crfnet camera list
   crfnet camera show "A7 III"                                  how good the response is, and what disagrees with it
-  crfnet camera remove "A7 III" IMG_2.jpg
+  crfnet camera remove "A7 III" IMG_2.jpg                      or its SHA-256, where two have one name
   crfnet camera export "A7 III" a7.spi1d                       or another format of crfnet convert, or .json
   crfnet estimate plate.jpg --camera "A7 III" --out look
 
@@ -30,7 +30,7 @@ def add(commands: Commands) -> None:
     add_model(shown)
     removal = add_action(actions, "remove", "remove a camera, or photographs of it")
     removal.add_argument("name", metavar="NAME", help="the camera")
-    removal.add_argument("photos", nargs="*", metavar="PHOTO", help="only these photographs, by their file names")
+    removal.add_argument("photos", nargs="*", metavar="PHOTO", help="only these photographs, by file name or SHA-256")
     _add_export(actions)
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from crfnet_core.cameras import Camera
+from crfnet_core.cameras import Camera, KeptPhotograph
 from crfnet_core.response_estimate import CameraAnswer
 from ocio.report.facts import agreement
 
@@ -77,15 +77,21 @@ def photograph_lines(camera: Camera, found: Mapping[str, CameraAnswer], *, model
         if photograph.model != model:
             words = f"read by {photograph.model}, so it does not count; add it again"
         iso = f", ISO {photograph.settings.iso[0]}" if photograph.settings.iso else ""
-        lines.append(f"  {photograph.name}{iso}: {words}")
+        lines.append(f"  {_label(camera, photograph)}{iso}: {words}")
     return lines
 
 
 def disagreement_lines(camera: Camera, found: Mapping[str, CameraAnswer]) -> list[str]:
     """Return a warning for each photograph that disagrees with the others or with the measurement."""
     return [
-        f"Warning: {photograph.name} disagrees; was its picture mode another one? To take it out:"
-        f" crfnet camera remove {shlex.quote(camera.name)} {shlex.quote(photograph.name)}"
+        f"Warning: {_label(camera, photograph)} disagrees; was its picture mode another one? To take it out:"
+        f" crfnet camera remove {shlex.quote(camera.name)} {shlex.quote(camera.key_of(photograph))}"
         for photograph in camera.photographs
         if (answer := found.get(photograph.sha256)) and not answer.agrees
     ]
+
+
+def _label(camera: Camera, photograph: KeptPhotograph) -> str:
+    """Return a photograph's file name, with the beginning of its SHA-256 where several have that name."""
+    key = camera.key_of(photograph)
+    return photograph.name if key == photograph.name else f"{photograph.name} (SHA-256 {key})"

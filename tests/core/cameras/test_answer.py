@@ -22,12 +22,14 @@ from crfnet_core.cameras import (
     with_camera,
 )
 from crfnet_core.cameras.answer import brightness_per_stop
+from crfnet_core.cameras.camera import KEY_LENGTH, file_sha256
 from crfnet_core.errors import CameraError, CRFNetError, PhotoError
 from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior import Prior, Verdict
 from tests.helpers.cameras import photograph
-from tests.helpers.images import read_image, write_image
+from tests.helpers.footage import log_picture
+from tests.helpers.images import write_image
 
 
 @pytest.fixture(scope="module")
@@ -121,9 +123,9 @@ def test_one_bad_photograph_adds_none(library, network, photos, tmp_path, plate)
     assert library.cameras() == []
 
 
-def test_log_footage_is_not_kept(library, network, plate, tmp_path):
-    flat = (64 + read_image(plate) * 0.45).astype(np.uint8)
-    path = write_image(tmp_path / "log.png", flat)
+def test_log_footage_is_not_kept(library, network, tmp_path):
+    footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
+    path = write_image(tmp_path / "log.png", footage)
     assert estimate_response(read_photo(path), network=network).recognition is not None
     with pytest.raises(PhotoError, match="a camera is known by photographs as it wrote them"):
         add_photographs(library, "a", [path], network=network)
@@ -137,6 +139,23 @@ def test_photographs_are_taken_out_but_never_all(library, network, photos):
     with pytest.raises(CameraError, match="nothing would be left"):
         remove_photographs(library, "a", ["2.jpg"])
     assert len(library.get("a").photographs) == 1
+
+
+def test_photographs_of_one_file_name_are_taken_out_one_by_one(library, network, photos, tmp_path):
+    (tmp_path / "day 2").mkdir()
+    namesake = tmp_path / "day 2" / "0.jpg"
+    namesake.write_bytes(photos[1].read_bytes())
+    camera = add_photographs(library, "a", [photos[0], namesake, photos[2]], network=network).camera
+    keys = [file_sha256(photos[0])[:KEY_LENGTH], file_sha256(namesake)[:KEY_LENGTH], "2.jpg"]
+    assert [camera.key_of(one) for one in camera.photographs] == keys
+    with pytest.raises(CameraError, match=f"has 2 photographs 0.jpg; name one by its SHA-256: {keys[0]}, {keys[1]}"):
+        remove_photographs(library, "a", ["0.jpg"])
+    assert len(library.get("a").photographs) == 3
+    with pytest.raises(CameraError, match="has no photograph"):
+        remove_photographs(library, "a", [keys[1][:-1]])
+    left = remove_photographs(library, "a", [keys[1].upper()])
+    assert [one.sha256 for one in left.photographs] == [camera.photographs[n].sha256 for n in (0, 2)]
+    assert [one.name for one in remove_photographs(library, "a", ["0.jpg"]).photographs] == ["2.jpg"]
 
 
 def test_a_measured_response_is_the_answer_and_photographs_are_compared_with_it(library, network, photos):
@@ -192,9 +211,9 @@ def test_a_photograph_of_another_camera_is_warned_of(network, photos, true_respo
     assert "the photograph is of SONY ILCE-7M3, but 'a' is NIKON D90" in answer.warnings
 
 
-def test_what_is_no_photograph_of_a_camera_stays_untrusted(network, true_response, plate, tmp_path):
-    flat = (64 + read_image(plate) * 0.45).astype(np.uint8)
-    own = estimate_response(read_photo(write_image(tmp_path / "log.png", flat)), network=network)
+def test_what_is_no_photograph_of_a_camera_stays_untrusted(network, true_response, tmp_path):
+    footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
+    own = estimate_response(read_photo(write_image(tmp_path / "log.png", footage)), network=network)
     answer = with_camera(own, Camera("a", measured(true_response)))
     assert answer.verdict is Verdict.DO_NOT_TRUST
     assert answer.recognition == own.recognition

@@ -9,7 +9,7 @@ import pytest
 from crfnet_core import ResponseCurve
 from crfnet_core.cameras import Camera, CameraLibrary, CameraSettings, MeasuredResponse, add_measured, find_camera
 from crfnet_core.cameras import library as library_module
-from crfnet_core.cameras.documents import camera_document
+from crfnet_core.cameras.documents import camera_document, read_calibration
 from crfnet_core.errors import CameraError
 
 
@@ -104,7 +104,17 @@ def test_a_damaged_file_hides_no_other_camera(library, content):
 
 @pytest.mark.parametrize(
     ("name", "value"),
-    [("brightness", [0, 1]), ("brightness", None), ("shape_stops", -1), ("scale_stops", "NaN"), ("iso", ["x"])],
+    [
+        ("brightness", [0, 1]),
+        ("brightness", None),
+        ("brightness", [0, 10**400]),
+        ("shape_stops", -1),
+        ("shape_stops", 10**400),
+        ("scale_stops", "NaN"),
+        ("iso", ["x"]),
+        ("iso", [0]),
+        ("iso", [100, 10**400]),
+    ],
 )
 def test_numbers_that_describe_no_response_are_found_out(library, name, value):
     add_measured(library, "a", measured())
@@ -114,6 +124,33 @@ def test_numbers_that_describe_no_response_are_found_out(library, name, value):
     path.write_text(json.dumps(document), encoding="utf-8")
     assert library.cameras() == []
     assert "is damaged" in library.problems()[0]
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"shape_uncertainty_stops": 10**400},
+        {"response": {"brightness": [0, 10**400]}},
+        {"frames": [{"used": True, "iso": 10**400}]},
+        {"frames": [{"used": True, "iso": 0.3}]},
+    ],
+)
+def test_numbers_of_a_calibration_that_cannot_be_are_one_clear_line(tmp_path, change):
+    document = {
+        "kind": "calibration",
+        "frames": [{"used": True, "iso": 100}],
+        "camera": {"make": "SONY", "model": "ILCE-7M3", "firmware": ""},
+        "response": {"brightness": ResponseCurve.gamma().brightness.tolist()},
+        "shape_uncertainty_stops": 0.05,
+        "scale_uncertainty_stops": 0.1,
+        "warnings": [],
+    }
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(document), encoding="utf-8")
+    assert read_calibration(path).settings.iso == (100,)
+    path.write_text(json.dumps(document | change), encoding="utf-8")
+    with pytest.raises(CameraError, match=r"a\.json: is damaged \(.*\); calibrate again"):
+        read_calibration(path)
 
 
 def test_a_file_of_any_name_is_a_camera_of_the_library(library, tmp_path):

@@ -7,6 +7,7 @@ import pytest
 
 from crfnet_core import ResponseCurve
 from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
+from crfnet_core.cameras.camera import file_sha256
 from crfnet_core.metrics import estimation_error
 from ocio.arguments.parts import BAD_INPUT
 from ocio.luts.files import read_lut
@@ -107,6 +108,30 @@ def test_a_photograph_that_disagrees_is_reported_with_what_to_do(run, measured, 
     out = run("camera", "add", "flat", photos[0])
     assert "Warning: IMG_0.jpg disagrees" in out
     assert "crfnet camera remove flat IMG_0.jpg" in out
+
+
+def test_the_command_that_is_reported_takes_out_one_of_two_namesakes(run, photos, tmp_path, library):
+    add_measured(library, "flat", MeasuredResponse(ResponseCurve.gamma(4), 0.05, 0.05, "6 exposures", CameraSettings()))
+    (tmp_path / "day 2").mkdir()
+    namesake = photos[1].rename(tmp_path / "day 2" / photos[0].name)
+    out = run("camera", "add", "flat", photos[0], namesake)
+    key = file_sha256(namesake)[:8]
+    assert f"Warning: IMG_0.jpg (SHA-256 {key}) disagrees" in out
+    assert f"  IMG_0.jpg (SHA-256 {key}), ISO 100: " in out
+    assert f": crfnet camera remove flat {key}\n" in out
+    run("camera", "remove", "flat", key)
+    (left,) = library.get("flat").photographs
+    assert left.sha256 == file_sha256(photos[0])
+
+
+def test_a_camera_that_comes_with_crfnet_cannot_be_removed(crfnet):
+    for photographs in ([], ["IMG_0.jpg"]):
+        done = crfnet("camera", "remove", "Canon EOS 20D", *photographs)
+        assert (done.code, done.err) == (
+            BAD_INPUT,
+            "crfnet: error: 'Canon EOS 20D' is a measured camera that comes with crfnet; it cannot be changed or"
+            " removed\n",
+        )
 
 
 def test_an_estimate_uses_a_camera_that_is_asked_for(run, measured, photos, tmp_path):
