@@ -50,7 +50,9 @@ class Coding:
     assumptions: tuple[str, ...] = ()
 
     @classmethod
-    def of(cls, *, matrix: int, color_range: int, is_rgb: bool, is_jpeg: bool, lines: int) -> Coding | None:
+    def of(
+        cls, *, matrix: int, color_range: int, is_rgb: bool, is_gray: bool, is_jpeg: bool, lines: int
+    ) -> Coding | None:
         """Return the coding that tags describe; None if the matrix is none of `MATRICES`.
 
         Parameters
@@ -61,6 +63,8 @@ class Coding:
             AVColorRange: 0 for a stream that does not say, 1 for limited, 2 for full.
         is_rgb : bool
             Whether the decoder gives RGB.
+        is_gray : bool
+            Whether it gives gray, which has no matrix; it is taken for full range unless tagged, as FFmpeg takes it.
         is_jpeg : bool
             Whether the stream is made of JPEG pictures.
         lines : int
@@ -68,6 +72,9 @@ class Coding:
         """
         if is_rgb:
             return cls("RGB", 0.0, 0.0, True, False)
+        if is_gray:
+            untold = ("does not say its range: full taken, as it is gray",) if color_range == 0 and not is_jpeg else ()
+            return cls("RGB", 0.0, 0.0, color_range in (0, FULL_RANGE), False, untold)
         assumptions = []
         if matrix in (UNSPECIFIED, RGB):
             matrix = 5 if is_jpeg or lines < HD_LINES else 1

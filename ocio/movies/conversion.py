@@ -87,24 +87,27 @@ def upright(pixels: NDArray[Any], turn: tuple[int, int, int, int]) -> NDArray[An
 def _planes(frame: VideoFrame) -> list[NDArray[Any]]:
     """Return the samples of each component: Y, Cb, Cr or R, G, B, and alpha, or gray alone; chroma as stored."""
     components = frame.format.components
-    if len({component.plane for component in components}) < len(components) or frame.format.has_palette:
+    is_packed = len({component.plane for component in components}) < len(components)
+    if is_packed and len(components) == 2:  # gray and alpha by turns, which FFmpeg's scaler would convert
+        return [_plane(frame, 0, components[0].bits, first=first, step=2) for first in range(2)]
+    if is_packed or frame.format.has_palette:
         frame = _separated(frame)
         components = frame.format.components
     return [_plane(frame, component.plane, component.bits) for component in components]
 
 
-def _plane(frame: VideoFrame, index: int, bits: int) -> NDArray[Any]:
-    """Return a plane without the padding at the end of its lines."""
+def _plane(frame: VideoFrame, index: int, bits: int, *, first: int = 0, step: int = 1) -> NDArray[Any]:
+    """Return every `step`-th sample of a plane's lines, without the padding at their ends."""
     plane: Any = frame.planes[index]
     sample = np.dtype(np.uint8 if bits == 8 else ">u2" if frame.format.is_big_endian else "<u2")
     lines: NDArray[Any] = np.frombuffer(plane, sample).reshape(plane.height, plane.line_size // sample.itemsize)
-    return lines[:, : plane.width]
+    return lines[:, first : step * plane.width : step]
 
 
 def _separated(frame: VideoFrame) -> VideoFrame:
     """Return a frame with a plane for each component, its codes unchanged."""
     form, bits = frame.format, bit_depth(frame)
-    has_alpha, suffix = len(form.components) in (2, 4), "" if bits == 8 else f"{bits}le"
+    has_alpha, suffix = len(form.components) == 4, "" if bits == 8 else f"{bits}le"
     if form.is_rgb or form.has_palette:
         name = f"gbr{'a' if has_alpha or form.has_palette else ''}p{suffix}"
     else:

@@ -174,6 +174,7 @@ def _coding(path: Path, frame: VideoFrame, codec: str) -> Coding:
         matrix=frame.colorspace,
         color_range=frame.color_range,
         is_rgb=is_rgb,
+        is_gray=not is_rgb and len(form.components) < 3,
         is_jpeg=codec in JPEG_CODECS,
         lines=frame.height,
     )

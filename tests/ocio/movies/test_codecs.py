@@ -110,6 +110,35 @@ def test_gray_becomes_rgb(tmp_path):
     assert next(frames.photos([1]))[1].is_gray
 
 
+def gray_movie(path, form, color_range):
+    """A movie of one frame with a ramp of all 256 gray codes, encoded by PyAV without loss."""
+    frame = av.VideoFrame(256, 16, form)
+    plane, samples = frame.planes[0], 2 if form == "ya8" else 1
+    lines = np.full((plane.height, plane.line_size), 200, np.uint8)
+    lines[:, : 256 * samples : samples] = np.arange(256)
+    plane.update(lines.tobytes())
+    frame.color_range = color_range
+    with av.open(str(path), "w") as container:
+        stream = container.add_stream("ffv1", rate=24)
+        stream.width, stream.height, stream.pix_fmt = 256, 16, form
+        stream.codec_context.color_range = color_range
+        container.mux([*stream.encode(frame), *stream.encode()])
+    return MovieFrames.find(path)
+
+
+@pytest.mark.parametrize("form", ["gray", "ya8"])
+@pytest.mark.parametrize(("color_range", "is_full"), [(0, True), (1, False), (2, True)])
+def test_gray_has_full_range_unless_it_is_tagged(tmp_path, form, color_range, is_full):
+    frames = gray_movie(tmp_path / "a.mkv", form, color_range)
+    codes = np.arange(256.0)
+    expected = codes if is_full else np.clip((codes - 16) * 255 / 219, 0, 255)
+    np.testing.assert_allclose(read_codes(frames)[0, 0], np.repeat(expected[:, None], 3, axis=1), atol=0.01)
+    said = str(frames.movie)
+    assert f"; RGB, {'full' if is_full else 'limited'} range" in said
+    assert ("the stream does not say its range: full taken, as it is gray" in said) == (color_range == 0)
+    assert "matrix" not in said
+
+
 def test_other_matrices_are_refused(tmp_path):
     path = make_movie(tmp_path / "a.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv444p -colorspace ycgco")
     with pytest.raises(PlateError, match=r"a\.mp4: cannot be decoded \(pixels of yuv444p, matrix 8 of H\.273\)"):
