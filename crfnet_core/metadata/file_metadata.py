@@ -104,7 +104,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     profile = _text(header, "ICCProfile:profile_description")
-    dpx = dpx_transfer(_text(header, "dpx:Transfer"), _text(header, "Software"))
+    dpx = dpx_transfer(_text(header, "dpx:Transfer"))
     return FileMetadata(
         width=header.width,
         height=header.height,

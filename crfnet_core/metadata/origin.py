@@ -64,6 +64,9 @@ class Encoding(StrEnum):
 #: Formats of files that hold no still photographs -> what their values are.
 FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
 
+#: Transfer characteristics of DPX that say nothing of the values.
+_UNSPECIFIC_TRANSFERS = ("", "Undefined", "User defined")
+
 #: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
 _ENCODINGS = (
     (Encoding.LINEAR, r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|g10\b|gamma ?1\.0\b"),
@@ -281,4 +284,7 @@ def _encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
     """Return what the file says of its code values, if it says anything."""
     if encoding == Encoding.MOVIE:
         return ["a frame of a movie"]
-    return [f"its values are {encoding}: so says its {metadata.profile or metadata.file_format}"] if encoding else []
+    if encoding == Encoding.FOOTAGE and metadata.profile in _UNSPECIFIC_TRANSFERS:
+        return [f"{metadata.file_format} files hold {encoding}"]
+    name = "transfer tag" if metadata.file_format in FOOTAGE else "profile"
+    return [f'its values are {encoding}: so says its {name} "{metadata.profile}"'] if encoding else []

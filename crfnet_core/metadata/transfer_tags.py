@@ -34,8 +34,8 @@ PROFILE_TRANSFERS = (
     (r"\bhlg\b|\bhybrid log", "HLG"),
 )
 
-#: libavcodec writes "Linear" into every DPX, whatever the frame is: there the tag says nothing.
-_LIBAVCODEC = "Lavc"
+#: ffmpeg writes this into every DPX, and Blender into every one that it does not write as log, whatever the frame is.
+_MEANINGLESS_DPX_TRANSFER = "Linear"
 
 
 def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
@@ -59,6 +59,6 @@ def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
     return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
 
 
-def dpx_transfer(value: str, software: str) -> str:
-    """Return the transfer characteristic of a DPX file; empty where the program that wrote it always says "Linear"."""
-    return "" if value == "Linear" and software.startswith(_LIBAVCODEC) else value
+def dpx_transfer(value: str) -> str:
+    """Return the transfer characteristic of a DPX file; empty if it is one that programs write into any file."""
+    return "" if value == _MEANINGLESS_DPX_TRANSFER else value

@@ -157,7 +157,19 @@ def test_encoding_by_profile(profile, file_format, encoding):
         ),
         (
             {"profile": "V-Log", "file_format": "PNG"},
-            ("the file names no camera", "its values are log: so says its V-Log"),
+            ("the file names no camera", 'its values are log: so says its profile "V-Log"'),
+        ),
+        (
+            {"profile": "ITU-R 709-4", "file_format": "DPX"},
+            ("the file names no camera", 'its values are film or video: so says its transfer tag "ITU-R 709-4"'),
+        ),
+        (
+            {"profile": "Logarithmic", "file_format": "DPX"},
+            ("the file names no camera", 'its values are log: so says its transfer tag "Logarithmic"'),
+        ),
+        *(
+            ({"profile": said, "file_format": "DPX"}, ("the file names no camera", "DPX files hold film or video"))
+            for said in ("", "Undefined", "User defined")
         ),
     ],
 )

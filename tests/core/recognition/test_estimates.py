@@ -8,6 +8,8 @@ import pytest
 
 from crfnet_core import Photo, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
+from crfnet_core.metadata import file_origin
+from crfnet_core.metadata.origin import Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.recognition import Kind
 from tests.helpers.footage import log_picture, ordinary_picture, quantized
@@ -72,9 +74,8 @@ def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored
     assert estimate_response(photo, network=network, use_metadata=False).photos == (name,)
 
 
-def test_the_linear_that_ffmpeg_writes_into_every_dpx_is_not_believed(tmp_path):
+def test_the_linear_that_programs_write_into_every_dpx_is_not_believed(tmp_path):
     codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
-    tags = {"dpx__Transfer": "Linear"}
-    ffmpeg = read_photo(write_image(tmp_path / "a.dpx", codes, Software="Lavc61.3.100", **tags))
-    other = read_photo(write_image(tmp_path / "b.dpx", codes, Software="Nuke", **tags))
-    assert (ffmpeg.metadata.profile, other.metadata.profile) == ("", "Linear")
+    photo = read_photo(write_image(tmp_path / "a.dpx", codes, dpx__Transfer="Linear"))
+    assert (photo.metadata.profile, photo.metadata.color.transfer) == ("", "")
+    assert file_origin(photo.metadata).encoding is Encoding.FOOTAGE
