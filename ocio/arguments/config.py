@@ -9,7 +9,7 @@ from ocio.arguments.parts import Commands, Parser, add_action, add_command
 
 EXAMPLES = """examples:
   crfnet config add --base /studio/config.ocio look                       into that config; a backup is kept
-  crfnet config add --base ocio://studio-config-latest --out show.ocio look --view
+  crfnet config add --base ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4 --out show.ocio look --view
   crfnet config add --base '$OCIO' --out show.ocio look/plate01.spi1d --rule 'shot010/*/IMG_0001.JPG'
   crfnet config list show.ocio
   crfnet config remove show.ocio "CRF plate01"

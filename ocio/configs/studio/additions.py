@@ -86,7 +86,7 @@ def add_looks(source: ConfigSource, target: Path | None, looks: Sequence[Look], 
         the result or converts otherwise than the LUTs, which is checked in ACES2065-1, too. Nothing changes then.
     """
     target = checked_target(source, target)
-    record = read_record(target) if target == source.path else None
+    record = read_record(source.path) if source.path else None
     identities = dict(record.plates) if record else {}
     config, notes, luts = _moved(source, target), list[str](), dict[str, Lut1D]()
     primaries = dict[str, Primaries]()

@@ -67,6 +67,19 @@ class TestAddingInPlace:
             "show_camera_response",
         ]
 
+    def test_a_plate_that_the_base_holds_already_is_replaced_in_a_new_config(self, studio, small_look, tmp_path):
+        add(studio, small_look)
+        (tmp_path / "new").mkdir()
+        done = add(studio, small_look, tmp_path / "new" / "show.ocio")
+        found = loaded(done.config)
+        assert [plate.name for plate in plates_in_config(found)] == [NAME]
+        assert plates_in_config(found)[0].lut_file.startswith("show_camera_response/")
+        assert space_of(found, "plate01.jpg") == NAME
+        before = tree(tmp_path)
+        assert not add(studio, small_look, done.config).is_changed
+        assert not add(done.config, small_look).is_changed
+        assert tree(tmp_path) == before
+
     def test_the_same_again_changes_no_byte(self, studio, small_look):
         add(studio, small_look, has_views=True)
         before = tree(studio.parent)
