@@ -14,9 +14,9 @@ from crfnet_core.types import Float64Array
 #: this brightness, so 2 of 94 may (rule of succession), and all log footage that is stored as its maker says.
 LIFTED_BLACK, BLACK_FACTOR = 0.078, 94 / 2
 
-#: Highest black, and smallest distance from it to white, that log footage has: 178 of 180 simulated frames have a lower
-#: one, and all have a larger one. What lies higher is haze or sky, what spans less a wall or a gray card.
-HIGHEST_BLACK, LEAST_SPAN = 0.23, 0.4
+#: Highest black, and smallest distance from it to white, that log footage has: all of 180 simulated frames have a lower
+#: and a larger one. What lies higher is haze or sky, what spans less a wall or a gray card.
+HIGHEST_BLACK, LEAST_SPAN = 0.28, 0.4
 
 #: A sensor is full before its log curve ends: 89 % of simulated log footage has its white below this brightness, and
 #: 20 % of 92 real photographs.
