@@ -211,7 +211,7 @@ class ResponseEstimate:
             )
         except KeyError as problem:
             raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
-        except (AttributeError, TypeError, ValueError) as problem:
+        except (AttributeError, OverflowError, TypeError, ValueError) as problem:
             raise EstimateError(f"the document of an estimate is damaged ({one_line(problem)})") from None
 
 

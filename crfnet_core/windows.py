@@ -107,8 +107,11 @@ def select_windows(
     Raises
     ------
     PhotoError
-        If the photograph is smaller than a window.
+        If the photograph is smaller than a window, with `step` pixels between its samples, or `count` or `step` is less
+        than 1.
     """
+    if count < 1:
+        raise PhotoError(f"{count} windows cannot be analysed; ask for at least 1, usually {WINDOWS_PER_PHOTOGRAPH}")
     height, width = pixels.shape[:2]
     if min(height, width) < WINDOW_SIZE:
         raise PhotoError(
@@ -116,6 +119,9 @@ def select_windows(
             " give the original, never one scaled up"
         )
     step = sampling_step(height, width) if step is None else step
+    if step < 1 or Window(0, 0, step, 0).extent > min(height, width):
+        most = (min(height, width) - 1) // (WINDOW_SIZE - 1)
+        raise PhotoError(f"a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}")
     chosen: list[Window] = []
     others: list[Window] = []
     for x, y in _positions(height, width, step, seed):

@@ -150,6 +150,8 @@ def test_an_absent_entry_is_named(estimate, name):
         ({"verdict": "splendid"}, "damaged.*splendid"),
         ({"families": {"daguerreotype": 1}}, "damaged.*daguerreotype"),
         ({"weights": "many"}, "damaged"),
+        ({"weights": [10**400] * 11}, "damaged"),
+        ({"uncertainty": 10**400}, "damaged"),
         ({"windows": 3}, "damaged"),
         ({"families": []}, "damaged"),
         ({"estimates": []}, "give document\\['estimates'\\]\\[0\\]"),

@@ -81,6 +81,19 @@ def test_a_photograph_smaller_than_a_window_is_refused(height, width):
         select_windows(np.zeros((height, width, 3), np.float32))
 
 
+@pytest.mark.parametrize("count", [0, -3])
+def test_less_than_one_window_is_refused(count):
+    with pytest.raises(PhotoError, match=f"^{count} windows cannot be analysed; ask for at least 1, usually 10$"):
+        select_windows(noise(300, 300), count=count)
+
+
+@pytest.mark.parametrize("step", [3, 0, -1])
+def test_a_step_that_does_not_fit_is_refused(step):
+    with pytest.raises(PhotoError, match=f"a step of {step} pixels does not fit into 500 x 453 pixels; take 1 to 2"):
+        select_windows(noise(453, 500), step=step)
+    assert {window.extent for window in select_windows(noise(453, 500), step=2)} == {453}
+
+
 @pytest.mark.parametrize(
     ("height", "width", "step"), [(227, 227, 1), (907, 2000, 1), (908, 908, 2), (4000, 6000, 8), (8000, 6000, 13)]
 )

@@ -111,7 +111,7 @@ def _document(path: Path) -> dict[str, Any] | None:
         names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
         float(document["exposure"]["stops"])
         _primaries(document)
-    except (OSError, ValueError, KeyError, TypeError):
+    except (OSError, KeyError, OverflowError, TypeError, ValueError):
         return None
     return document if all(isinstance(name, str) and name and Path(name).name == name for name in names) else None
 
