@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.response import SAMPLES
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, same_fields
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
@@ -19,7 +19,7 @@ COMPONENTS = 11
 BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class EmorBasis:
     """A mean response and orthonormal components: f = mean + weights @ components.
 
@@ -40,6 +40,9 @@ class EmorBasis:
 
     mean: Float64Array
     components: Float64Array
+
+    def __eq__(self, other: object) -> bool:
+        return same_fields(self, other) if isinstance(other, EmorBasis) else NotImplemented
 
     @classmethod
     @cache

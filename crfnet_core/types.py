@@ -1,9 +1,10 @@
-"""Names for the arrays that pass between modules and for callbacks; dataclasses of arrays: equal or not, and plain."""
+"""Names for arrays and callbacks; dataclasses of arrays: equal or not, and plain; the cores to work on."""
 
 from __future__ import annotations
 
 import dataclasses
 import math
+import os
 from collections.abc import Callable, Mapping
 from enum import Enum
 from typing import TYPE_CHECKING, Any, Protocol
@@ -51,6 +52,11 @@ def show_progress(progress: Progress | None, done: int, total: int) -> None:
     """Call a progress callback, if there is one."""
     if progress is not None:
         progress(done, total)
+
+
+def cores() -> int:
+    """Return the number of cores that this process may use, which may be fewer than the machine has."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def same_fields(one: DataclassInstance, other: DataclassInstance) -> bool:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import hashlib
-import os
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -17,7 +16,7 @@ from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_gr
 from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
-from crfnet_core.types import Float32Array, Progress
+from crfnet_core.types import Float32Array, Progress, cores
 
 
 @dataclass(frozen=True)
@@ -70,7 +69,8 @@ class ResponseNetwork:
         folder : str or Path, optional
             Holds model.onnx and model.json; or the name of a packaged model, such as "crfnet2017".
         threads : int
-            Windows that run at the same time, in a network that reads windows; 0 takes the processor's number of cores.
+            Windows that run at the same time, in a network that reads windows; 0 takes as many as the cores that this
+            process may use.
 
         Raises
         ------
@@ -143,7 +143,7 @@ class ResponseNetwork:
     def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
         """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
         rows = []
-        pool = ThreadPoolExecutor(self._threads or os.cpu_count() or 1)
+        pool = ThreadPoolExecutor(self._threads or cores())
         try:
             for number, row in enumerate(pool.map(self._session.run, windows[:, None]), start=1):
                 rows.append(row)

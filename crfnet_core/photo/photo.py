@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -44,7 +44,7 @@ class Photo:
         If the pixels are of another type or shape, or not all in [0, 1].
     """
 
-    pixels: Float32Array
+    pixels: Float32Array = field(repr=False)
     bit_depth: int
     is_gray: bool
     path: Path

@@ -46,7 +46,7 @@ MOST_SUMMED, MOST_COMPARED = 350, 500
 #: Compare two channels at an edge only if it differs between them: |d(a + c)| + |d(c - a)| above this number of codes.
 LEAST_DIFFERENCE = 60
 
-#: And b must lie at least 1/5 of the edge's height from both a and c.
+#: And b must lie more than 1/5 of the edge's height from both a and c.
 INNER = 5
 
 #: Bands of the level of b in which the disagreement is kept apart: candidates fail at different levels.
@@ -82,7 +82,7 @@ class Mixtures:
     is_mixture : ndarray, bool, shape (3, M)
         Whether a and c differ enough, and b lies between them.
     is_isolated : ndarray, bool, shape (len(ISOLATION), 3, M)
-        Whether the samples before a and behind c hardly differ from these.
+        Whether the samples before a and behind c hardly differ from these, where `is_mixture`.
     """
 
     a: Int16Array
@@ -98,7 +98,7 @@ class Mixtures:
         index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
         before, a, b, c, behind = (side.take(index, axis=1).astype(np.int16) for side in row)
         change, height = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
-        is_isolated = np.stack([reading * change <= np.maximum(height, reading) for reading in ISOLATION])
+        is_isolated = np.stack([reading * change <= height for reading in ISOLATION])
         return cls(a, b, c, is_edge.take(index, axis=1), is_isolated)
 
     def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:

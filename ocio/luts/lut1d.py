@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import BLOCK, ResponseCurve
-from crfnet_core.types import Float64Array
+from crfnet_core.types import Float64Array, same_fields
 from ocio.defaults import LUT_LENGTH
 
 #: Largest number of entries that every format and host accepts.
@@ -73,13 +73,10 @@ class Lut1D:
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "domain", (low, high))
-        object.__setattr__(self, "comments", _clean_comments(self.comments))
+        object.__setattr__(self, "comments", clean_comments(self.comments))
 
     def __eq__(self, other: object) -> bool:
-        if not isinstance(other, Lut1D):
-            return NotImplemented
-        same_table = self.domain == other.domain and np.array_equal(self.values, other.values)
-        return same_table and self.comments == other.comments
+        return same_fields(self, other) if isinstance(other, Lut1D) else NotImplemented
 
     @property
     def identity(self) -> str:
@@ -237,6 +234,13 @@ def table_identity(domain: tuple[float, float], values: Float64Array) -> str:
     return f"crfnet-{hashlib.sha256(content).hexdigest()[:32]}"
 
 
+def clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
+    """Return the comments, each fit for one line of any format; empty ones are dropped."""
+    printable = ("".join(c if c.isprintable() else " " for c in comment) for comment in comments)
+    cleaned = (" ".join(comment.split())[:MAX_COMMENT].strip() for comment in printable)
+    return tuple(comment for comment in cleaned if comment)
+
+
 def first_fault(values: Float64Array) -> int | None:
     """Return the index of the first value that is not finite or not above the one before it, or None."""
     with np.errstate(invalid="ignore"):
@@ -255,10 +259,3 @@ def _floating(pixels: ArrayLike) -> NDArray[np.floating]:
     """Return float32 for half and single precision, float64 for everything else."""
     given = np.asarray(pixels)
     return given.astype(np.float32 if given.dtype in (np.float16, np.float32) else np.float64, copy=False)
-
-
-def _clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
-    """Return the comments, each fit for one line of any format; empty ones are dropped."""
-    printable = ("".join(c if c.isprintable() else " " for c in comment) for comment in comments)
-    cleaned = (" ".join(comment.split())[:MAX_COMMENT].strip() for comment in printable)
-    return tuple(comment for comment in cleaned if comment)

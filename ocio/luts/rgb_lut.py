@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
 from crfnet_core.types import Float64Array
-from ocio.luts.lut1d import Lut1D, table_identity
+from ocio.luts.lut1d import Lut1D, clean_comments, table_identity
 
 
 @dataclass(frozen=True)
@@ -38,7 +38,7 @@ class RgbLut1D:
         shapes = {(channel.values.size, channel.domain) for channel in self.channels}
         if len(self.channels) != 3 or len(shapes) != 1:
             raise LutError("a LUT of R, G and B needs three tables of one length and one domain")
-        object.__setattr__(self, "comments", replace(self.channels[0], comments=self.comments).comments)
+        object.__setattr__(self, "comments", clean_comments(self.comments))
         object.__setattr__(self, "channels", tuple(replace(channel, comments=()) for channel in self.channels))
 
     @property

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -10,6 +9,9 @@ from contextlib import contextmanager
 from multiprocessing import get_context
 
 from crfnet_core.errors import CRFNetError
+from crfnet_core.types import cores
+
+__all__ = ["cores", "worker_pool"]
 
 #: Seconds to wait for the answer of a scheduler.
 SCHEDULER_TIMEOUT = 10
@@ -41,11 +43,6 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-def cores() -> int:
-    """Return the number of cores that this process may use."""
-    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
 def _process_pool(workers: int) -> ProcessPoolExecutor:

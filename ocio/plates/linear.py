@@ -18,7 +18,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import CRFNetError, PlateError
 from crfnet_core.files import atomic_write, check_target
 from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.types import Progress, show_progress
+from crfnet_core.types import Progress, cores, show_progress
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
@@ -258,7 +258,7 @@ def _worker_count(workers: int | None) -> int:
     """Return the number of frames linearised at a time."""
     if workers is not None and workers < 1:
         raise PlateError(f"{workers} workers cannot work; give 1 or more")
-    return workers or min(os.cpu_count() or 1, MAX_WORKERS)
+    return workers or min(cores(), MAX_WORKERS)
 
 
 def _remove_leftovers(targets: Iterable[Path]) -> None:

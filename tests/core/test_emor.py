@@ -49,6 +49,13 @@ def test_a_basis_of_curves_explains_them_in_order():
     np.testing.assert_allclose(basis.reconstruct(basis.project(curves)), curves, atol=1e-4)
 
 
+def test_bases_compare_by_their_numbers():
+    basis = EmorBasis.load()
+    assert basis == EmorBasis(basis.mean.copy(), basis.components.copy())
+    assert basis != EmorBasis(basis.mean, -basis.components)
+    assert basis != "basis"
+
+
 @pytest.mark.parametrize("shape", [(5, SAMPLES), (20, 100), (SAMPLES,)])
 def test_a_basis_needs_enough_curves(shape):
     with pytest.raises(ValueError, match="needs more than 11 curves"):

@@ -1,11 +1,12 @@
 import json
 import shutil
+from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, model_folder
+from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, inference, model_folder
 from crfnet_core.statistics import window_statistics
 
 #: The evidence of all windows together in the golden predictions.
@@ -211,6 +212,15 @@ def test_a_graph_that_is_none_is_refused(copied):
     edit(copied, sha256=hashlib.sha256(b"no graph").hexdigest())
     with pytest.raises(ModelError, match=r"model\.onnx is no ONNX model"):
         ResponseNetwork.load(copied)
+
+
+def test_as_many_windows_run_at_the_same_time_as_cores_may_be_used(windows, monkeypatch):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: {2, 5, 7}, raising=False)
+    found = []
+    monkeypatch.setattr(inference, "ThreadPoolExecutor", lambda count: found.append(count) or ThreadPoolExecutor(1))
+    for threads in (0, 2):
+        predictions(ResponseNetwork.load("crfnet2017", threads=threads), windows[:1])
+    assert found == [3, 2]
 
 
 def test_threads_are_not_negative():

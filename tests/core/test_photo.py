@@ -226,6 +226,12 @@ def test_a_name_that_is_not_there_is_an_attribute_error(tmp_path):
         _ = photo.nonesuch
 
 
+def test_the_words_for_a_photograph_compute_no_pixels(tmp_path):
+    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
+    assert repr(photo).startswith("Photo(bit_depth=8, is_gray=")
+    assert "pixels" not in vars(photo)
+
+
 def test_photo_is_frozen(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.png", CODES8))
     with pytest.raises(AttributeError):

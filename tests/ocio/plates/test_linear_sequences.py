@@ -16,6 +16,7 @@ from crfnet_core.files import atomic_write
 from crfnet_core.image_io import read_photo
 from ocio.luts.lut1d import Lut1D
 from ocio.plates import linear
+from ocio.plates.parallel import finished
 from ocio.staging import STALE_SECONDS
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
@@ -55,6 +56,15 @@ def test_only_the_chosen_frames_are_written(tmp_path, out):
     report = linearize(str(pattern), str(out / "a.%d.exr"), LUT, frames="2-8x2")
     assert [path.name for path in report.written] == ["a.2.exr", "a.4.exr", "a.6.exr"]
     assert report.missing == (8,)
+
+
+@pytest.mark.parametrize(("cores", "workers"), [({3}, 1), ({0, 1}, 2), (set(range(99)), linear.MAX_WORKERS)])
+def test_as_many_frames_at_a_time_as_cores_may_be_used(tmp_path, out, monkeypatch, cores, workers):
+    monkeypatch.setattr("os.sched_getaffinity", lambda _: cores, raising=False)
+    counts = []
+    monkeypatch.setattr(linear, "finished", lambda jobs, count: counts.append(count) or finished(jobs, count))
+    linearize(write_sequence(tmp_path, range(2)), out / "a.%d.exr", LUT)
+    assert counts == [workers]
 
 
 @pytest.mark.parametrize("workers", [1, 2, 7])
