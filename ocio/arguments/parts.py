@@ -137,9 +137,9 @@ def count(text: str) -> int:
 
 
 def exposure(text: str) -> Exposure:
-    """Return the exposure in `text`: white, gray, gray=BRIGHTNESS, or stops within `MAX_EXPOSURE`."""
+    """Return the exposure in `text`: white, gray, gray=BRIGHTNESS, in any case, or stops within `MAX_EXPOSURE`."""
     anchor, _, brightness = text.lower().replace("grey", "gray").partition("=")
-    if text == "white":
+    if text.lower() == "white":
         return Exposure()
     if anchor == "gray":
         return Exposure(gray=_brightness(brightness) if "=" in text else GRAY_BRIGHTNESS)

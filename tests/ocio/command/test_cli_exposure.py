@@ -58,7 +58,7 @@ class TestExposure:
             f" --exposure gray would make it 0.18: {found['gray_stops']:+.2f} stop.\n"
         ) in out
 
-    @pytest.mark.parametrize("word", ["white", "0"])
+    @pytest.mark.parametrize("word", ["white", "White", "WHITE", "0"])
     def test_white_is_the_default(self, estimate, plate, tmp_path, word):
         assert estimate(plate, "--exposure", word).code == 0
         given = read_image(tmp_path / "out" / "plate_linear.exr")
