@@ -11,7 +11,8 @@ colorimetry          from chromaticities to matrices
 recognition          log footage, limited range and tags: what is no photograph of a camera
 windows              the windows of a photograph that are analysed
 statistics           what is counted in a window
-network              the trained network: its folder, its inputs and predictions, pooling, uncertainty
+network              the trained network: its folder, its inputs and predictions, pooling
+posterior            from the network's evidence and the metadata to the response, its uncertainty and the verdict
 emor                 the empirical model of response: weights to curve, curve to weights
 response             a strictly monotone response and its inverse
 transfer_functions   sRGB and Rec.709, to compare with

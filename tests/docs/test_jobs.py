@@ -55,7 +55,7 @@ def test_phone_footage(run, plate, tmp_path):
     assert header(frames[0]).getattribute("smpte:TimeCode") is not None
 
 
-def test_a_photograph_into_a_studio_s_config(run, plate, tmp_path):
+def test_a_photograph_into_a_studio_s_config(run, oiiotool, plate, tmp_path):
     shutil.copy(plate, tmp_path / "plate01.jpg")
     run("A photograph into a studio's ACES config")
     assert header(tmp_path / "look" / "plate01_linear.exr").get_string_attribute("colorInteropID") == "lin_ap1_scene"
@@ -64,6 +64,8 @@ def test_a_photograph_into_a_studio_s_config(run, plate, tmp_path):
     assert config.getColorSpaceFromFilepath("/anywhere/plate01.jpg")[0] == "CRF plate01"
     views = list(config.getViews(config.getDefaultDisplay()))
     assert any(view.startswith("As photographed") for view in views)
+    convert = ("--colorconvert", "CRF plate01", "ACEScg", "-o", tmp_path / "by_oiiotool.exr")
+    oiiotool("--colorconfig", tmp_path / "show" / "config.ocio", plate, *convert)
 
 
 def test_thousands_of_photographs(run, plate, tmp_path):
