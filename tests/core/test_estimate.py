@@ -171,6 +171,19 @@ def test_metadata_shifts_the_prior():
     assert expected[Family.CAMERA] > 2 * prior[Family.CAMERA]
 
 
+def test_of_several_photographs_the_geometric_mean_of_the_factors_counts():
+    files = (CAMERA, replace(CAMERA, make="SONY", model="DSC-RX100"))
+    each = [family_factors(file_origin(metadata)) for metadata in files]
+    weighed = {
+        family: share * (each[0][family] * each[1][family]) ** 0.5 for family, share in even_prior().shares.items()
+    }
+    expected = {family: weighed.get(family, 0) / sum(weighed.values()) for family in Family}
+    nothing = FakeNetwork([Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))] * 2)
+    made = [photo(seed=seed, metadata=metadata) for seed, metadata in enumerate(files)]
+    assert shares(made, network=nothing) == pytest.approx(expected)
+    assert each[0] != each[1]
+
+
 def test_metadata_can_be_ignored():
     ignored = asked(photo(metadata=EDITED), FakeNetwork([evidence_for(CENTRE)]), use_metadata=False)
     bare = asked(photo(), FakeNetwork([evidence_for(CENTRE)]))

@@ -15,6 +15,7 @@ from ocio import pipeline
 from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
+from ocio.luts.rgb_lut import RgbLut1D
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import OutputFiles
 from ocio.pipeline.batch import network_and_prior
@@ -144,6 +145,11 @@ class TestExposure:
         curve = ResponseCurve.gamma(2.2)
         stops = pipeline.anchored_exposure(curve, gray=0.5, stops=1)
         assert curve.inverse(0.5) * 2 ** (stops - 1) == pytest.approx(0.18)
+
+    def test_the_gray_of_three_tables_is_that_of_green(self):
+        red, green, blue = (inverse_response_lut(ResponseCurve.gamma(power), length=256) for power in (1.8, 2.2, 2.6))
+        stops = pipeline.anchored_exposure(RgbLut1D((red, green, blue)), gray=0.5)
+        assert float(green.apply(0.5)) * 2**stops == pytest.approx(0.18)
 
     def test_black_is_no_anchor(self):
         with pytest.raises(CRFNetError, match="a brightness of 0 is black in this response"):

@@ -85,6 +85,13 @@ def test_errors_are_those_of_the_metrics():
     assert found.partial < found.estimation
 
 
-def test_the_digest_of_the_code_is_stable():
+def test_the_digest_of_the_code_follows_the_code(tmp_path):
     assert code_digest() == code_digest()
     assert len(code_digest()) == 16
+    module = tmp_path / "crfnet_core" / "posterior" / "prior.py"
+    module.parent.mkdir(parents=True)
+    digests = [code_digest(tmp_path)]
+    for text in ("a = 1", "a = 2"):
+        module.write_text(text)
+        digests.append(code_digest(tmp_path))
+    assert len(set(digests)) == 3

@@ -34,9 +34,8 @@ MEASURING_CODE = (
 MIXED = "mixed"
 
 
-def code_digest() -> str:
-    """Return a short hash of the code that figures come from."""
-    root = Path(__file__).parents[3]
+def code_digest(root: Path = Path(__file__).parents[3]) -> str:
+    """Return a short hash of the code that figures come from, in a checkout of the repository."""
     digest = hashlib.sha256()
     for pattern in MEASURING_CODE:
         for path in sorted(root.glob(pattern)):
