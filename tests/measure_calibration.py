@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.calibration import calibrate_stack
+from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.errors import CalibrationError
 from crfnet_core.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
@@ -65,10 +66,11 @@ def errors(true: ResponseCurve, found: ResponseCurve, counts: np.ndarray) -> tup
 def measure(options: StackOptions, scenes: list[Path], curves: list[ResponseCurve]) -> dict[str, list]:
     """Return the errors of every method on a stack of every response, and of ours the standard scores and the time."""
     found: dict[str, list] = {name: [] for name in ("crfnet", "Debevec", "Robertson", "scores", "seconds", "refused")}
-    for index, true in enumerate(curves):
+    for index, response in enumerate(curves):
         with tempfile.TemporaryDirectory() as folder:
             stack = StackOptions(**{**vars(options), "seed": index})
-            paths = make_stack(Path(folder), light_of(scenes[index % len(scenes)]), true, stack)
+            paths = make_stack(Path(folder), light_of(scenes[index % len(scenes)]), response, stack)
+            true = in_file_codes(response, stack.white)
             begin = time.process_time()
             try:
                 ours = calibrate_stack(paths)

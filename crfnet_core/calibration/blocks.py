@@ -8,6 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from crfnet_core.errors import CalibrationError
 from crfnet_core.photo import CodeArray
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
@@ -34,6 +35,9 @@ CLIPPED_NEIGHBOUR, STRONG_CHROMA = 4.0, 0.35
 
 #: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
 BIN, BLOCKS = 0.2, 650
+
+#: Samples that a measurement needs, of blocks that every channel shows between black and white in two frames or more.
+LEAST_SAMPLES = 200
 
 
 class BlockMeans(NamedTuple):
@@ -158,16 +162,39 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array, *, count: int 
         log2 of each sample's irradiance, roughly; NaN where no frame shows it.
     count : int
         Blocks to pick.
+
+    Raises
+    ------
+    CalibrationError
+        If there are fewer than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
     """
     channels = int(seen.channel.max()) + 1
     levels = log_irradiance.reshape(-1, channels)
-    seen_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels).all(axis=1)
-    fit = np.flatnonzero(seen_often & np.isfinite(levels).all(axis=1))
+    is_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels)
+    _check_often(is_often)
+    fit = np.flatnonzero(is_often.all(axis=1) & np.isfinite(levels).all(axis=1))
     colour = np.ptp(levels[fit], axis=1)
     rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + colour)
     bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
     picked = _best_of_bins(rank, bins, count)
     return seen.of(np.isin(seen.block, fit[picked]))
+
+
+def _check_often(is_often: BoolArray) -> None:
+    """Refuse a stack that shows too few blocks in two frames, given which each channel does, shape (N, C)."""
+    channels = is_often.shape[1]
+    samples = channels * int(is_often.all(axis=1).sum())
+    if samples >= LEAST_SAMPLES:
+        return
+    each = channels * is_often.sum(axis=0)
+    poor = [name for name, count in zip(("red", "green", "blue"), each, strict=False) if count < LEAST_SAMPLES]
+    advice = "; take more frames, closer together, or a scene with even surfaces"
+    if 0 < len(poor) < channels:
+        colors = " and ".join(poor)
+        advice = f": in {colors} nearly everything is black or white; use white light and a scene of neutral colours"
+    raise CalibrationError(
+        f"only {samples} flat places are seen well in two frames, {LEAST_SAMPLES} are needed{advice}"
+    )
 
 
 def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:

@@ -19,7 +19,7 @@ from crfnet_core.calibration.checks import (
     nearest_known,
     warnings_of,
 )
-from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
@@ -56,7 +56,7 @@ class FrameReport:
     shift : (int, int)
         Rows and columns in pixels by which it was displaced.
     residual : float
-        Root mean square of brightness less that of the model, in 8-bit codes; NaN if it was left out.
+        Root mean square of brightness less that of the model, in 8-bit codes of the file; NaN if it was left out.
     is_used : bool
         Whether it fits the others.
     """
@@ -93,13 +93,14 @@ class Calibration:
     Parameters
     ----------
     curve : ResponseCurve
-        The response.
+        The response. Its brightness is a part of the file's largest code, as that of `points` and `counts`: where the
+        camera clips below that code, the response reaches `white` and jumps to 1.
     weights : ndarray, float64, shape (11,)
         Its EMoR weights.
     uncertainty : Uncertainty
         Of its shape and of its scale, in stops.
     residual : float
-        Root mean square of brightness less that of the model, in 8-bit codes.
+        Root mean square of brightness less that of the model, in 8-bit codes of the file.
     white : float
         Code of white as a part of the largest code.
     reaches_white : bool
@@ -107,7 +108,7 @@ class Calibration:
     labels : str
         How the exposure labels were read: "nominal", or "exact powers of two".
     nearest_known : float
-        E_est between it and the nearest packaged response.
+        E_est between it and the nearest packaged response, both beside their own white.
     metadata : FileMetadata
         What the first frame's file says of its camera.
     frames : tuple of FrameReport
@@ -180,24 +181,24 @@ def calibrate_stack(
     codes, shifts = align(frames, exposures.nominal.argsort().tolist())
     means = [block_means(cut, white * frame.largest) for cut, frame in zip(codes, frames, strict=True)]
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
-    check_seen(every.brightness[every.is_used])
+    check_seen(white * every.brightness[every.is_used])
     model = CurveModel.load()
     labels, found, other = _measured(every, _readings(exposures, frames[0]), model)
     names = [frame.path.name for frame in frames]
-    check_measurement(found, names)
-    reports = _frame_reports(frames, found, labels.stops, shifts)
+    check_measurement(found, names, white=white)
+    curve = in_file_codes(found.curve, white)
     return Calibration(
-        curve=found.curve,
-        weights=EmorBasis.load().project(found.curve.brightness),
-        uncertainty=uncertainty_of(found, other, model),
-        residual=found.residual,
+        curve=curve,
+        weights=EmorBasis.load().project(curve.brightness),
+        uncertainty=uncertainty_of(found, other, model, white=white),
+        residual=white * found.residual,
         white=white,
         reaches_white=found.anchor.is_seen,
         labels=labels.name,
         nearest_known=nearest_known(found.curve),
         metadata=frames[0].metadata,
-        frames=reports,
-        points=_points(found),
+        frames=_frame_reports(frames, found, labels.stops, shifts, white=white),
+        points=_points(found, white=white),
         counts=_best_exposed(frames, found).counts,
         warnings=warnings_of(found, names, exposures, white=white),
     )
@@ -248,24 +249,24 @@ def _measured(
 
 
 def _frame_reports(
-    frames: Sequence[Frame], found: Measurement, stops: Float64Array, shifts: Sequence[Shift]
+    frames: Sequence[Frame], found: Measurement, stops: Float64Array, shifts: Sequence[Shift], *, white: float
 ) -> tuple[FrameReport, ...]:
     """Return what was found of each frame."""
     offsets = np.full((len(frames), found.fit.offsets.shape[1]), np.nan)
     offsets[found.frames] = found.fit.offsets
     residuals = np.full(len(frames), np.nan)
-    residuals[found.frames] = frame_residuals(found.fit)
+    residuals[found.frames] = white * frame_residuals(found.fit)
     return tuple(
         FrameReport(frame.path, frame.label, float(stops[i]), offsets[i], shifts[i], float(residuals[i]), bool(is_used))
         for i, (frame, is_used) in enumerate(zip(frames, found.frames, strict=True))
     )
 
 
-def _points(found: Measurement) -> Float64Array:
+def _points(found: Measurement, *, white: float) -> Float64Array:
     """Return what was measured, for a picture: see `Calibration.points`."""
     log_irradiance = found.fit.exposed(found.exposures, found.seen) - found.anchor.log_white
     used = np.broadcast_to(np.flatnonzero(found.frames), log_irradiance.shape)
-    columns = (log_irradiance, found.seen.brightness, found.fit.residual, used)
+    columns = (log_irradiance, white * found.seen.brightness, white * found.fit.residual, used)
     return np.stack([column[found.seen.is_used] for column in columns], axis=1)
 
 

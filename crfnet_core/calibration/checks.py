@@ -40,9 +40,6 @@ MOST_SCATTER = 6.0
 #: Levels that blocks count as equal within.
 EQUAL_LEVELS = 48
 
-#: Samples that a measurement needs.
-LEAST_SAMPLES = 200
-
 #: Parts that the codes are divided into, and how many of them have to be seen.
 CODE_BINS, LEAST_BINS = 28, 0.5
 
@@ -90,7 +87,7 @@ def check_seen(brightness: Float64Array) -> None:
     Parameters
     ----------
     brightness : ndarray, float64, shape (N,)
-        What was measured.
+        What was measured, the largest code of the file = 1.
 
     Raises
     ------
@@ -106,7 +103,7 @@ def check_seen(brightness: Float64Array) -> None:
         )
 
 
-def check_measurement(found: Measurement, names: Sequence[str]) -> None:
+def check_measurement(found: Measurement, names: Sequence[str], *, white: float) -> None:
     """Refuse what no camera response explains, and say why.
 
     Parameters
@@ -115,20 +112,18 @@ def check_measurement(found: Measurement, names: Sequence[str]) -> None:
         The response.
     names : sequence of str
         The names of all frames.
+    white : float
+        The code of white as a part of the largest code.
 
     Raises
     ------
     CalibrationError
         If the frames moved, are mistimed, or follow no one curve, or the curve is far from every known response.
     """
-    if len(found.seen.block) < LEAST_SAMPLES:
-        raise CalibrationError(
-            f"only {len(found.seen.block)} flat places are seen well in two frames, {LEAST_SAMPLES} are needed; take"
-            " more frames, closer together, or a scene with even surfaces"
-        )
     used, left_out = _names(found, names)
     is_moved = found.frames.sum() < LEAST_FRAMES or found.outliers > MOST_OUTLIERS
-    if found.residual > MOST_RESIDUAL:
+    residual = white * found.residual
+    if residual > MOST_RESIDUAL:
         is_moved = is_moved or scatter(found.seen, found.exposures) > MOST_SCATTER
     if is_moved:
         which = f"{', '.join(left_out)} and more" if left_out else "some blocks"
@@ -137,9 +132,9 @@ def check_measurement(found: Measurement, names: Sequence[str]) -> None:
             " the scene has moved, so use a tripod and a still scene, or leave these frames out"
         )
     _check_offsets(found, used)
-    if found.residual > MOST_RESIDUAL:
+    if residual > MOST_RESIDUAL:
         raise CalibrationError(
-            f"no single curve explains the frames: they are off by {found.residual:.1f} codes (RMS), at most"
+            f"no single curve explains the frames: they are off by {residual:.1f} codes (RMS), at most"
             f" {MOST_RESIDUAL:g} are usual; each was rendered or edited on its own (automatic tones, local tone"
             " mapping, HDR): switch that off, and give the camera's own files"
         )
@@ -175,15 +170,15 @@ def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, 
         warnings.append(f"{differing} differ between the frames: exposures are time x ISO / f-number^2")
     if (distance := nearest_known(found.curve, in_camera=True)) > MOST_UNKNOWN:
         warnings.append(f"unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times")
-    highest = 255 * float(found.seen.brightness[found.seen.is_used].max())
+    highest = 255 * float(found.seen.brightness[found.seen.is_used].max())  # white = 255
     if highest < LAST_SHAPE_CODE:
-        warnings.append(f"no code above {highest:.0f} is seen: there the curve is that of known responses")
+        warnings.append(f"no code above {white * highest:.0f} is seen: there the curve is that of known responses")
     if not found.anchor.is_seen:
         warnings.append("no frame reaches white: the scale is a guess; add a longer exposure")
     if found.outliers > NOTABLE_OUTLIERS:
         warnings.append(f"{found.outliers:.0%} of the blocks do not fit and were left out: something moved")
     if white < 1:
-        warnings.append(f"white is {255 * white:.0f} of 255 codes: the response ends there")
+        warnings.append(f"white is {255 * white:.0f} of 255 codes: the codes above it are white too")
     return tuple(warnings)
 
 

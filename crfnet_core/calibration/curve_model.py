@@ -26,7 +26,8 @@ KNOTS = (
 #: Standard deviation of the splines' weights beforehand, in brightness.
 SPLINE_DEVIATION = 0.012
 
-#: Factor on the covariance of the EMoR weights of known responses: this one may be of a kind that is not among them.
+#: Factor on the second moment of the EMoR weights of known responses, about EMoR's mean: this response may be of a kind
+#: that is not among them.
 WIDENING = 4.0
 
 #: Samples at the end of a response by which its slope at white is measured.
@@ -65,7 +66,7 @@ class CurveModel:
     @classmethod
     @cache
     def load(cls) -> CurveModel:
-        """Return the model of the packaged EMoR, its weights spread as those of the packaged responses."""
+        """Return the model of the packaged EMoR, its weights spread around 0 as those of the packaged responses."""
         emor, bank = EmorBasis.load(), ResponseBank.load()
         weights = bank.weights[bank.ordinary]
         covariance = WIDENING * weights.T @ weights / len(weights)
@@ -111,6 +112,22 @@ class CurveModel:
         samples[low] = table[0] * np.exp2(stops[low] - LOWEST)
         samples[0] = 0.0
         return ResponseCurve.from_samples(np.append(np.minimum(samples[:-1], 1), 1.0))
+
+
+def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
+    """Return a response in parts of the file's largest code, given one in parts of the code of white.
+
+    A camera may clip below the largest code. The response then reaches `white` and jumps to 1 in the last step of its
+    samples, so the codes from white on read as irradiance 1, to within that step (0.0014 stop).
+
+    Parameters
+    ----------
+    curve : ResponseCurve
+        The response in parts of white.
+    white : float
+        The code of white as a part of the largest code, above 0 and at most 1.
+    """
+    return ResponseCurve(np.append(white * curve.brightness[:-1], 1.0))
 
 
 def table_stops() -> Float64Array:

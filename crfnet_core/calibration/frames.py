@@ -76,7 +76,7 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
     Parameters
     ----------
     paths : sequence of Path
-        JPEG, PNG, TIFF, WebP or DPX files: see `crfnet_core.image_io.read_photo`.
+        JPEG, HEIC, PNG, TIFF, DPX and other files: see `crfnet_core.image_io.read_photo`.
     progress : callable, optional
         Called with (done, total) after every frame.
 
@@ -104,20 +104,31 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
 
 
 def white_level(frames: Sequence[Frame]) -> float:
-    """Return the code at which the camera clips, as a part of the largest code.
+    """Return the code at which the camera clips, as a part of the largest code; 1 if it is within half an 8-bit code.
 
     Most cameras clip at the largest code, some a little below. Their samples pile up at one code in several frames,
     though the frames are exposed differently: no surface does that. JPEG rings on both sides of it, as far as the
     largest code, where it piles up again, but less.
     """
-    green = [np.asarray(frame.codes[::2, ::2, 1], dtype=np.int64) * 255 // frame.largest for frame in frames]
-    shares = np.array([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in green])  # (T, 256)
+    green = [frame.codes[::2, ::2, 1] for frame in frames]
+    steps = [_steps(codes, frame.largest) for codes, frame in zip(green, frames, strict=True)]
+    shares = np.array([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in steps])  # (T, 256)
     piles = Counter(pile for share in shares if (pile := _pile(share)))
     if not piles:
         return 1.0
-    code, times = piles.most_common(1)[0]
+    step, times = piles.most_common(1)[0]
     highest = shares.max(axis=0)
-    return code / 255 if times >= WHITE_FRAMES and highest[code] > highest[-1] else 1.0
+    if times < WHITE_FRAMES or highest[step] <= highest[-1]:
+        return 1.0
+    piled = np.concatenate([codes[where == step] for codes, where in zip(green, steps, strict=True)])
+    return int(np.bincount(piled).argmax()) / frames[0].largest
+
+
+def _steps(codes: CodeArray, largest: int) -> CodeArray:
+    """Return codes from 0 to `largest` rounded to 256 steps, of the same shape."""
+    if largest == 255:
+        return codes
+    return ((codes.astype(np.int64) * 255 + largest // 2) // largest).astype(np.uint8)
 
 
 def _pile(shares: Float64Array) -> int | None:
@@ -155,13 +166,12 @@ def _frame(path: Path, values: CodeValues) -> Frame:
     """Return a file's samples, thinned out."""
     stride = max(1, -(-max(values.codes.shape[:2]) // KEPT_SIDE))
     codes = values.codes[::stride, ::stride].copy()
-    steps = codes if values.largest == 255 else (codes.astype(np.int64) * 255 + values.largest // 2) // values.largest
     return Frame(
         path=path,
         codes=codes,
         stride=stride,
         largest=values.largest,
-        counts=np.bincount(np.asarray(steps).ravel(), minlength=256).astype(np.float64),
+        counts=np.bincount(_steps(codes, values.largest).ravel(), minlength=256).astype(np.float64),
         label=ExposureLabel.of_header(values.header),
         metadata=values.metadata,
         is_gray=values.is_gray,

@@ -42,7 +42,7 @@ class Measurement:
     anchor : Anchor
         Where white is in that unit.
     curve : ResponseCurve
-        The response.
+        The response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`.
     outliers : float
         Share of the samples that were left out.
     """
@@ -57,7 +57,7 @@ class Measurement:
 
     @property
     def residual(self) -> float:
-        """Root mean square of brightness less the model's, in 8-bit codes."""
+        """Root mean square of brightness less the model's, white = 255."""
         return float(255 * np.sqrt(np.nanmean(self.fit.residual**2)))
 
 
@@ -72,6 +72,11 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
         Labels of the exposures, in stops.
     model : CurveModel
         The responses to choose from.
+
+    Raises
+    ------
+    CalibrationError
+        If too few blocks are seen often: see `pick_blocks`.
     """
     frames = np.ones(len(exposures), dtype=bool)
     while True:
@@ -106,7 +111,7 @@ def fit_and_anchor(
 
 
 def frame_residuals(fit: StackFit) -> Float64Array:
-    """Return the root mean square residual of each frame in 8-bit codes, shape (T,); 0 where it shows nothing."""
+    """Return the root mean square residual of each frame, white = 255, shape (T,); 0 where it shows nothing."""
     squares = np.where(np.isfinite(fit.residual), fit.residual, 0) ** 2
     count = np.isfinite(fit.residual).sum(axis=0)
     return np.asarray(255 * np.sqrt(squares.sum(axis=0) / np.maximum(count, 1)), dtype=np.float64)

@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.calibration.anchor import UNSEEN_DEVIATION
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.curve_model import CurveModel, table_stops
+from crfnet_core.calibration.curve_model import CurveModel, in_file_codes, table_stops
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
 from crfnet_core.calibration.solver import TIME_DEVIATION
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
@@ -55,8 +55,10 @@ class Uncertainty:
         return float(np.sqrt(sum(part**2 for part in self.scale.values())))
 
 
-def uncertainty_of(found: Measurement, other_labels: ResponseCurve | None, model: CurveModel) -> Uncertainty:
-    """Return how far a measured response may be off.
+def uncertainty_of(
+    found: Measurement, other_labels: ResponseCurve | None, model: CurveModel, *, white: float
+) -> Uncertainty:
+    """Return how far a measured response may be off, at the codes of the file.
 
     Parameters
     ----------
@@ -66,26 +68,32 @@ def uncertainty_of(found: Measurement, other_labels: ResponseCurve | None, model
         The response by the other reading of the exposure labels, if there is one.
     model : CurveModel
         The responses to choose from.
+    white : float
+        The code of white as a part of the largest code.
     """
+    curve = in_file_codes(found.curve, white)
     even = found.seen.block % 2 == 0
-    halves = [_curve_of(found.seen.of(part), found.exposures, found, model) for part in (even, ~even)]
-    channels = [_channel_curve(found, channel, model) for channel in range(found.fit.offsets.shape[1])]
-    posterior = _posterior_deviation(found, model)
-    others = [] if other_labels is None else [other_labels]
+    parts = [_curve_of(found.seen.of(part), found.exposures, found, model) for part in (even, ~even)]
+    halves = [in_file_codes(part, white) for part in parts]
+    alone = [_channel_curve(found, channel, model) for channel in range(found.fit.offsets.shape[1])]
+    channels = [in_file_codes(channel, white) for channel in alone]
+    others = [] if other_labels is None else [in_file_codes(other_labels, white)]
+    codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
+    posterior = _posterior_deviation(found, model, codes)
     shape = {
         "posterior": posterior[0],
         "sampling": shape_error(halves[0], halves[1]) / 2,
-        "channels": CHANNEL_PART * _rms(shape_error(found.curve, channel) for channel in channels),
-        "times": _time_deviation(found),
-        "labels": 0.5 * _rms(shape_error(found.curve, other) for other in others),
+        "channels": CHANNEL_PART * _rms(shape_error(curve, channel) for channel in channels),
+        "times": _time_deviation(found, codes),
+        "labels": 0.5 * _rms(shape_error(curve, other) for other in others),
         "least": LEAST_SHAPE,
     }
     scale = {
         "posterior": posterior[1],
         "sampling": abs(scale_error(halves[0], halves[1])) / 2,
-        "channels": CHANNEL_PART * _rms(scale_error(found.curve, channel) for channel in channels),
+        "channels": CHANNEL_PART * _rms(scale_error(curve, channel) for channel in channels),
         "white": found.anchor.deviation if found.anchor.is_seen else UNSEEN_DEVIATION,
-        "labels": 0.5 * _rms(scale_error(found.curve, other) for other in others),
+        "labels": 0.5 * _rms(scale_error(curve, other) for other in others),
         "least": LEAST_SCALE,
     }
     return Uncertainty(shape, scale)
@@ -105,11 +113,10 @@ def _channel_curve(found: Measurement, channel: int, model: CurveModel) -> Respo
     return _curve_of(alone, found.exposures + found.fit.offsets[:, channel], found, model)
 
 
-def _posterior_deviation(found: Measurement, model: CurveModel) -> tuple[float, float]:
-    """Return the standard deviations of shape and scale over draws from the posterior, in stops."""
+def _posterior_deviation(found: Measurement, model: CurveModel, codes: Float64Array) -> tuple[float, float]:
+    """Return the standard deviations of shape and scale at some codes over draws from the posterior, in stops."""
     rng = np.random.default_rng(SEED)
     weights = rng.multivariate_normal(found.fit.weights, found.fit.covariance, size=DRAWS, method="eigh")
-    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
     tables = np.maximum.accumulate(model.mean + weights @ model.basis.T, axis=1)
     tables += 1e-9 * np.arange(tables.shape[1])
     stops = np.stack([np.interp(codes, table, table_stops()) for table in tables])
@@ -118,10 +125,9 @@ def _posterior_deviation(found: Measurement, model: CurveModel) -> tuple[float, 
     return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
 
 
-def _time_deviation(found: Measurement) -> float:
-    """Return the shape error in stops by labels that are off by `TIME_DEVIATION` each: a trend bends the response."""
+def _time_deviation(found: Measurement, codes: Float64Array) -> float:
+    """Return the shape error in stops at some codes if labels are off by `TIME_DEVIATION` each: a trend bends it."""
     trend = TIME_DEVIATION / np.sqrt(((found.exposures - found.exposures.mean()) ** 2).sum())
-    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
     return float(trend * np.log2(found.curve.inverse(codes)).std())
 
 

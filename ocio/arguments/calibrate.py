@@ -22,7 +22,7 @@ eos20d_sheet.png (every frame's points on the curve) and eos20d.json."""
 def add(commands: Commands) -> None:
     """Add `crfnet calibrate`."""
     parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
-    parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, PNG, TIFF, WebP or DPX")
+    parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, HEIC, PNG, TIFF, DPX and others")
     parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
     parser.add_argument("--name", metavar="NAME", help="how the files and the colour space are called (first frame)")
     parser.add_argument(

@@ -6,7 +6,7 @@ import pytest
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.errors import CalibrationError
 from tests.helpers.images import write_image
-from tests.helpers.stacks import emor_response
+from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
 
 def test_three_frames_are_too_few(stack):
@@ -80,6 +80,24 @@ def test_frames_that_were_rendered_each_on_its_own_are_refused(stack, tmp_path):
     mixed = [path if index % 2 else other for index, (path, other) in enumerate(zip(first, second, strict=True))]
     with pytest.raises(CalibrationError, match=r"no single curve explains the frames|stop (brighter|darker) than its"):
         calibrate_stack(mixed)
+
+
+@pytest.mark.parametrize(
+    ("gains", "channels"), [((1, 0, 0), "green and blue"), ((1, 0.8, 0), "blue")], ids=["red light", "yellow light"]
+)
+def test_light_that_a_channel_does_not_see_is_refused(tmp_path, light, true_response, gains, channels):
+    paths = make_stack(tmp_path, light * np.float32(gains), true_response, StackOptions(quality=0, read_noise=0))
+    with pytest.raises(CalibrationError, match=rf"only 0 flat places .*: in {channels} nearly everything is black or"):
+        calibrate_stack(paths)
+
+
+def test_frames_that_show_nothing_in_common_are_refused(tmp_path):
+    """14 stops lie between two frames: what one shows is black or white in the next."""
+    stops = np.kron(np.random.default_rng(0).uniform(-40, 0, (20, 30, 1)), np.ones((20, 20, 3)))
+    codes = [np.rint(255 * np.exp2(np.minimum(stops + 14 * i, 0) / 2.2)).astype(np.uint8) for i in range(4)]
+    paths = [write_image(tmp_path / f"{i}.png", each) for i, each in enumerate(codes)]
+    with pytest.raises(CalibrationError, match=r"only 0 flat places are seen well in two frames, 200 .*; take more fr"):
+        calibrate_stack(paths, seconds=[2.0**-42, 2.0**-28, 2.0**-14, 1])
 
 
 def test_a_flat_scene_is_refused(stack, tmp_path, true_response):

@@ -1,0 +1,83 @@
+"""A camera that clips below the largest code: its response is in the file's codes, as all that is compared with it."""
+
+import numpy as np
+import pytest
+
+from crfnet_core.calibration import calibrate_stack
+from crfnet_core.calibration.curve_model import in_file_codes
+from crfnet_core.cameras import Camera, CameraSettings, MeasuredResponse
+from crfnet_core.cameras.answer import camera_estimate
+from crfnet_core.metrics import scale_error, shape_error
+from crfnet_core.response import ResponseCurve
+from tests.helpers.stacks import StackOptions, emor_response, make_stack
+
+#: The code at which the camera clips, as a part of the largest.
+WHITE = 240 / 255
+
+
+@pytest.fixture(scope="module")
+def response():
+    """The camera's response, brightness of white = 1."""
+    return emor_response(100)
+
+
+@pytest.fixture(scope="module")
+def found(light, response, tmp_path_factory):
+    """What is measured on a stack of that camera."""
+    return calibrate_stack(make_stack(tmp_path_factory.mktemp("stack"), light, response, StackOptions(white=WHITE)))
+
+
+def test_a_response_in_file_codes_reaches_white_and_jumps():
+    curve = in_file_codes(ResponseCurve.gamma(2), WHITE)
+    np.testing.assert_allclose(curve.forward([0.25, 0.81]), [0.5 * WHITE, 0.9 * WHITE], atol=2e-4)
+    np.testing.assert_allclose(curve.inverse([0.5 * WHITE, WHITE, 0.98, 1]), [0.25, 1, 1, 1], atol=1e-3)
+
+
+def test_a_response_that_ends_at_the_largest_code_stays_as_it_is(response):
+    assert in_file_codes(response, 1.0) == response
+
+
+def test_the_response_leads_from_the_codes_of_the_file_to_light(found, response):
+    codes = np.arange(16, 241)
+    stops = np.log2(found.curve.inverse(codes / 255) / response.inverse(codes / 240))
+    assert found.white == pytest.approx(WHITE)
+    assert found.curve.inverse(WHITE) == pytest.approx(1, abs=2e-3)
+    assert np.std(stops) < 0.02
+    assert abs(np.mean(stops)) < 0.04
+
+
+def test_the_uncertainties_of_the_response_in_file_codes_hold(found, response):
+    true = in_file_codes(response, WHITE)
+    assert shape_error(true, found.curve) < 2 * found.uncertainty.shape_stops < 0.1
+    assert abs(scale_error(true, found.curve)) < 2 * found.uncertainty.scale_stops < 0.25
+
+
+def test_the_points_lie_on_the_response_in_file_codes(found):
+    """None is above white, and each is off by its residual."""
+    stops, brightness, residual, _ = found.points.T
+    dark = stops < -0.1
+    assert 0.9 < brightness.max() / WHITE <= 1
+    on_curve = found.curve.forward(np.exp2(stops[dark]))
+    np.testing.assert_allclose(np.median(np.abs(brightness[dark] - on_curve - residual[dark])), 0, atol=2e-3)
+
+
+def test_residuals_are_in_codes_of_the_file(found):
+    assert found.residual == pytest.approx(255 * np.sqrt(np.mean(found.points[:, 2] ** 2)))
+
+
+def test_the_true_response_in_file_codes_compares_well(found, response):
+    """Brightness is counted in the file's codes too, so a comparison weighs the right ones."""
+    compared = found.compare(in_file_codes(response, WHITE))
+    assert compared.estimation_error < 0.3
+    assert compared.linearization_error < 0.01
+    assert found.counts[241:].sum() < 0.02 * found.counts.sum()
+
+
+def test_the_jump_to_the_largest_code_is_no_uncertainty_of_the_camera(response):
+    """E_est of a camera follows from stops by the slope; at the jump that would be 40 times too steep."""
+    errors = [
+        camera_estimate(Camera("a", MeasuredResponse(curve, 0.02, 0.05, "8 exposures", CameraSettings())), model="")
+        for curve in (response, in_file_codes(response, WHITE))
+    ]
+    assert errors[1].uncertainty == pytest.approx(WHITE * errors[0].uncertainty, rel=0.02)
+    assert errors[1].verdict == errors[0].verdict
