@@ -70,7 +70,8 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
     group.nodes.clear()
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
-    _add_nodes(group, _lut_image(plate, f".{group.name} LUT", curve), source, stored_estimate.matrix(plate))
+    lut = _lut_image(plate, f".{group.name} LUT", curve)
+    _add_nodes(group, lut, source, stored_estimate.matrix(plate), getattr(plate, "alpha_mode", "STRAIGHT"))
     return group
 
 
@@ -144,12 +145,15 @@ def _lut_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.I
     return image
 
 
-def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str, matrix: Float64Array | None) -> None:
+def _add_nodes(
+    group: bpy.types.NodeTree, lut: bpy.types.Image, source: str, matrix: Float64Array | None, alpha_mode: str
+) -> None:
     """Add the nodes: a look-up for each channel, exposure, multiplication by alpha, conversion to the working space.
 
     A matrix comes behind the look-ups if the plate has other primaries than Rec.709.
 
-    The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored.
+    The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored. If the
+    image's alpha is "None", it is 1, and if it is "Channel Packed", the colours stay as they are.
     """
     grid = NodeGrid(group)
     start = grid.node("NodeGroupInput", 0)
@@ -158,20 +162,23 @@ def _add_nodes(group: bpy.types.NodeTree, lut: bpy.types.Image, source: str, mat
     split = grid.node("CompositorNodeSeparateColor", 1)
     grid.link(start.outputs["Image"], split.inputs[0])
     positions = [_position(grid, split.outputs[channel], row) for row, channel in enumerate(CHANNELS)]
-    light = [_look_up(grid, table.outputs["Image"], position, row) for row, position in enumerate(positions)]
+    channels = [_look_up(grid, table.outputs["Image"], position, row) for row, position in enumerate(positions)]
     after = 5
     if matrix is not None:
-        light, after = multiply_by_matrix(grid, light, matrix, 6), 8
+        channels, after = multiply_by_matrix(grid, channels, matrix, 6), 8
     join = grid.node("CompositorNodeCombineColor", after + 1)
-    grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
-    for channel, socket in zip(CHANNELS, light, strict=True):
+    if alpha_mode != "NONE":
+        grid.link(split.outputs["Alpha"], join.inputs["Alpha"])
+    for channel, socket in zip(CHANNELS, channels, strict=True):
         grid.link(socket, join.inputs[channel])
     exposed = grid.node("CompositorNodeExposure", after + 2)
     grid.link(join.outputs[0], exposed.inputs["Image"])
     grid.link(start.outputs["Exposure"], exposed.inputs["Exposure"])
-    premultiplied = multiply_by_alpha(grid, exposed.outputs[0], after + 3)  # before the conversion: faster
+    light = exposed.outputs[0]
+    if alpha_mode not in ("NONE", "CHANNEL_PACKED"):
+        light = multiply_by_alpha(grid, light, after + 3)  # before the conversion: faster
     end = grid.node("NodeGroupOutput", after + 5)
-    grid.link(convert_color_space(grid, source, working_space(), premultiplied, after + 4), end.inputs["Image"])
+    grid.link(convert_color_space(grid, source, working_space(), light, after + 4), end.inputs["Image"])
 
 
 def _look_up(

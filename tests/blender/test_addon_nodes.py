@@ -71,6 +71,21 @@ def test_alpha(load, composited, tmp_path, codes, estimate, depth):
     assert np.abs(pixels[..., :3] - expected).max() < CODES
 
 
+@pytest.mark.parametrize(("mode", "has_alpha"), [("NONE", False), ("CHANNEL_PACKED", True)])
+@pytest.mark.parametrize("depth", ["uint8", "uint16"])
+def test_alpha_that_is_none_or_no_coverage(addon, composited, tmp_path, codes, estimate, depth, mode, has_alpha):
+    alpha = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
+    stored = np.concatenate([codes, alpha], axis=2).astype(depth) * (257 if depth == "uint16" else 1)
+    path = write_image(tmp_path / "packed.png", stored.astype(depth), oiio__UnassociatedAlpha=1)
+    image = bpy.data.images.load(str(path))
+    image.alpha_mode = mode
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    (group,) = (node for node in scene_tree().nodes if node.type == "GROUP")
+    pixels = composited(group.outputs[0])
+    assert np.abs(pixels[..., 3:] - (alpha / 255 if has_alpha else 1)).max() < CODES
+    assert np.abs(pixels[..., :3] - estimate(path).curve.inverse(codes / 255)).max() < CODES
+
+
 def test_saved_and_opened_again(load, composited, tmp_path, plate_file, codes, estimate):
     load(plate_file)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
