@@ -37,6 +37,8 @@ class PhotographRecord:
         "good", "usable" or "do not trust".
     uncertainty, shape_uncertainty_stops : float
         The expected E_est, and the expected shape error in stops.
+    warnings : tuple of str
+        What makes a poor estimate likely; empty in manifests of earlier versions.
     exposure : float
         Stops added after the inverse response.
     primaries : mapping, optional
@@ -57,6 +59,7 @@ class PhotographRecord:
     verdict: str = ""
     uncertainty: float | None = None
     shape_uncertainty_stops: float | None = None
+    warnings: tuple[str, ...] = ()
     exposure: float = 0.0
     primaries: Mapping[str, Any] | None = None
     primaries_source: str = ""
@@ -87,6 +90,7 @@ class PhotographRecord:
             verdict=estimate.verdict,
             uncertainty=estimate.uncertainty,
             shape_uncertainty_stops=estimate.shape_uncertainty,
+            warnings=estimate.warnings,
             summary=result_line(estimate, name=photograph.name),
         )
 
@@ -149,7 +153,7 @@ class Manifest:
         try:
             entries = list(map(json.loads, lines))
             settings = entries[0]["settings"]
-            records = [PhotographRecord(**{**entry, "weights": tuple(entry["weights"])}) for entry in entries[1:]]
+            records = list(map(_record, entries[1:]))
         except (IndexError, KeyError, TypeError, ValueError) as problem:
             raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
         if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
@@ -171,6 +175,12 @@ def check_records(records: Sequence[PhotographRecord]) -> None:
     if failed := [record for record in records if record.error]:
         first = f"the first: {failed[0].error}"
         raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
+
+
+def _record(entry: Mapping[str, Any]) -> PhotographRecord:
+    """Return a record of a manifest's line."""
+    several = {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
+    return PhotographRecord(**{**entry, **several})
 
 
 def _line(entry: Mapping[str, Any]) -> str:

@@ -6,6 +6,7 @@ import signal
 import subprocess
 import sys
 import time
+from pathlib import Path
 
 import pytest
 
@@ -13,6 +14,7 @@ from ocio.arguments.parts import BAD_INPUT
 from ocio.defaults import ESTIMATES
 from ocio.pipeline import each
 from tests.helpers.folders import listed, tree
+from tests.helpers.images import write_image
 from tests.helpers.processes import start_interruptible
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
@@ -42,9 +44,18 @@ def test_the_manifest_says_what_the_documents_say(estimate, photographs, tmp_pat
     for record in records:
         stem = record["photograph"].rpartition("/")[2].partition(".")[0]
         document = json.loads((tmp_path / "out" / record["folder"] / f"{stem}.json").read_text())
-        for name in ("weights", "verdict", "uncertainty", "shape_uncertainty_stops"):
+        for name in ("weights", "verdict", "uncertainty", "shape_uncertainty_stops", "warnings"):
             assert record[name] == document[name]
         assert record["error"] == ""
+
+
+def test_the_manifest_keeps_warnings(estimate, photographs, codes, tmp_path):
+    write_image(photographs / "gray.png", codes[..., :1].repeat(3, axis=2))
+    for _ in range(2):  # and so they are read again
+        estimate(photographs, *QUICK)
+        _, records = manifest_lines(tmp_path)
+        warnings = {Path(record["photograph"]).name: record["warnings"] for record in records}
+        assert ["gray photograph" in " ".join(warnings[name]) for name in ("gray.png", "b.JPG")] == [True, False]
 
 
 def test_processes_write_the_same_bytes_as_one(estimate, crfnet, fixed_model, photographs, tmp_path):
