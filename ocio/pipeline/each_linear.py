@@ -7,11 +7,13 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.types import Progress
 from ocio.defaults import PLATES
 from ocio.interchange.files import read_response
 from ocio.luts.rgb_lut import AnyLut
+from ocio.movies.library import is_movie
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import output_folder, plain_stem
 from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
@@ -130,6 +132,8 @@ def linearize_one(task: LinearTask) -> PhotographRecord:
     CRFNetError, OSError, MemoryError
         What goes wrong.
     """
+    if is_movie(task.photo):
+        raise PlateError(f"{task.photo}: is a movie; linearize it by itself, without --each")
     photograph = FrameSequence((task.photo,))
     lut, estimate = _given_response(task.lut, task.options) or _estimated_response(photograph, task.options)
     with output_folder(task.target.parent):

@@ -80,6 +80,14 @@ def test_a_bad_photograph_stops_no_other_and_is_tried_again(linearize, photograp
     }
 
 
+def test_a_movie_is_told_to_go_by_itself(linearize, plate, look, tmp_path):
+    movie = tmp_path / "clip.mp4"
+    movie.write_bytes(b"\0\0\0\x18ftypisom" + bytes(64))
+    done = linearize(plate, movie, "--lut", look / "plate.spi1d")
+    assert done.code == BAD_INPUT
+    assert f"{movie}: is a movie; linearize it by itself, without --each" in done.err
+
+
 def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tmp_path):
     """As a run leaves it that is killed in between."""
     arguments = (photographs, "--lut", look / "plate.spi1d")
