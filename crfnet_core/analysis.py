@@ -137,7 +137,7 @@ def _thumbnail(pixels: Pixels) -> Float64Array:
     rows, columns = (np.linspace(0, side - 1, 4 * THUMBNAIL).round().astype(int) for side in pixels.shape[:2])
     samples = pixels[np.ix_(rows, columns)].mean(axis=2)  # (64, 64)
     cells = samples.reshape(THUMBNAIL, 4, THUMBNAIL, 4).mean(axis=(1, 3))
-    ranks: Float64Array = cells.ravel().argsort().argsort().reshape(cells.shape).astype(np.float64)
+    ranks: Float64Array = cells.ravel().argsort(kind="stable").argsort().reshape(cells.shape).astype(np.float64)
     return ranks
 
 
