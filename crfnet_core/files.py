@@ -113,10 +113,9 @@ def atomic_write(
     CRFNetError
         As `check_target`, or when the disk refuses the file.
     """
-    path = Path(path)
-    temporary = _temporary_name(path)
     try:
-        check_target(path, overwrite=overwrite, error=error)
+        path = check_target(path, overwrite=overwrite, error=error)
+        temporary = _temporary_name(path)
         os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
         try:
             yield temporary

@@ -45,6 +45,13 @@ def test_a_folder_is_no_target(tmp_path):
         pass
 
 
+@pytest.mark.parametrize("name", [".", ""])
+def test_a_folder_without_a_name_is_no_target_either(tmp_path, monkeypatch, name):
+    monkeypatch.chdir(tmp_path)
+    with pytest.raises(CRFNetError, match="is a folder"), atomic_write(name):
+        pass
+
+
 def test_the_file_has_the_permissions_of_any_other(tmp_path):
     (tmp_path / "other").touch()
     with atomic_write(tmp_path / "plate.cube"):
