@@ -10,7 +10,7 @@ from typing import TypeAlias
 import bpy
 
 from .node_building import GAP, WIDTH
-from .node_links import compositor_trees, is_group_of, linearizes, neighbors_behind, nodes_behind
+from .node_links import is_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
 from .plates import Datablock, datablock_of_node, shown_by_node
 
 #: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.
@@ -153,8 +153,7 @@ def show_code_values(plate: Datablock, name: str, codes: Datablock) -> int:
 
 def linearized_nodes(plate: Datablock, name: str) -> list[bpy.types.Node]:
     """Return the nodes of the file that show a plate or its code values, and have its node group behind them."""
-    nodes = [node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate]
-    return [node for node in nodes if next(_groups_behind(node, plate, name), None) is not None]
+    return [node for node in nodes_of(plate) if next(_groups_behind(node, plate, name), None) is not None]
 
 
 def _groups_behind(source: bpy.types.Node, plate: Datablock, name: str) -> Iterator[bpy.types.Node]:
@@ -242,5 +241,4 @@ def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[Image
     for space in (context.space_data, *(area.spaces.active for area in areas)):
         if space is not None and space.type == "IMAGE_EDITOR" and space.image == plate:
             yield space.image_user
-    for tree in compositor_trees():
-        yield from (node for node in tree.nodes if node.type == "IMAGE" and datablock_of_node(node) == plate)
+    yield from (node for node in nodes_of(plate) if node.type == "IMAGE")

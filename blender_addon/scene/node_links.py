@@ -41,6 +41,11 @@ def compositor_trees() -> Iterator[bpy.types.NodeTree]:
         yield from (scene.node_tree for scene in bpy.data.scenes if scene.node_tree is not None)
 
 
+def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
+    """Yield the compositor nodes of the file that show a plate or its code values."""
+    yield from (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate)
+
+
 def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "") -> bool:
     """Return whether a node tree is a plate's node group, or one that an earlier version made for a plate of a name."""
     owner = None if tree is None else tree.get(PLATE)
@@ -49,7 +54,7 @@ def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "
 
 def linearized_twice(plate: Datablock) -> str:
     """Return why a plate is linearised twice in a compositor of the file, and what to do; empty if it is not."""
-    for node in (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate):
+    for node in nodes_of(plate):
         groups = [other for other in nodes_behind(node) if linearizes(other)]
         if groups and shown_by_node(node) == plate and not plate.colorspace_settings.is_data:
             return f'Linearized twice: "{_title(node)}" shows no code values. Apply as Nodes to mend it.'
@@ -63,7 +68,7 @@ def without_group(plate: Datablock) -> str:
 
     So it is where the node group has been deleted, and the links around it were kept or made again.
     """
-    for node in (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate):
+    for node in nodes_of(plate):
         behind = list(nodes_behind(node))
         if shown_by_node(node) != plate and behind and not any(map(linearizes, behind)):
             return f'"{_title(node)}" shows code values without the node group. Apply as Nodes to mend it.'
