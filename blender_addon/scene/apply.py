@@ -30,7 +30,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
     if completed.is_applied and completed.files is None:
         node_group.check_config()
-        shown_tree(context)
+        shown_tree(context)  # refuses one that is linked
     stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     stored_estimate.set_primaries(datablock, completed.primaries)

@@ -202,7 +202,7 @@ def _installed(folder: Path, _fingerprint: str) -> tuple[str, ...]:
 @lru_cache(maxsize=1)
 def _missing(folder: Path, _fingerprint: str) -> tuple[str, ...]:
     """Return the color spaces of this Blender that the user's config lacks, if the add-on has built it."""
-    if color_management.environment_config():
+    if not (folder / RECORD).is_file() or color_management.environment_config():
         return ()
     try:
         installed = lazy_import.load("ocio.configs.installed")

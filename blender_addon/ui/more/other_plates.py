@@ -102,8 +102,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
 def other_plates(source: plates.Datablock) -> Iterator[plates.Datablock]:
     """Yield the images and clips of the file that a response can be applied to, hidden ones and the source excepted."""
     for datablock in (*bpy.data.images, *bpy.data.movieclips):
-        is_plate = not datablock.name.startswith(".") and plates.CODE_VALUES_OF not in datablock
-        if datablock != source and is_plate and not plates.obstacle(datablock):
+        if datablock != source and not datablock.name.startswith(".") and not plates.obstacle(datablock):
             yield datablock
 
 
