@@ -13,13 +13,13 @@ from typing import Any, TypeVar
 from crfnet_core.errors import CRFNetError, PhotoError, PlateError, one_line
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
-from crfnet_core.types import Progress, show_progress
+from crfnet_core.types import Progress, cores, show_progress
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import check_targets, plain_stem
 from ocio.pipeline.loading import load_network, load_prior
 from ocio.pipeline.manifest import Manifest, PhotographRecord
 from ocio.pipeline.photographs import check_distinct, fault, is_folder
-from ocio.pipeline.workers import cores, worker_pool
+from ocio.pipeline.workers import worker_pool
 
 
 @dataclass(frozen=True, kw_only=True)

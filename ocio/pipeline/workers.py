@@ -9,9 +9,6 @@ from contextlib import contextmanager
 from multiprocessing import get_context
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.types import cores
-
-__all__ = ["cores", "worker_pool"]
 
 #: Seconds to wait for the answer of a scheduler.
 SCHEDULER_TIMEOUT = 10
