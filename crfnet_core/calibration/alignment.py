@@ -56,7 +56,7 @@ def chain_of_shifts(ranks: Sequence[Float64Array], order: Sequence[int], stride:
 
 
 def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
-    """Return by how many samples (rows, columns) `second` is displaced, with parts of samples; 0 if that helps nothing.
+    """Return by how many samples (rows, columns) `second` is displaced, with fractions; 0 if that helps nothing.
 
     Source: Kuglin and Hines, "The phase correlation image alignment method", 1975.
     """

@@ -20,6 +20,9 @@ LEAST_CROSSINGS = 30
 #: Share of the samples, the flattest, that the crossing is looked for in.
 FLATTEST = 0.5
 
+#: Stops below the crossing in which the fraction of white pixels is taken, and the fraction that noise makes there.
+BELOW, NOISE_BELOW = 0.5, 0.02
+
 #: Standard deviation in stops of the anchor where its methods agree: the end of a response is seen in steps of a code.
 LEAST_DEVIATION = 0.02
 
@@ -50,7 +53,9 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     """Return where white is.
 
     Two ways: the irradiance at which half the pixels of flat samples are white, which is half a code below the end;
-    and a parabola for the irradiance over the last codes of the fitted curve. The first counts twice.
+    and a parabola for the irradiance over the last codes of the fitted curve. The first counts twice. Where surfaces
+    have texture, samples become white gradually, and both ways find white too high, by about the blur of `_crossing`.
+    The deviation holds how far the two are apart, half the blur, and the last half code, which no pixel shows.
     """
     crosses = (seen.white_share >= ALL_WHITE).any(axis=1) & seen.is_used.any(axis=1)
     if crosses.sum() < LEAST_CROSSINGS:
@@ -59,23 +64,28 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     irradiance = np.exp2(_log_irradiance(model, fit, codes / 255))
     parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
     parabolic = float(np.log2(max(parabola, irradiance[-1])))
-    crossing = _crossing(seen, fit.exposed(exposures, seen))
+    crossing, blur = _crossing(seen, fit.exposed(exposures, seen))
     before = float(_log_irradiance(model, fit, np.array([LINE_FROM / 255]))[0])
     per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
     crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
-    spread = abs(crossed - parabolic) / 2
-    return Anchor((2 * crossed + parabolic) / 3, float(np.hypot(LEAST_DEVIATION, spread)), is_seen=True)
+    parts = (LEAST_DEVIATION, (crossed - parabolic) / 2, blur / 2, crossed - crossing)
+    return Anchor((2 * crossed + parabolic) / 3 - blur, float(np.linalg.norm(parts)), is_seen=True)
 
 
-def _crossing(seen: Observations, log_exposed: Float64Array) -> float:
-    """Return log2 of the irradiance that parts white pixels from others best, over the flattest samples."""
+def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, float]:
+    """Return log2 of the irradiance that parts white pixels from others best, over the flattest samples; and its blur.
+
+    The blur, in stops, is the fraction of white pixels below this irradiance, as far as it is more than noise makes.
+    """
     partly = (seen.white_share > PARTLY_WHITE).any(axis=1)
     flat = seen.spread <= np.quantile(seen.spread[partly], FLATTEST)
     order = log_exposed[flat].ravel().argsort()
     stops, share = log_exposed[flat].ravel()[order], seen.white_share[flat].ravel()[order]
     near = np.abs(stops - stops[np.cumsum(share - 0.5).argmin()]) < 1
     stops, share = stops[near], share[near]
-    return float(stops[np.cumsum(share - 0.5).argmin()])
+    crossing = float(stops[np.cumsum(share - 0.5).argmin()])
+    below = share[(stops < crossing) & (stops > crossing - BELOW)]
+    return crossing, max(float(below.mean()) - NOISE_BELOW, 0.0) if len(below) else 0.0
 
 
 def _log_irradiance(model: CurveModel, fit: StackFit, brightness: Float64Array) -> Float64Array:

@@ -24,13 +24,14 @@ ALL_WHITE, PARTLY_WHITE = 0.98, 0.03
 #: 8-bit code below which brightness is not used: there black level and clipping rule.
 DARKEST_CODE = 5
 
-#: 8-bit code at which that begins: the deviation is twice as large there, and grows with the square of 1 / code.
+#: Deviations are multiplied by 1 + (this 8-bit code / code)^2, for the same reason: twice at this code.
 DARK_CODE = 10
 
 #: Standard deviation of a block's mean, in 8-bit codes: rounding, JPEG; and the part of the spread within the block.
 CODE_NOISE, SPREAD_NOISE = 0.4, 0.15
 
-#: Factor on it where another channel clips, and the chroma (a part of the brightness) from which colour doubles it.
+#: Factor on the deviation where another channel clips, and the chroma (a part of the brightness) at which the variance
+#: is twice that of gray.
 CLIPPED_NEIGHBOUR, STRONG_CHROMA = 4.0, 0.35
 
 #: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
@@ -87,11 +88,6 @@ class Observations:
         """Return what some of the frames show."""
         cut = {name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2}
         return Observations(**{**vars(self), **cut})
-
-    def without(self, is_outlier: BoolArray) -> Observations:
-        """Return the observations, of which those of shape (M, T) that are outliers do not count."""
-        kept = {"is_used": self.is_used & ~is_outlier, "is_white": self.is_white & ~is_outlier}
-        return Observations(**{**vars(self), **kept})
 
 
 def block_means(codes: CodeArray, white: float) -> BlockMeans:

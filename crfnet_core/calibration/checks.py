@@ -18,8 +18,9 @@ from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 
-#: Stops that the exposures of a stack have to span.
-LEAST_RANGE = 2.0
+#: Stops that the exposures of a stack have to span, and stops between two neighbours beyond which hardly a surface is
+#: seen between black and white in both.
+LEAST_RANGE, LARGEST_STEP = 2.0, 6.0
 
 #: Largest difference in stops between a frame's exposure and its label.
 MOST_OFFSET = 0.3
@@ -33,8 +34,8 @@ MOST_RESIDUAL, MOST_OUTLIERS = 2.5, 0.3
 #: Largest E_est between a measured response and the nearest known one.
 MOST_UNKNOWN = 2.0
 
-#: Scatter in 8-bit codes of blocks that are equal in one frame and not in the next, from which something has moved:
-#: whatever curve each frame was rendered with, equal light stays equal.
+#: If nothing moved, blocks of equal code in one frame are equal in the next, whatever curve each was rendered with.
+#: From this scatter on, in 8-bit codes, something has moved.
 MOST_SCATTER = 6.0
 
 #: Levels that blocks count as equal within.
@@ -67,17 +68,22 @@ def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
 
 
 def check_range(exposures: Exposures) -> None:
-    """Refuse a stack whose exposures lie too close together.
+    """Refuse a stack whose exposures lie too close together, or too far apart.
 
     Raises
     ------
     CalibrationError
-        If they span less than `LEAST_RANGE` stops.
+        If they span less than `LEAST_RANGE` stops, or two neighbours are more than `LARGEST_STEP` stops apart.
     """
     if exposures.range < LEAST_RANGE:
         raise CalibrationError(
             f"the exposures span {exposures.range:.1f} stops, by EXIF or --times; a stack needs {LEAST_RANGE:g} or"
             " more, from nearly nothing white to nearly everything white"
+        )
+    if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP:
+        raise CalibrationError(
+            f"two neighbouring exposures are {step:.1f} stops apart, by EXIF or --times; check the times, or take frames"
+            " one or two stops apart"
         )
 
 

@@ -46,8 +46,8 @@ class CurveValues(NamedTuple):
 class CurveModel:
     """Responses that are linear in K weights, tabulated over u = log2 of irradiance.
 
-    Beyond white they go on as straight lines in irradiance, so that an irradiance that was taken for too high can be
-    corrected.
+    Beyond white they go on as straight lines in irradiance, so that the fit can lower an irradiance that began too
+    high.
 
     Parameters
     ----------

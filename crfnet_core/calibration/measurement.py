@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -91,9 +91,7 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
     is_outlier = _outliers(seen, found.fit)
     if is_outlier.any() and not is_outlier.all():
         found = fit_and_anchor(seen.of(~is_outlier), stops, model, found.curve)
-    return Measurement(
-        **{**vars(found), "frames": frames, "outliers": float(is_outlier.mean())},
-    )
+    return replace(found, frames=frames, outliers=float(is_outlier.mean()))
 
 
 def fit_and_anchor(

@@ -27,7 +27,7 @@ HUBER = 2.0
 #: Least slope df/du, in brightness a stop, that costs nothing; and the deviation by which one below is weighed.
 LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 
-#: A white sample explains itself from so many 8-bit codes below white on.
+#: A white sample costs nothing once the model is within so many 8-bit codes of white.
 WHITE_CODES = 0.5
 
 #: Iterations at most, and the relative change of the cost that ends them.
@@ -97,7 +97,7 @@ def fit_stack(
     for _ in range(MOST_ITERATIONS):
         moved = problem.step(state, system, damping)
         trial = problem.linearize(moved)
-        if trial.cost > system.cost:
+        if not trial.cost <= system.cost:  # worse, or not a number
             damping *= 8
             if damping > 1e8:
                 break
@@ -131,11 +131,11 @@ class _System:
 
     cost: float
     residual: Float64Array
-    shared: Float64Array  # (P, P), of weights and offsets
-    coupling: Float64Array  # (M, P)
-    single: Float64Array  # (M,), of the irradiances
-    shared_side: Float64Array  # (P,)
-    single_side: Float64Array  # (M,)
+    matrix: Float64Array  # (P, P), of weights and offsets
+    right: Float64Array  # (P,), their right-hand side
+    coupling: Float64Array  # (M, P), of irradiances with weights and offsets
+    diagonal: Float64Array  # (M,), of the irradiances, which have no terms with each other
+    irradiance_right: Float64Array  # (M,), their right-hand side
 
 
 class _Problem:
@@ -166,37 +166,37 @@ class _Problem:
         at = size + frame[None] * self.channels + seen.channel[:, None]
         jacobian[np.arange(len(residual))[:, None], frame[None], at] = curve.slope
         weighted = (jacobian * weight[..., None]).reshape(-1, jacobian.shape[-1])
-        shared = weighted.T @ jacobian.reshape(-1, jacobian.shape[-1])
-        side = weighted.T @ residual.ravel()
-        prior_cost = self._add_priors(state, shared, side)
+        matrix = weighted.T @ jacobian.reshape(-1, jacobian.shape[-1])
+        right = weighted.T @ residual.ravel()
+        prior_cost = self._add_priors(state, matrix, right)
         return _System(
             cost=cost + prior_cost,
             residual=residual,
-            shared=shared,
+            matrix=matrix,
+            right=right,
             coupling=np.einsum("mt,mtp->mp", weight * curve.slope, jacobian),
-            single=(weight * curve.slope**2).sum(axis=1) + 1e-6,
-            shared_side=side,
-            single_side=(weight * curve.slope * residual).sum(axis=1),
+            diagonal=(weight * curve.slope**2).sum(axis=1) + 1e-6,
+            irradiance_right=(weight * curve.slope * residual).sum(axis=1),
         )
 
     def step(self, state: _State, system: _System, damping: float) -> _State:
         """Return the state after one damped step."""
-        single = system.single * (1 + damping)
-        reduced = system.coupling / single[:, None]
-        matrix = system.shared - system.coupling.T @ reduced
-        matrix[np.diag_indices_from(matrix)] += damping * np.diag(system.shared)
-        shared = np.linalg.solve(matrix, system.shared_side - reduced.T @ system.single_side)
-        change = np.clip((system.single_side - system.coupling @ shared) / single, -1, 1)
+        diagonal = system.diagonal * (1 + damping)
+        reduced = system.coupling / diagonal[:, None]
+        matrix = system.matrix - system.coupling.T @ reduced
+        matrix[np.diag_indices_from(matrix)] += damping * np.diag(system.matrix)
+        step = np.linalg.solve(matrix, system.right - reduced.T @ system.irradiance_right)
+        brighter = np.clip((system.irradiance_right - system.coupling @ step) / diagonal, -1, 1)
         size = len(state.weights)
         return _State(
-            weights=state.weights + shared[:size],
-            offsets=state.offsets + shared[size:].reshape(state.offsets.shape),
-            log_irradiance=np.clip(state.log_irradiance + change, LOWEST, HIGHEST + 8),
+            weights=state.weights + step[:size],
+            offsets=state.offsets + step[size:].reshape(state.offsets.shape),
+            log_irradiance=np.clip(state.log_irradiance + brighter, LOWEST, HIGHEST + 8),
         )
 
     def covariance(self, system: _System) -> Float64Array:
         """Return the posterior covariance of the response's weights."""
-        matrix = system.shared - system.coupling.T @ (system.coupling / system.single[:, None])
+        matrix = system.matrix - system.coupling.T @ (system.coupling / system.diagonal[:, None])
         size = self.model.basis.shape[1]
         return np.asarray(np.linalg.inv(matrix)[:size, :size], dtype=np.float64)
 
@@ -208,31 +208,52 @@ class _Problem:
         is_too_dark = seen.is_white & (curve.brightness < white) & (log_exposed < HIGHEST)
         return residual, seen.is_used | is_too_dark
 
-    def _add_priors(self, state: _State, shared: Float64Array, side: Float64Array) -> float:
-        """Add what is known beforehand to the normal equations, and return its cost: weights, exposures, slopes."""
+    def _add_priors(self, state: _State, matrix: Float64Array, right: Float64Array) -> float:
+        """Add what is known beforehand to the normal equations of weights and offsets, and return its cost."""
         size = len(state.weights)
-        shared[:size, :size] += self.model.precision
-        side[:size] -= self.model.precision @ state.weights
-        cost = float(state.weights @ self.model.precision @ state.weights)
-        for frame, offset in enumerate(state.offsets):
-            part = slice(size + frame * self.channels, size + (frame + 1) * self.channels)
+        of_weights, of_offsets = slice(size), slice(size, None)
+        return (
+            self._add_weight_prior(state.weights, matrix[of_weights, of_weights], right[of_weights])
+            + self._add_slope_prior(state.weights, matrix[of_weights, of_weights], right[of_weights])
+            + self._add_frame_priors(state.offsets, matrix[of_offsets, of_offsets], right[of_offsets])
+            + self._add_trend_prior(state.offsets, matrix[of_offsets, of_offsets], right[of_offsets])
+        )
+
+    def _add_weight_prior(self, weights: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
+        """Add that the weights are normal: see `CurveModel.precision`."""
+        matrix += self.model.precision
+        right -= self.model.precision @ weights
+        return float(weights @ self.model.precision @ weights)
+
+    def _add_slope_prior(self, weights: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
+        """Add a penalty on slopes below `LEAST_SLOPE`."""
+        slope = self.slope_mean + self.slope_basis @ weights
+        is_low = slope < LEAST_SLOPE
+        rows = self.slope_basis[is_low] / SLOPE_DEVIATION
+        lacking = (LEAST_SLOPE - slope[is_low]) / SLOPE_DEVIATION
+        matrix += rows.T @ rows
+        right += rows.T @ lacking
+        return float(lacking @ lacking)
+
+    def _add_frame_priors(self, offsets: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
+        """Add that the offsets of a frame are normal, but for Huber's tails: see `_offset_covariance`."""
+        cost = 0.0
+        for frame, offset in enumerate(offsets):
+            part = slice(frame * self.channels, (frame + 1) * self.channels)
             distance = np.sqrt(np.array(offset @ self.offset_precision @ offset))
             weight = float(_huber_weight(distance))
-            shared[part, part] += weight * self.offset_precision
-            side[part] -= weight * self.offset_precision @ offset
+            matrix[part, part] += weight * self.offset_precision
+            right[part] -= weight * self.offset_precision @ offset
             cost += float(_huber_cost(distance))
+        return cost
+
+    def _add_trend_prior(self, offsets: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
+        """Add that green's offsets have no trend over the exposures: see `TREND_DEVIATION`."""
         trend = self.trend.ravel() / TREND_DEVIATION
-        excess = float(trend @ state.offsets.ravel())
-        shared[size:, size:] += np.outer(trend, trend)
-        side[size:] -= trend * excess
-        cost += excess**2
-        slope = self.slope_mean + self.slope_basis @ state.weights
-        falling = slope < LEAST_SLOPE
-        rows = self.slope_basis[falling] / SLOPE_DEVIATION
-        lacking = (LEAST_SLOPE - slope[falling]) / SLOPE_DEVIATION
-        shared[:size, :size] += rows.T @ rows
-        side[:size] += rows.T @ lacking
-        return cost + float(lacking @ lacking)
+        excess = float(trend @ offsets.ravel())
+        matrix += np.outer(trend, trend)
+        right -= trend * excess
+        return excess**2
 
 
 def _offset_covariance(channels: int) -> Float64Array:

@@ -7,7 +7,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from crfnet_core.calibration.anchor import UNSEEN_DEVIATION
 from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import CurveModel, in_file_codes, table_stops
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
@@ -92,7 +91,7 @@ def uncertainty_of(
         "posterior": posterior[1],
         "sampling": abs(scale_error(halves[0], halves[1])) / 2,
         "channels": CHANNEL_PART * _rms(scale_error(curve, channel) for channel in channels),
-        "white": found.anchor.deviation if found.anchor.is_seen else UNSEEN_DEVIATION,
+        "white": found.anchor.deviation,
         "labels": 0.5 * _rms(scale_error(curve, other) for other in others),
         "least": LEAST_SCALE,
     }

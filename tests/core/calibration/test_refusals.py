@@ -51,6 +51,12 @@ def test_equal_exposures_are_refused(stack):
         calibrate_stack(stack(), seconds=[1.0] * 8)
 
 
+@pytest.mark.parametrize("seconds", [[1, 1, 1, 1, 1, 1e4], [1e-308, 1, 2, 4, 8, 1e308]])
+def test_exposures_with_a_gap_are_refused(stack, seconds):
+    with pytest.raises(CalibrationError, match=r"two neighbouring exposures are \d+\.\d stops apart, by EXIF or --times;"):
+        calibrate_stack(stack(frames=6), seconds=seconds)
+
+
 def test_edited_frames_are_refused_unless_accepted(stack):
     paths = stack(header={"Software": "Adobe Photoshop Lightroom 6.0"})
     with pytest.raises(CalibrationError, match=r"saved by Adobe Photoshop Lightroom 6.0, which may have changed"):
