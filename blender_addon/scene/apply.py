@@ -15,7 +15,7 @@ from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
 from . import color_management, compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
-from .plates import Datablock, datablock_of_plate
+from .plates import Datablock, alpha_mode, datablock_of_plate
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
@@ -142,6 +142,7 @@ def _linear_image(plate: bpy.types.Image, baked: Baked) -> bpy.types.Image:
     image.source = "SEQUENCE" if baked.is_sequence else "FILE"
     image.filepath = _path_like(plate, image.filepath)
     image.reload()
+    image.alpha_mode = "CHANNEL_PACKED" if alpha_mode(plate) == "CHANNEL_PACKED" else "PREMUL"  # as OpenEXR demands
     image.colorspace_settings.name = node_group.linear_rec709()
     return image
 

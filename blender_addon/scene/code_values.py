@@ -18,7 +18,7 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .plates import CODE_VALUES_OF, Datablock, file_state, has_own_file
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, has_own_file
 
 #: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -44,15 +44,55 @@ def code_values(plate: Datablock) -> Datablock:
     return copy
 
 
-def is_outdated(plate: Datablock) -> bool:
-    """Return whether the nodes of a plate show another file than the plate, or an earlier state of its file.
+def alpha_in_compositor(plate: Datablock) -> str:
+    """Return how the alpha of the code values is to be taken that the compositor gets, as by `Image.alpha_mode`.
 
-    Of an image that was painted in Blender nobody knows.
+    Images and clips give them as stored. But Blender multiplies the frames of movies of 8 bits by alpha, even in
+    Non-Color, and hands on those of more bits as stored.
     """
-    if _is_painted(plate):
+    if plate.source != "MOVIE":
+        return alpha_mode(plate) or "STRAIGHT"
+    return "STRAIGHT" if _is_decoded_to_floats(plate) else "PREMUL"
+
+
+def _is_decoded_to_floats(movie: Datablock) -> bool:
+    """Return whether Blender decodes a movie to floats, as it does with those of more than 8 bits."""
+    if isinstance(movie, bpy.types.Image):
+        return movie.is_float
+    try:
+        image = bpy.data.images.load(bpy.path.abspath(movie.filepath))  # a clip does not say it
+    except RuntimeError:  # the file was removed meanwhile
         return False
+    is_float = image.is_float
+    bpy.data.images.remove(image)
+    return is_float
+
+
+def outdated(plate: Datablock) -> str:
+    """Return that the nodes of a plate show it as it was earlier, and what to do; empty if they do not.
+
+    A file that is not found is told first; of a sequence, one frame may well be missing. Of an image that was painted
+    in Blender and has no file nobody knows: see `is_painted_copy_shown`.
+    """
+    copies = [copy for copy in _copies(plate) if copy.users]
+    if not copies or _is_painted(plate):
+        return ""
+    if getattr(plate, "is_dirty", False):
+        return "Its nodes lack the unsaved changes: save or pack it, and apply it as Nodes."
     state = file_state(plate)
-    return not all(_is_alike(copy, plate) and copy.get(_READ, state) == state for copy in _copies(plate))
+    if not state and has_own_file(plate):
+        return "" if plate.source == "SEQUENCE" else "Its file is not found: find it with File, External Data."
+    if all(_is_alike(copy, plate) and copy.get(_READ, state) == state for copy in copies):
+        return ""
+    return "Its nodes show the earlier file until it is applied as Nodes."
+
+
+def is_painted_copy_shown(plate: Datablock) -> bool:
+    """Return whether nodes show an image that was painted in Blender as it was when it was applied.
+
+    Blender does not tell when it is painted on, and comparing all pixels takes too long for a panel.
+    """
+    return _is_painted(plate) and any(copy.users for copy in _copies(plate))
 
 
 def pack_with_plates() -> None:
@@ -100,6 +140,7 @@ def _painted_copy(image: bpy.types.Image) -> bpy.types.Image:
     copy.alpha_mode = image.alpha_mode
     copy.update()
     copy.pack()
+    copy.reload()  # as stored: the compositor multiplies pixels by alpha that come from no file
     return copy
 
 

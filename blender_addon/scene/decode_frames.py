@@ -19,18 +19,18 @@ def main() -> None:
     """Answer requests until the standard input ends."""
     bpy.ops.wm.read_factory_settings(use_empty=True)
     scene = bpy.context.scene
-    node = _add_image_node(scene)
+    nodes = _add_nodes(scene)
     _set_output(scene)
     for line in sys.stdin:
         request = json.loads(line)
-        problem = _decode(scene, node, request["file"], request["frame"], Path(request["target"]))
+        problem = _decode(scene, nodes, request["file"], request["frame"], Path(request["target"]))
         if problem:
             sys.stderr.write(f"{problem}\n")
             sys.exit(1)
 
 
-def _add_image_node(scene: bpy.types.Scene) -> bpy.types.Node:
-    """Return the node of the image that the scene renders."""
+def _add_nodes(scene: bpy.types.Scene) -> tuple[bpy.types.Node, bpy.types.Node]:
+    """Return the node of the image that the scene renders, and a node behind it that multiplies by alpha."""
     if bpy.app.version >= (5, 0, 0):
         tree = bpy.data.node_groups.new("Frames", "CompositorNodeTree")
         tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
@@ -41,9 +41,14 @@ def _add_image_node(scene: bpy.types.Scene) -> bpy.types.Node:
         tree = scene.node_tree
         tree.nodes.clear()
         output = tree.nodes.new("CompositorNodeComposite")
-    node = tree.nodes.new("CompositorNodeImage")
-    tree.links.new(node.outputs["Image"], output.inputs["Image"])
-    return node
+    node, multiplied = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodePremulKey")
+    if bpy.app.version >= (5, 0, 0):
+        multiplied.inputs["Type"].default_value = "To Premultiplied"
+    else:
+        multiplied.mapping = "STRAIGHT_TO_PREMUL"
+    tree.links.new(node.outputs["Image"], multiplied.inputs["Image"])
+    tree.links.new(multiplied.outputs["Image"], output.inputs["Image"])
+    return node, multiplied
 
 
 def _set_output(scene: bpy.types.Scene) -> None:
@@ -62,8 +67,11 @@ def _set_output(scene: bpy.types.Scene) -> None:
         setattr(render, name, False)
 
 
-def _decode(scene: bpy.types.Scene, node: bpy.types.Node, file: str, frame: int, target: Path) -> str:
+def _decode(
+    scene: bpy.types.Scene, nodes: tuple[bpy.types.Node, bpy.types.Node], file: str, frame: int, target: Path
+) -> str:
     """Write one frame to a file, which gets its name when it is whole; return why that is impossible, or nothing."""
+    node, multiplied = nodes
     try:
         image = bpy.data.images.load(file, check_existing=True)
     except RuntimeError as problem:
@@ -71,6 +79,7 @@ def _decode(scene: bpy.types.Scene, node: bpy.types.Node, file: str, frame: int,
     image.colorspace_settings.name = "Non-Color"
     image.use_deinterlace = "--deinterlace" in sys.argv
     node.image = image
+    multiplied.mute = not image.is_float  # PNG files are divided by alpha, and codes of 8 bits come multiplied by it
     node.frame_duration, node.frame_start, node.frame_offset = max(1, image.frame_duration), 1, 0
     if not all(image.size):
         return "it is damaged, or of an unknown format"

@@ -25,6 +25,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.output_files import distinct_names
 
 from . import stored_estimate
+from .code_values import alpha_in_compositor
 from .color_management import color_spaces, data_space, running_config
 from .node_building import (
     CHANNELS,
@@ -32,6 +33,7 @@ from .node_building import (
     NodeGrid,
     combine_node,
     convert_color_space,
+    divide_by_alpha,
     map_uv,
     math_node,
     multiply_by_alpha,
@@ -71,7 +73,7 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
     sockets = {item.name: item for item in group.interface.items_tree if item.in_out == "INPUT"}
     sockets["Exposure"].default_value = exposure
     lut = _lut_image(plate, f".{group.name} LUT", curve)
-    _add_nodes(group, lut, source, stored_estimate.matrix(plate), getattr(plate, "alpha_mode", "STRAIGHT"))
+    _add_nodes(group, lut, source, stored_estimate.matrix(plate), alpha_in_compositor(plate))
     return group
 
 
@@ -152,15 +154,16 @@ def _add_nodes(
 
     A matrix comes behind the look-ups if the plate has other primaries than Rec.709.
 
-    The colours come without alpha multiplied in: Blender hands 8-bit images in Non-Color on as they are stored. If the
-    image's alpha is "None", it is 1, and if it is "Channel Packed", the colours stay as they are.
+    The colours come as they are stored, whatever the alpha of the image, for an exception see `alpha_in_compositor`. If
+    alpha is "Premultiplied", they are divided by it; if it is "None", it is 1; and if it is "Channel Packed", they are
+    not multiplied by it.
     """
     grid = NodeGrid(group)
-    start = grid.node("NodeGroupInput", 0)
+    start = grid.node("NodeGroupInput", -1)
     table = grid.node("CompositorNodeImage", 3, row=-1)
     table.image = lut
-    split = grid.node("CompositorNodeSeparateColor", 1)
-    grid.link(start.outputs["Image"], split.inputs[0])
+    split, codes = grid.node("CompositorNodeSeparateColor", 1), start.outputs["Image"]
+    grid.link(divide_by_alpha(grid, codes, 0) if alpha_mode == "PREMUL" else codes, split.inputs[0])
     positions = [_position(grid, split.outputs[channel], row) for row, channel in enumerate(CHANNELS)]
     channels = [_look_up(grid, table.outputs["Image"], position, row) for row, position in enumerate(positions)]
     after = 5

@@ -241,6 +241,15 @@ def file_state(datablock: Datablock) -> str:
     return f"{path.name}\n{found.st_size}\n{found.st_mtime:.0f}"
 
 
+def alpha_mode(datablock: Datablock) -> str:
+    """Return how Blender takes the alpha of an image; empty for movies, clips and what it does not show.
+
+    For these, it has no such setting, or does not heed it.
+    """
+    is_heeded = isinstance(datablock, bpy.types.Image) and datablock.source != "MOVIE" and is_shown(datablock)
+    return datablock.alpha_mode if is_heeded else ""
+
+
 def has_own_file(datablock: Datablock) -> bool:
     """Return whether the code values of an image or clip lie in files on disk, not in the .blend file or in memory."""
     return not isinstance(datablock, bpy.types.Image) or not (datablock.packed_file or datablock.source == "GENERATED")
@@ -260,6 +269,7 @@ def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
         uid=datablock.session_uid,
         color_space=datablock.colorspace_settings.name,
         file_state=file_state(datablock),
+        alpha_mode=alpha_mode(datablock),
         **details,
     )
 

@@ -17,7 +17,7 @@ from typing import ClassVar
 import bpy
 
 from .. import lazy_import
-from ..scene import color_management
+from ..scene import color_management, stored_estimate
 from ..work.errors import expected_errors
 from ..work.job import CONFIG_VARIABLES
 from .estimate_box import draw_text
@@ -55,9 +55,11 @@ class CRF_OT_restore_config(bpy.types.Operator):
         """Restore the config, and report what was done."""
         try:
             folder = absolute(self.folder) or color_management.user_folder()
+            names = _names(folder)
             restored = lazy_import.load("ocio.configs.installed").restore(folder)
         except expected_errors() as problem:
             return failed(self, problem)
+        _end_waits(names)
         _redraw(context)
         done = "removed, so Blender uses its own again" if restored.is_removed else "again as it was"
         self.report({"INFO"}, f"The config is {done} after a restart: {restored.config}")
@@ -80,6 +82,7 @@ class CRF_OT_remove_color_space(bpy.types.Operator):
             lazy_import.load("ocio.configs.installed").uninstall(color_management.user_folder(), self.color_space)
         except expected_errors() as problem:
             return failed(self, problem)
+        _end_waits((self.color_space,))
         _redraw(context)
         self.report({"INFO"}, f'"{self.color_space}" is gone after a restart')
         return {"FINISHED"}
@@ -193,10 +196,21 @@ def draw_installed(layout: bpy.types.UILayout) -> None:
 @lru_cache(maxsize=1)
 def _installed(folder: Path, _fingerprint: str) -> tuple[str, ...]:
     """Return the names of the installed color spaces; the fingerprint makes a changed config be read again."""
+    return _names(folder)
+
+
+def _names(folder: Path) -> tuple[str, ...]:
+    """Return the names of the color spaces that are installed in a folder; none if it cannot be read."""
     try:
         return lazy_import.load("ocio.configs.installed").installed_color_spaces(folder)
     except expected_errors():
         return ()
+
+
+def _end_waits(names: tuple[str, ...]) -> None:
+    """Let no plate wait any longer for color spaces that were taken out of a config: no restart brings them."""
+    for datablock in (*bpy.data.images, *bpy.data.movieclips):
+        stored_estimate.pop_pending_color_space(datablock, names)
 
 
 @lru_cache(maxsize=1)

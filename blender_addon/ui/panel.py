@@ -104,11 +104,12 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     warnings = []
     if stored_estimate.is_file_changed(datablock, plates.file_state(datablock)):
         warnings.append("The file has changed since the estimate: estimate again.")
-    if code_values.is_outdated(datablock):
-        warnings.append("Its nodes show the earlier file until it is applied as Nodes.")
-    warnings += filter(None, (node_links.linearized_twice(datablock), node_links.without_group(datablock)))
+    told = (code_values.outdated, node_links.linearized_twice, node_links.without_group)
+    warnings += filter(None, (tell(datablock) for tell in told))
     if warnings:
         draw_paragraphs(layout, warnings, letters_of(context), icon="ERROR")
+    if code_values.is_painted_copy_shown(datablock):
+        draw_text(layout, "Its nodes do not follow your painting: apply it again.", letters_of(context), icon="INFO")
 
 
 def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:

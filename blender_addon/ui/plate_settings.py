@@ -6,7 +6,7 @@ from contextlib import suppress
 import bpy
 
 from .. import lazy_import
-from ..scene import compositor, stored_estimate
+from ..scene import compositor, plates, stored_estimate
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES
 from .preferences import APPLY_MODES, preferences
@@ -37,6 +37,9 @@ MAX_EXPOSURE = 15
 #: The number of each way to apply a response, as its enumeration property stores it, and the way of each number.
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 _MODES = {number: name for name, number in _NUMBERS.items()}
+
+#: How the colour spaces of plates are named: `ocio.output_files`, repeated for the same reason.
+COLOR_SPACE_PREFIX = "CRF "
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
@@ -146,11 +149,19 @@ def remember_applied(datablock: bpy.types.ID) -> None:
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:
-    """Return whether the estimate of a plate has been applied with its present settings, and its nodes are there."""
+    """Return whether the estimate of a plate has been applied with its present settings.
+
+    Its nodes must still be there, or its colour space, which it may wait for.
+    """
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    is_by_nodes = datablock.camera_response_settings.apply == "NODES"
-    return not is_by_nodes or bool(compositor.linearized_nodes(datablock, datablock.name))
+    match datablock.camera_response_settings.apply:
+        case "NODES":
+            return bool(compositor.linearized_nodes(datablock, datablock.name))
+        case "COLORSPACE":
+            space = stored_estimate.pending_color_space(datablock) or datablock.colorspace_settings.name
+            return space.startswith(COLOR_SPACE_PREFIX)
+    return True
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:
@@ -165,7 +176,10 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     names += ["gray"] if settings.anchor == "GRAY" else []
     names += ["depth"] if settings.apply == "BAKE" else []
     names += ["folder"] if settings.apply not in WITHOUT_FILES else []
-    return {name: getattr(settings, name) for name in names}
+    chosen = {name: getattr(settings, name) for name in names}
+    if settings.apply in ("NODES", "BAKE"):  # which go by the setting of the image
+        chosen["alpha"] = plates.alpha_mode(settings.id_data)
+    return chosen
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_Photograph, CRF_PlateSettings))

@@ -7,17 +7,19 @@ import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import ExitStack, contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
+import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.errors import CRFNetError
+from crfnet_core.image_io import read_codes
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array
-from ocio.plates.frame_files import read_color_tags
+from ocio.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags, read_frame
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
 from ocio.plates.primaries import plate_primaries
@@ -28,6 +30,59 @@ from .job import Plate
 
 #: Returns frames as files that can be read; a temporary file is there until the next call.
 FrameReader: TypeAlias = Callable[[FrameSequence, Progress | None], FrameSequence]
+
+
+@dataclass(frozen=True)
+class PlateFrames(FrameSequence):
+    """The files of a plate whose alpha is taken as by its image in Blender; see `Plate.alpha_mode`."""
+
+    alpha_mode: str = ""
+
+    def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
+        """Yield what reads each frame, for positions in `paths`."""
+        for position in positions:
+            yield partial(read_plate_frame, self.paths[position], self.alpha_mode, is_encoded=self.is_encoded)
+
+
+def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -> EncodedFrame:
+    """Return the encoded samples of a frame as `ocio.plates.frame_files.read_frame` does, but for its alpha.
+
+    It is taken as by Blender, which does not heed the file: as coverage by which the samples are multiplied (PREMUL) or
+    not (STRAIGHT); or, NONE and CHANNEL_PACKED, as no coverage, so that the frame has none.
+
+    Raises
+    ------
+    PhotoError, PlateError
+        See `read_frame`.
+    """
+    frame = read_frame(path, is_encoded=is_encoded)
+    is_divided = frame.samples.dtype.kind == "f"  # by alpha, where the file says that it stores the product
+    if is_divided:
+        frame = replace(frame, largest=1)
+    if frame.alpha is None or not alpha_mode:
+        return frame
+    if alpha_mode == "PREMUL":
+        return frame if is_divided else _divided_by_alpha(frame)
+    if is_divided:
+        frame = _as_stored(path, frame)
+    return frame if alpha_mode == "STRAIGHT" else replace(frame, alpha=None)
+
+
+def _divided_by_alpha(frame: EncodedFrame) -> EncodedFrame:
+    """Return a frame whose codes are divided by its alpha, as brightnesses in [0, 1]."""
+    assert frame.alpha is not None
+    alpha, samples = frame.alpha[..., None], np.zeros(frame.samples.shape, np.float32)
+    np.divide(frame.samples, alpha * np.float32(frame.largest), out=samples, where=alpha > 0)
+    return replace(frame, samples=np.minimum(samples, 1, out=samples), largest=1)
+
+
+def _as_stored(path: Path, frame: EncodedFrame) -> EncodedFrame:
+    """Return a frame that was divided by its alpha as its file stores it."""
+    if path.suffix.lower() == ".exr":
+        assert frame.alpha is not None
+        return replace(frame, samples=frame.samples * frame.alpha[..., None])
+    values = read_codes(path)
+    return replace(frame, samples=values.codes, largest=values.largest)
 
 
 def frames_of(plate: Plate) -> FrameSequence:
@@ -49,7 +104,7 @@ def frames_of(plate: Plate) -> FrameSequence:
 
 
 def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
-    """Return the primaries that a plate is encoded in, as `bake_plates` takes them.
+    """Return the primaries that a plate is encoded in, for its colour space.
 
     They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
     primaries can express, and for what Blender decodes. For `is_encoded` see `encoding_check.is_said_encoded`.

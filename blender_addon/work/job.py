@@ -95,6 +95,9 @@ class Plate:
         The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
     decoder : BlenderDecoder or None
         What decodes the frames of a movie; None for image files.
+    alpha_mode : {"STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE", ""}
+        How Blender takes the alpha of the image, whatever its file says; empty for clips and for what Blender does not
+        show, where the file counts.
     """
 
     name: str
@@ -108,6 +111,7 @@ class Plate:
     file_state: str = ""
     content: bytes | Uint8Array | None = field(default=None, repr=False, compare=False)
     decoder: BlenderDecoder | None = None
+    alpha_mode: str = ""
 
     @property
     def is_sequence(self) -> bool:
@@ -133,6 +137,7 @@ class Plate:
         file_state: str = "",
         content: bytes | Uint8Array | None = None,
         decoder: BlenderDecoder | None = None,
+        alpha_mode: str = "",
     ) -> Plate:
         """Return the plate of a file, or of the sequence that the file belongs to.
 
@@ -159,6 +164,7 @@ class Plate:
             file_state=file_state,
             content=content,
             decoder=decoder,
+            alpha_mode=alpha_mode,
         )
 
 

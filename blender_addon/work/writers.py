@@ -6,22 +6,30 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
+import numpy as np
+import OpenImageIO as oiio
+
+from crfnet_core.errors import PlateError
+from crfnet_core.files import atomic_write
 from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Progress
+from crfnet_core.types import Float32Array, Progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
-from ocio.pipeline import all_or_none, bake_plates, export_luts
+from ocio.pipeline import all_or_none, export_luts
+from ocio.plates.exr import write_exr
+from ocio.plates.frame_files import read_frame
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
 from .encoding_check import is_said_encoded
 from .errors import AddonError
-from .frame_files import FrameReader, counted_from, frame_reader
+from .frame_files import FrameReader, PlateFrames, counted_from, frame_reader
 from .job import ApplyMode, Job, Plate
 
 #: Decoded frames that are on the disk at a time; 4K frames of 8 bits take up to 25 MB each.
@@ -95,36 +103,65 @@ def write(
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
-    """Write the linear plate, or all its frames; a cancelled or failed job leaves no new file."""
+    """Write the linear plate, or all its frames; a cancelled or failed job leaves the folder as it was."""
     targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
-    with frame_reader(job.plate) as read:
+    linearize = partial(_linearize, job.plate.alpha_mode, lut, options)
+    with frame_reader(job.plate) as read, all_or_none(targets, overwrite=options.overwrite) as staged:
         if job.plate.decoder is None:
-            bake_plates(read(sequence, progress), targets, lut, options, progress=progress)
+            linearize(read(sequence, progress), staged, progress)
         else:
-            _bake_decoded(read, sequence, targets, lut, options, progress)
+            _linearize_decoded(read, sequence, staged, linearize, progress)
     return Baked(targets, job.plate.has_frames)
 
 
-def _bake_decoded(
+def _linearize_decoded(
     read: FrameReader,
     sequence: FrameSequence,
     targets: Sequence[Path],
-    lut: Lut1D,
-    options: PlateOptions,
+    linearize: Callable[[FrameSequence, Sequence[Path]], None],
     progress: Progress | None,
 ) -> None:
-    """Do as `bake_plates`, with a few decoded frames on the disk at a time."""
-    with all_or_none(targets, overwrite=options.overwrite):
-        for start in range(0, len(targets), FRAMES_DECODED):
-            part = slice(start, start + FRAMES_DECODED)
-            frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
-            so_far = counted_from(progress, start, len(targets))
-            linearize_plates(read(frames, so_far), targets[part], lut, options)
+    """Decode and linearise the frames of a movie, with a few decoded ones on the disk at a time."""
+    for start in range(0, len(targets), FRAMES_DECODED):
+        part = slice(start, start + FRAMES_DECODED)
+        frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
+        linearize(read(frames, counted_from(progress, start, len(targets))), targets[part])
     if progress is not None:
         progress(len(targets), len(targets))
+
+
+def _linearize(
+    alpha_mode: str,
+    lut: Lut1D,
+    options: PlateOptions,
+    sequence: FrameSequence,
+    targets: Sequence[Path],
+    progress: Progress | None = None,
+) -> None:
+    """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
+    frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
+    linearize_plates(frames, targets, lut, options, progress=progress)
+    if alpha_mode == "CHANNEL_PACKED":
+        for path, target in zip(sequence.paths, targets, strict=True):
+            _add_channel(target, read_frame(path, is_encoded=options.is_encoded).alpha)
+
+
+def _add_channel(target: Path, alpha: Float32Array | None) -> None:
+    """Add alpha to a linear EXR file as a channel of its own, by which the colours are not multiplied."""
+    if alpha is None:
+        return
+    source = oiio.ImageBuf(str(target))
+    header, colors = source.nativespec(), source.get_pixels("float")
+    if colors is None or source.has_error:
+        raise PlateError(f"{target}: was changed by another program meanwhile; bake again")
+    header.nchannels, header.channelnames, header.alpha_channel = 4, ("R", "G", "B", "A"), 3
+    if not header.getattribute("DateTime"):
+        header.attribute("DateTime", "")  # else OpenImageIO writes the present time; see `linear_header`
+    with atomic_write(target, overwrite=True, error=PlateError) as temporary:
+        write_exr(temporary, header, np.dstack([colors, alpha]), name=target)
 
 
 def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:

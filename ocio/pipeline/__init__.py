@@ -19,7 +19,7 @@ space into the config that a program reads at its start, see `ocio.configs.insta
 
 from ocio.luts.exposure import anchored_exposure
 from ocio.pipeline.calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
-from ocio.pipeline.delivery import all_or_none, bake_plates, export_luts
+from ocio.pipeline.delivery import all_or_none, export_luts
 from ocio.pipeline.each import estimate_each, plan_each
 from ocio.pipeline.each_linear import linearize_each, plan_each_linear
 from ocio.pipeline.estimates import (
@@ -41,7 +41,6 @@ __all__ = [
     "PhotographRecord",
     "all_or_none",
     "anchored_exposure",
-    "bake_plates",
     "check_records",
     "estimate_each",
     "estimate_frames",

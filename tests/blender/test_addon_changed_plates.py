@@ -13,6 +13,9 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 CHANGED = "The file has changed since the estimate"
 EARLIER = "Its nodes show the earlier file"
+UNSAVED = "Its nodes lack the unsaved changes"
+GONE = "Its file is not found: find it with File, External Data."
+PAINTED = "Its nodes do not follow your painting: apply it again."
 TWICE = "Linearized twice"
 WITHOUT = "shows code values without the node group"
 
@@ -30,7 +33,7 @@ def told(in_editor):
 
     def draw(image):
         words = " ".join(labels(drawn_in(image, in_editor)))
-        return [warning for warning in (CHANGED, EARLIER, TWICE, WITHOUT) if warning in words]
+        return [warning for warning in (CHANGED, EARLIER, GONE, UNSAVED, PAINTED, TWICE, WITHOUT) if warning in words]
 
     return draw
 
@@ -99,6 +102,20 @@ class TestAnotherFile:
         other_file(plate_file.parent, codes, plate_file.name)
         apply_nodes(image)
         assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
+
+    def test_a_file_that_is_gone_is_not_to_be_applied(self, image, told, plate_file):
+        apply_nodes(image)
+        plate_file.unlink()
+        assert told(image) == [GONE]
+
+    def test_of_a_sequence_a_frame_may_be_missing(self, addon, told, tmp_path, codes):
+        frames = [write_image(tmp_path / f"shot.{number:04d}.png", codes) for number in (1, 2, 3)]
+        image = bpy.data.images.load(str(frames[0]))
+        image.source = "SEQUENCE"
+        bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+        frames[0].unlink()
+        assert told(image) == []
+        apply_nodes(image)
 
     def test_images_without_a_file_and_earlier_estimates_say_nothing(self, image, told, plate_file):
         del image["camera_response"]["file_state"]
@@ -180,6 +197,39 @@ class TestPacked:
 def group_of(tree):
     (node,) = (node for node in tree.nodes if node.type == "GROUP")
     return node
+
+
+class TestPainted:
+    @pytest.mark.parametrize("is_packed", [False, True])
+    def test_unsaved_changes_are_told_until_they_are_in_the_nodes(self, image, told, plate_file, is_packed):
+        if is_packed:
+            image.pack()
+        apply_nodes(image)
+        for given_up_or_kept, warnings in ((image.reload, []), (image.pack, [EARLIER])):
+            assert told(image) == []
+            image.pixels[0] = 0.5
+            assert told(image) == [UNSAVED]
+            given_up_or_kept()
+            assert told(image) == warnings
+            apply_nodes(image)
+
+    def test_of_an_image_without_a_file_it_is_always_told(self, addon, codes, told):
+        image = bpy.data.images.new("painted", 256, 256)
+        pixels = np.concatenate([codes / 255, np.ones((256, 256, 1))], axis=2)
+        image.pixels.foreach_set(pixels[::-1].astype(np.float32).ravel())
+        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        assert told(image) == []
+        apply_nodes(image)
+        assert told(image) == [PAINTED]
+        image.pack()
+        apply_nodes(image)
+        assert told(image) == []
+
+    def test_nothing_is_told_of_nodes_that_are_gone(self, image, told, tree, tmp_path, codes):
+        apply_nodes(image)
+        tree.nodes.clear()
+        image.filepath = str(other_file(tmp_path, codes))
+        assert told(image) == [CHANGED]
 
 
 class TestWithoutTheGroup:

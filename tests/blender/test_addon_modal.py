@@ -133,11 +133,11 @@ def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, 
     run.is_estimated = True
     run.invoke(interface, None)
     deadline = time.monotonic() + 30
-    while not list(tmp_path.glob("*.exr")) and run._run.task.is_running and time.monotonic() < deadline:
+    while not list(tmp_path.rglob("*.exr")) and run._run.task.is_running and time.monotonic() < deadline:
         time.sleep(0.001)
     run.modal(interface, ESC)
     assert drive(run, interface) == {"CANCELLED"}
-    assert not list(tmp_path.glob("*.exr"))
+    assert not list(tmp_path.rglob("*.exr"))
     assert image.camera_response_settings.apply == "NODES"
 
 

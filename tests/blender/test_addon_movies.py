@@ -45,7 +45,7 @@ def movie(addon, movie_folder, codes):
     return encoded
 
 
-def encode(path, frames):
+def encode(path, frames, color_mode="RGB"):
     """Encode 8-bit frames as they are."""
     container, codec, depth = CODECS[path.name]
     scene = bpy.data.scenes.new("Encoder")
@@ -73,7 +73,7 @@ def encode(path, frames):
     settings.file_format = "FFMPEG"
     render.ffmpeg.format, render.ffmpeg.codec, render.ffmpeg.audio_codec = container, codec, "NONE"
     render.ffmpeg.constant_rate_factor = "LOSSLESS"
-    settings.color_mode, settings.color_depth = "RGBA" if codec == "QTRLE" else "RGB", depth
+    settings.color_mode, settings.color_depth = "RGBA" if codec == "QTRLE" else color_mode, depth
     render.filepath, render.use_file_extension = str(path), False
     bpy.ops.render.render(animation=True, scene=scene.name)
     bpy.data.images.remove(image)

@@ -112,6 +112,21 @@ def test_a_restored_config_leaves_nothing_to_do(image, user_config):
     assert not config_operators.is_restart_due()
 
 
+@pytest.mark.parametrize("is_all", [True, False])
+def test_no_plate_waits_for_a_color_space_that_was_taken_out(image, user_config, in_editor, is_all):
+    from blender_addon.scene.stored_estimate import pending_color_space
+
+    assert "Applied with these settings." in " ".join(labels(drawn_in(image, in_editor)))
+    if is_all:
+        bpy.ops.crf.restore_config()
+    else:
+        bpy.ops.crf.remove_color_space(color_space="CRF plate")
+    assert pending_color_space(image) == ""
+    words = " ".join(labels(drawn_in(image, in_editor)))
+    assert "CRF plate" not in words
+    assert "Applied with these settings." not in words
+
+
 def test_disabling_the_addon_does_not_make_a_restart_forgotten(user_config):
     import addon_utils
 

@@ -20,7 +20,7 @@ from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import OutputFiles
 from ocio.pipeline.batch import network_and_prior
 from ocio.plates.frames import FrameSequence, find_frames
-from ocio.plates.linear import linear_targets
+from ocio.plates.linear import linear_targets, linearize_plates
 from tests.helpers.folders import listed
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
@@ -156,11 +156,16 @@ class TestExposure:
             pipeline.anchored_exposure(ResponseCurve.gamma(2.2), gray=0.0)
 
 
-class TestBake:
+def bake(sequence, targets, lut, options, *, progress=None):
+    with pipeline.all_or_none(targets, overwrite=options.overwrite) as staged:
+        linearize_plates(sequence, staged, lut, options, progress=progress)
+
+
+class TestAllOrNone:
     def test_writes_every_frame_into_a_new_folder(self, sequence, tmp_path):
         calls = []
         targets = linear_targets(tmp_path / "new" / "deep" / "lin.%04d.exr", sequence)
-        pipeline.bake_plates(sequence, targets, LUT, PlateOptions(), progress=lambda *call: calls.append(call))
+        bake(sequence, targets, LUT, PlateOptions(), progress=lambda *call: calls.append(call))
         assert listed(tmp_path / "new" / "deep") == [f"lin.{number:04d}.exr" for number in range(1, 13)]
         assert calls[-1] == (12, 12)
 
@@ -168,31 +173,33 @@ class TestBake:
     def test_a_cancelled_run_leaves_nothing(self, sequence, tmp_path, done):
         targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
         with pytest.raises(CancelledError):
-            pipeline.bake_plates(sequence, targets, LUT, PlateOptions(), progress=cancel_after(done))
+            bake(sequence, targets, LUT, PlateOptions(), progress=cancel_after(done))
         assert not (tmp_path / "new").exists()
 
     def test_a_cancelled_run_keeps_what_was_there_before(self, sequence, tmp_path):
         targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
         (tmp_path / "new").mkdir()
-        targets[5].write_text("mine")
+        for target in (targets[0], targets[5]):
+            target.write_text("mine")
         with pytest.raises(CancelledError):
-            pipeline.bake_plates(sequence, targets, LUT, PlateOptions(overwrite=True), progress=cancel_after(1))
-        assert listed(tmp_path / "new") == ["lin.0006.exr"]
+            bake(sequence, targets, LUT, PlateOptions(overwrite=True), progress=cancel_after(3))
+        assert listed(tmp_path / "new") == ["lin.0001.exr", "lin.0006.exr"]
+        assert [targets[0].read_text(), targets[5].read_text()] == ["mine", "mine"]
 
     def test_a_bad_frame_leaves_nothing(self, sequence, tmp_path):
         sequence.paths[4].write_bytes(b"no picture")
         targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
         with pytest.raises(PlateError, match="1 of 12 frames failed"):
-            pipeline.bake_plates(sequence, targets, LUT, PlateOptions())
+            bake(sequence, targets, LUT, PlateOptions())
         assert not (tmp_path / "new").exists()
 
     def test_existing_files_are_refused_unless_asked(self, plate, tmp_path):
         single, target = FrameSequence((plate,)), tmp_path / "lin.exr"
         target.write_text("mine")
         with pytest.raises(CRFNetError, match="exists already"):
-            pipeline.bake_plates(single, [target], LUT, PlateOptions())
+            bake(single, [target], LUT, PlateOptions())
         assert target.read_text() == "mine"
-        pipeline.bake_plates(single, [target], LUT, PlateOptions(overwrite=True))
+        bake(single, [target], LUT, PlateOptions(overwrite=True))
         assert target.stat().st_size > 1000
 
 
@@ -220,6 +227,14 @@ class TestExport:
         assert listed(files.config.parent) == ["config.ocio"]
         pipeline.export_luts(files, space, LUT, overwrite=True)
         assert len(listed(files.config.parent)) == 4
+
+    def test_a_failure_in_the_middle_leaves_earlier_files_as_they_were(self, files, space, monkeypatch):
+        earlier = {path: path.read_bytes() for path in pipeline.export_luts(files, space, LUT)}
+        monkeypatch.setattr("ocio.pipeline.delivery.write_config", lambda *arguments, **options: 1 / 0)
+        other = inverse_response_lut(ResponseCurve.gamma(1.5))
+        with pytest.raises(ZeroDivisionError):
+            pipeline.export_luts(files, space, other, overwrite=True)
+        assert {path: path.read_bytes() for path in files.config.parent.iterdir()} == earlier
 
     @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
     def test_a_failure_in_the_middle_leaves_nothing(self, files, space, monkeypatch, problem):

@@ -16,7 +16,7 @@ import numpy as np
 
 from ... import lazy_import
 from ...scene.color_management import running_config
-from ...scene.plates import COMPARED_PLATE, compared_plate, is_heif, plate_itself, plate_of
+from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, is_heif, plate_itself, plate_of
 from ...work.errors import AddonError
 
 if TYPE_CHECKING:
@@ -85,7 +85,8 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     Returns
     -------
     ndarray, float32, shape (H, W, 3 or 4)
-        In [0, 1], the bottom row first, colours not multiplied by alpha.
+        In [0, 1], the bottom row first, colours not multiplied by alpha. Of an image whose alpha Blender takes for no
+        coverage, the colours alone.
 
     Raises
     ------
@@ -103,12 +104,16 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
         raise AddonError(
             f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
         )
-    if image.is_float:  # its pixels are linear light by the color space, not code values
+    alpha = alpha_mode(image)
+    is_divided = alpha == "PREMUL" and image.source != "GENERATED"  # and rounded, by Blender
+    if image.is_float or is_divided:  # the pixels of floats are linear light by the color space, not code values
         return _codes_of_file(image, user)
     flat = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(flat)
     pixels = flat.reshape(height, width, image.channels)
-    return pixels if image.channels >= 3 else pixels[..., :1].repeat(3, axis=2)
+    if image.channels < 3:
+        return pixels[..., :1].repeat(3, axis=2)
+    return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
@@ -121,7 +126,7 @@ def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32
     with frame_files.frame_reader(plate) as read:
         shown = Path(bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library))
         (path,) = read(frame_files.FrameSequence((shown,)), None).paths
-        frame = lazy_import.load("ocio.plates.frame_files").read_frame(path, is_encoded=is_encoded)
+        frame = frame_files.read_plate_frame(path, plate.alpha_mode, is_encoded=is_encoded)
     channels = [frame.samples / np.float32(frame.largest)]
     if frame.alpha is not None:
         channels.append(frame.alpha[..., None])

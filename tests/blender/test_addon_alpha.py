@@ -1,0 +1,157 @@
+"""The alpha setting of an image counts, whatever its file says: in the nodes, in baked files and in the comparison."""
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import read_image, write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+from .test_addon_image_tools import pixels_of, show  # noqa: E402 - after the skip
+from .test_addon_movies import CODECS, encode, load, stored_curve  # noqa: E402
+
+MODES = ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
+
+#: Blender 4.5 looks brightnesses up by the nearest of 65536, and those that were divided by alpha lie between them.
+NEAREST = 1e-4
+
+
+@pytest.fixture
+def alpha():
+    """Code values of alpha, shape (256, 256, 1), some of them 0 and some 255."""
+    drawn = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
+    drawn[:8], drawn[8:16] = 0, 255
+    return drawn
+
+
+@pytest.fixture(params=["png of 8 bits", "png of 16 bits", "tif of 8 bits", "tif of 16 bits, tagged premultiplied"])
+def image(request, addon, tmp_path, codes, alpha):
+    """Codes with alpha, and what the file says of it."""
+    kind, _, bits, *_ = request.param.split()
+    stored = np.concatenate([codes, alpha], axis=2)
+    stored = stored.astype(np.uint16) * 257 if bits == "16" else stored
+    path = write_image(tmp_path / f"plate.{kind}", stored, oiio__UnassociatedAlpha=int("tagged" not in request.param))
+    return bpy.data.images.load(str(path))
+
+
+def expected(image, codes, alpha, mode):
+    """Return the linear plate, shape (H, W, 4), by the meaning of Blender's setting."""
+    from ocio.luts.lut1d import inverse_response_lut
+
+    brightness, alpha = codes / 255, alpha / 255
+    if mode == "PREMUL":
+        brightness = np.divide(brightness, alpha, out=np.zeros_like(brightness), where=alpha > 0).clip(0, 1)
+    linear = inverse_response_lut(stored_curve(image)).apply(brightness)
+    if mode in ("STRAIGHT", "PREMUL"):
+        linear = linear * alpha
+    return np.concatenate([linear, np.ones_like(alpha) if mode == "NONE" else alpha], axis=2)
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_nodes_and_baked_files_take_it_alike(image, codes, alpha, mode, composited, tmp_path):
+    from blender_addon.scene.compositor import compositor_tree
+
+    image.alpha_mode = mode
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    tree = compositor_tree(bpy.context.scene)
+    (group,) = (node for node in tree.nodes if node.type == "GROUP")
+    should = expected(image, codes, alpha, mode)
+    assert np.abs(composited(group.outputs[0]) - should).max() < NEAREST
+    bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float")
+    baked = read_image(tmp_path / "plate_linear.exr")
+    assert np.abs(baked - should[..., : baked.shape[2]]).max() < 1e-6
+    node = tree.nodes.new("CompositorNodeImage")
+    node.image = bpy.data.images["plate_linear.exr"]
+    assert np.abs(composited(node.outputs["Image"]) - should).max() < 1e-6
+
+
+@pytest.mark.parametrize("mode", MODES)
+def test_the_comparison_takes_it_alike(image, codes, alpha, mode, in_editor):
+    image.alpha_mode = mode
+    bpy.ops.crf.estimate_response(image=image.name)
+    should = expected(image, codes, alpha, "NONE" if mode == "CHANNEL_PACKED" else mode)
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        show(after=True)
+        found = pixels_of(space.image)
+        show(after=False)
+    assert np.abs(found - should).max() < 1e-4
+
+
+def test_a_plate_that_is_baked_again_has_the_alpha_of_the_new_setting(addon, codes, alpha, tmp_path):
+    path = write_image(tmp_path / "plate.png", np.concatenate([codes, alpha], axis=2), oiio__UnassociatedAlpha=1)
+    image = bpy.data.images.load(str(path))
+    bpy.ops.crf.estimate_response(image=image.name)
+    for mode in ("CHANNEL_PACKED", "STRAIGHT"):
+        image.alpha_mode = mode
+        bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float", overwrite=True)
+        baked = bpy.data.images["plate_linear.exr"]
+        pixels = np.array(baked.pixels[:]).reshape(256, 256, 4)[::-1]
+        assert baked.alpha_mode == ("CHANNEL_PACKED" if mode == "CHANNEL_PACKED" else "PREMUL")
+        assert np.abs(pixels - expected(image, codes, alpha, mode)).max() < 1e-6
+
+
+def test_the_channel_is_beside_colors_of_half_floats_and_of_every_frame(addon, codes, alpha, tmp_path):
+    """The files are those of a plate without alpha, with a channel more, and the same in every run."""
+    for number in (1, 2):
+        stored = np.concatenate([np.roll(codes, number, 0), alpha], axis=2)
+        write_image(tmp_path / f"shot.{number:04d}.png", stored, oiio__UnassociatedAlpha=1)
+        write_image(tmp_path / f"none.{number:04d}.png", stored[..., :3])
+    for name in ("shot", "none"):
+        image = bpy.data.images.load(str(tmp_path / f"{name}.0001.png"))
+        image.source, image.alpha_mode = "SEQUENCE", "CHANNEL_PACKED"
+        bpy.ops.crf.estimate_response(image=image.name, apply="BAKE")
+    for number in (1, 2):
+        file = tmp_path / f"shot_linear.{number:04d}.exr"
+        packed, plain = read_image(file), read_image(tmp_path / f"none_linear.{number:04d}.exr")
+        np.testing.assert_array_equal(packed[..., :3], plain)
+        assert np.abs(packed[..., 3:] - alpha / 255).max() < 1e-3
+    first = file.read_bytes()
+    bpy.ops.crf.apply_response(image="shot.0001.png", apply="BAKE", overwrite=True)
+    assert file.read_bytes() == first
+
+
+@pytest.mark.parametrize("bits", [8, 10])
+@pytest.mark.parametrize("kind", ["image", "clip"])
+def test_in_movies_it_is_straight(addon, codes, tmp_path, composited, monkeypatch, kind, bits):
+    """So Blender takes it whatever the setting, and hands frames of 8 bits on multiplied by it, others as stored."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    alpha = np.maximum(codes[..., :1], 1)  # colours without coverage are not in a movie
+    frames = [
+        write_image(tmp_path / f"{number}.png", np.dstack([codes, alpha]), oiio__UnassociatedAlpha=1)
+        for number in (1, 2)
+    ]
+    monkeypatch.setitem(CODECS, "alpha.mkv", ("MKV", "FFV1", str(bits)))
+    encode(tmp_path / "alpha.mkv", frames, color_mode="RGBA")
+    plate = load(kind, tmp_path / "alpha.mkv")
+    if kind == "image":
+        plate.alpha_mode = "CHANNEL_PACKED"
+    bpy.ops.crf.estimate_response(**{kind: plate.name}, apply="NODES")
+    bpy.ops.crf.apply_response(**{kind: plate.name}, apply="BAKE", depth="float")
+    (group,) = (node for node in compositor_tree(bpy.context.scene).nodes if node.type == "GROUP")
+    should, limit = expected(plate, codes, alpha, "STRAIGHT"), 1e-4 if bits == 8 else 0.02
+    assert np.abs(composited(group.outputs[0]) - should).max() < limit
+    assert np.abs(read_image(tmp_path / "alpha_linear.0001.exr") - should).max() < limit
+
+
+def test_of_an_image_that_was_painted(addon, codes, alpha, composited):
+    from blender_addon.scene.compositor import compositor_tree
+
+    image = bpy.data.images.new("painted", 256, 256, alpha=True)
+    image.pixels.foreach_set((np.dstack([codes, alpha])[::-1] / 255).astype(np.float32).ravel())
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    (group,) = (node for node in compositor_tree(bpy.context.scene).nodes if node.type == "GROUP")
+    assert np.abs(composited(group.outputs[0]) - expected(image, codes, alpha, "STRAIGHT")).max() < 1e-6
+
+
+def test_a_changed_setting_waits_to_be_applied(addon, plate_file):
+    from blender_addon.ui.plate_settings import is_applied
+
+    image = bpy.data.images.load(str(plate_file))
+    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    assert is_applied(image)
+    image.alpha_mode = "NONE"
+    assert not is_applied(image)
+    bpy.ops.crf.apply_response(image=image.name)
+    assert is_applied(image)
