@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import errno
+import hashlib
 import json
 import math
 import os
@@ -43,17 +44,28 @@ def read_bytes(path: Path, *, most: int) -> bytes:
 
 
 def read_json(path: Path) -> Any:
-    """Return what a JSON file of at most `MAX_JSON_SIZE` bytes holds; its numbers are finite.
+    """Return what a JSON file of at most `MAX_JSON_SIZE` bytes holds; see `parse_json`.
 
     Raises
     ------
     OSError
         As `read_bytes`.
     ValueError
+        As `parse_json`.
+    """
+    return parse_json(read_bytes(path, most=MAX_JSON_SIZE))
+
+
+def parse_json(text: bytes) -> Any:
+    """Return what a JSON text holds; its numbers are finite, but its whole ones may be too large for a float.
+
+    Raises
+    ------
+    ValueError
         If it is no JSON, holds NaN or an infinity, or is nested too deeply.
     """
     try:
-        return json.loads(read_bytes(path, most=MAX_JSON_SIZE), parse_constant=_refused, parse_float=_finite)
+        return json.loads(text, parse_constant=_refused, parse_float=_finite)
     except RecursionError:
         raise ValueError("is nested too deeply") from None
 
@@ -134,9 +146,14 @@ def atomic_write_text(
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
 
-def shortened(name: str, most: int) -> str:
+def cut_to_bytes(name: str, most: int) -> str:
     """Return a file's name cut to at most `most` bytes, between two characters; bytes that are no text are left out."""
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")
+
+
+def temporary_stem(path: Path) -> str:
+    """Return the stem of a file as the temporary names of `atomic_write` hold it: cut where the name is long."""
+    return cut_to_bytes(path.stem, LONGEST_NAME - len("..XXXXXXXX") - len(os.fsencode(path.suffix)))
 
 
 def json_text(document: Mapping[str, Any]) -> str:
@@ -156,6 +173,11 @@ def _finite(text: str) -> float:
 
 
 def _temporary_name(path: Path) -> Path:
-    """Return the name of a hidden file beside a file, `.stem.XXXXXXXX.suffix`, its stem cut where the name is long."""
-    ending = f".{secrets.token_hex(4)}{path.suffix}"
-    return path.with_name(f".{shortened(path.stem, LONGEST_NAME - 1 - len(os.fsencode(ending)))}{ending}")
+    """Return the name of a hidden file beside a file, `.stem.XXXXXXXX.suffix`."""
+    return path.with_name(f".{temporary_stem(path)}.{secrets.token_hex(4)}{path.suffix}")
+
+
+def file_sha256(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()

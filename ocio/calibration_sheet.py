@@ -27,9 +27,9 @@ from ocio.sheet import (
     QUIET,
     SIZE,
     VERDICT_INK,
+    ellipsized,
     plain,
     sheet_figure,
-    shortened,
 )
 
 #: Darkest irradiance that is drawn, log2; white is 0.
@@ -74,7 +74,7 @@ def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
     """Draw what was measured, both uncertainties, and the warnings."""
     uncertainty = calibration.uncertainty
     name = path.stem.removesuffix("_sheet")
-    figure.text(0.058, 0.945, shortened(f"Measured response {name}", 60), size=15, weight="bold", va="center")
+    figure.text(0.058, 0.945, ellipsized(f"Measured response {name}", 60), size=15, weight="bold", va="center")
     parts = [
         f"shape to {uncertainty.shape_stops:.2f} stop",
         f"scale to {uncertainty.scale_stops:.2f} stop",
@@ -83,8 +83,8 @@ def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
     ]
     figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
     lines = calibration_lines(calibration)
-    figure.text(0.058, 0.868, shortened(lines[0], LONGEST_LINE), va="center", color=QUIET)
-    warnings = shortened(DOT.join(calibration.warnings), LONGEST_LINE)
+    figure.text(0.058, 0.868, ellipsized(lines[0], LONGEST_LINE), va="center", color=QUIET)
+    warnings = ellipsized(DOT.join(calibration.warnings), LONGEST_LINE)
     figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.errors import PlateError
-from crfnet_core.files import shortened
+from crfnet_core.files import cut_to_bytes
 from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
@@ -148,7 +148,7 @@ def plain_stem(photo: Path) -> str:
 
     It is cut to `LONGEST_STEM` bytes, so that every file named after it can be written.
     """
-    return shortened(_plain(photo.stem), LONGEST_STEM)
+    return cut_to_bytes(_plain(photo.stem), LONGEST_STEM)
 
 
 def _plain(name: str) -> str:
@@ -225,7 +225,7 @@ def check_targets(
     photos : iterable of Path
         The photographs, none of which may be replaced.
     shared : sequence of Path
-        Further files, of several estimates.
+        The configs, of several estimates.
     overwrite : bool
         Whether existing files may be replaced.
 
@@ -234,7 +234,7 @@ def check_targets(
     PlateError
         See `check_outputs`.
     """
-    check_folder(folder)
+    (check_config_folder if shared else check_folder)(folder)
     originals = {os.path.realpath(photo) for photo in photos}
     every = [*targets, *shared]
     for path in every:
@@ -260,6 +260,16 @@ def check_folder(folder: Path) -> None:
         raise PlateError(f"{existing}: is not a folder; choose another for the output")
     if not os.access(existing, os.W_OK | os.X_OK):
         raise PlateError(f"{existing}: is not writable; choose another folder for the output")
+
+
+def check_config_folder(folder: Path) -> None:
+    """Check a folder for a config as `check_folder` does, and that OpenColorIO would find the LUTs in it."""
+    check_folder(folder)
+    path = str(folder.absolute())
+    if "$" in path or path.count("%") > 1:
+        raise PlateError(
+            f"{path}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another folder"
+        )
 
 
 @contextmanager

@@ -27,7 +27,7 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import Window
-from ocio.report import agreeing, basis, curve_error, shape_error
+from ocio.report import agreeing, basis, curve_error_words, shape_error_words
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -110,21 +110,21 @@ def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
 
 def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     """Draw the photograph's name, the verdict with the expected errors, what it rests on, and the warnings."""
-    name = shortened(estimate.photos[0], LONGEST_NAME)
+    name = ellipsized(estimate.photos[0], LONGEST_NAME)
     more = f" + {len(estimate.photos) - 1}" if len(estimate.photos) > 1 else ""
     figure.text(0.058, 0.945, f"Camera response of {name}{more}", size=15, weight="bold", va="center")
     color = VERDICT_INK[estimate.verdict]
     verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
-    shape, kind = shape_error(estimate), estimate.likely_kind
-    figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error(estimate)}"]
+    shape, kind = shape_error_words(estimate), estimate.likely_kind
+    figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error_words(estimate)}"]
     found = DOT.join(map(str, filter(None, [*figures, kind])))
     beside = Annotation(
         found, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=INK
     )
     figure.add_artist(beside)
-    figure.text(0.058, 0.872, shortened(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
+    figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
     figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
-    warning_line = shortened(DOT.join(estimate.warnings), LONGEST_LINE)
+    warning_line = ellipsized(DOT.join(estimate.warnings), LONGEST_LINE)
     figure.text(0.058, 0.026, warning_line, va="center", color=VERDICT_INK[Verdict.USABLE])
 
 
@@ -196,7 +196,7 @@ def plain(axes: Axes) -> None:
     axes.spines[["top", "right"]].set_visible(False)
 
 
-def shortened(text: str, longest: int) -> str:
+def ellipsized(text: str, longest: int) -> str:
     """Return `text`, with its middle replaced by an ellipsis if it has more than `longest` characters."""
     if len(text) <= longest:
         return text

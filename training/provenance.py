@@ -16,7 +16,7 @@ from importlib.metadata import version
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, file_sha256
 
 #: The record of a run in its folder, and in the folder of a model that came from it.
 RUN_FILE = "run.json"
@@ -117,12 +117,6 @@ def files_digest(files: Iterable[Path]) -> str:
     for path in files:
         digest.update(f"{file_sha256(path)}  {path.name}\n".encode())
     return digest.hexdigest()
-
-
-def file_sha256(path: Path) -> str:
-    """Return the SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()
 
 
 def write_json(path: Path, entries: Record | list[Record]) -> None:

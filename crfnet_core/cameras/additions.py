@@ -13,11 +13,11 @@ from crfnet_core.cameras.camera import (
     KeptPhotograph,
     MeasuredResponse,
     checked_name,
-    file_sha256,
 )
 from crfnet_core.cameras.library import CameraLibrary
 from crfnet_core.errors import CameraError, PhotoError
 from crfnet_core.estimate import estimate_of
+from crfnet_core.files import file_sha256
 from crfnet_core.image_io import read_photo
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.types import Progress, show_progress

@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-import hashlib
 import unicodedata
 from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
-from pathlib import Path
 
 from crfnet_core.analysis import AnalyzedPhotograph
 from crfnet_core.errors import CameraError
@@ -238,9 +236,3 @@ def checked_name(name: str) -> str:
 def name_key(name: str) -> str:
     """Return what names are compared by: two that differ in upper and lower case are one."""
     return unicodedata.normalize("NFC", checked_name(name).casefold())
-
-
-def file_sha256(path: Path) -> str:
-    """Return the SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

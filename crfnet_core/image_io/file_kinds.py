@@ -53,8 +53,8 @@ def file_kind(path: Path) -> str:
     Raises
     ------
     PhotoError
-        If the file is absent, empty, or of a format that is not read; for scene-linear files, camera raw and GIF with
-        the reason.
+        If the file is absent, empty, or of a format that is not read; for scene-linear files, camera raw, GIF and TGA
+        with a palette with the reason.
     OSError
         If it cannot be opened.
     """
@@ -91,10 +91,7 @@ def _check_kind(path: Path, head: bytes, brands: bytes) -> None:
         if head.startswith(signatures):
             raise problems.linear(path, kind)
     if head.startswith((b"GIF87a", b"GIF89a")):
-        raise PhotoError(
-            f"{path}: GIF holds at most 256 colours, mixed by dither, from which no response can be estimated;"
-            " give the photograph that it was made from"
-        )
+        raise problems.paletted(path, "GIF")
 
 
 def _container_kind(head: bytes, brands: bytes) -> str:
@@ -119,7 +116,10 @@ def _split(brands: bytes) -> tuple[bytes, ...]:
 
 
 def _is_targa(path: Path) -> bool:
-    """Return whether suffix and header are those of TGA (Truevision TGA 2.0): it has no signature at its beginning."""
+    """Return whether suffix and header are those of TGA (Truevision TGA 2.0), which has no signature at its beginning.
+
+    A palette is refused.
+    """
     if path.suffix.lower() not in TARGA_SUFFIXES:
         return False
     with path.open("rb") as file:
@@ -127,4 +127,8 @@ def _is_targa(path: Path) -> bool:
     if len(header) < 18:
         return False
     has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
-    return has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)
+    if not (has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)):
+        return False
+    if kind in (1, 9):
+        raise problems.paletted(path, "a TGA file with a palette")
+    return True

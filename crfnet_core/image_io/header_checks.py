@@ -11,8 +11,8 @@ from crfnet_core.image_io import problems
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000
 
-#: TIFF's PhotometricInterpretation: the two of camera raw, and what is neither gray, RGB, palette nor YCbCr.
-RAW_PHOTOMETRIC = (32803, 34892)
+#: TIFF's PhotometricInterpretation: the two of camera raw, a palette, and what is neither gray, RGB nor YCbCr.
+RAW_PHOTOMETRIC, PALETTE_PHOTOMETRIC = (32803, 34892), 3
 OTHER_PHOTOMETRIC = {5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
 
@@ -30,7 +30,8 @@ def checked_bit_depth(path: Path, header: Any) -> int:
     Raises
     ------
     PhotoError
-        If it is too large, a volume, camera raw, of other colours than gray and RGB, of floats, or of less than 8 bits.
+        If it is too large, a volume, camera raw, of other colours than gray and RGB, of a palette, of floats, or of
+        less than 8 bits.
     """
     check_size(path, header.width, header.height)
     if header.depth != 1:
@@ -47,10 +48,16 @@ def checked_bit_depth(path: Path, header: Any) -> int:
 
 
 def _check_color(path: Path, header: Any) -> None:
-    """Refuse what is neither gray nor RGB once decoded without a colour conversion."""
+    """Refuse what is neither gray nor RGB once decoded without a colour conversion, and palettes."""
     photometric = header.get_int_attribute("tiff:PhotometricInterpretation", 2)
     if photometric in RAW_PHOTOMETRIC:
         raise problems.camera_raw(path)
+    if photometric == PALETTE_PHOTOMETRIC:
+        raise problems.paletted(path, "a TIFF file with a palette")
+    if header.get_int_attribute("png:palette"):
+        raise problems.paletted(path, "a PNG file with a palette")
+    if header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8:  # gray ones have a channel
+        raise problems.paletted(path, "a BMP file with a palette")
     inks = header.get_string_attribute("jpeg:ColorSpace") in ("CMYK", "YCbCrK")
     other = "CMYK" if inks else OTHER_PHOTOMETRIC.get(photometric)
     if other:

@@ -13,8 +13,14 @@ import OpenImageIO as oiio
 
 _SIGNATURE_SIZE = 8
 
+#: The colour type of IHDR whose pixels are the numbers of colours in a table.
+_PALETTE = 3
+
+#: Bits of a sample; OpenImageIO makes as many of fewer, and does not say so.
+_WHOLE_BITS = 8
+
 #: Chunks of colour -> the size of their content, in bytes; a profile has any.
-_COLOR_CHUNKS = {b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
+_COLOR_CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
 
 #: Chunks with which those of chromaticities and gamma do not count.
 _BEFORE_CHROMATICITIES = {b"cICP", b"iCCP", b"sRGB"}
@@ -24,9 +30,10 @@ _UNIT = 100_000
 
 
 def with_color_chunks(header: Any, path: Path) -> Any:
-    """Return the header of a PNG file with the attributes "CICP", "png:sRGB", "chromaticities" and "png:gamma".
+    """Return the header of a PNG file with the attributes of colour that OpenImageIO leaves out.
 
-    Each is there where a chunk says so; the last two only where no other chunk says how colours are encoded.
+    They are "png:palette", "oiio:BitsPerSample" below 8, "CICP", "png:sRGB", "chromaticities" and "png:gamma". Each is
+    there where a chunk says so; the last two only where no other chunk says how colours are encoded.
 
     Parameters
     ----------
@@ -37,6 +44,12 @@ def with_color_chunks(header: Any, path: Path) -> Any:
     """
     chunks = _color_chunks(path)
     complete = oiio.ImageSpec(header)
+    if b"IHDR" in chunks:
+        bits, color_type = chunks[b"IHDR"][8:10]
+        if color_type == _PALETTE:
+            complete.attribute("png:palette", 1)
+        if bits < _WHOLE_BITS:
+            complete.attribute("oiio:BitsPerSample", bits)
     if b"cICP" in chunks:
         complete.attribute("CICP", oiio.TypeDesc("int[4]"), tuple(chunks[b"cICP"]))
     if b"sRGB" in chunks:

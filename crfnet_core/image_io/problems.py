@@ -42,6 +42,14 @@ def linear(path: Path, kind: str) -> PhotoError:
     )
 
 
+def paletted(path: Path, kind: str) -> PhotoError:
+    """Return the error of a file whose pixels are the numbers of colours in a table."""
+    return PhotoError(
+        f"{path}: {kind} holds at most 256 colours, mostly mixed by dither, from which no response can be estimated;"
+        " give the photograph that it was made from"
+    )
+
+
 def camera_raw(path: Path) -> PhotoError:
     """Return the error of camera raw."""
     return PhotoError(

@@ -49,7 +49,7 @@ def read_photo(path: str | Path) -> Photo:
     ------
     PhotoError
         If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or no
-        encoded photograph: CMYK, scene-linear, camera raw.
+        encoded photograph: CMYK, palettes, scene-linear, camera raw.
     """
     return Photo.from_codes(read_codes(path), Path(path))
 

@@ -14,7 +14,7 @@ from typing import Any
 from crfnet_core.errors import PhotoError
 from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_arguments, plate_options
-from ocio.commands.printing import has_matplotlib, print_json, print_lines, progress_bar
+from ocio.commands.printing import has_matplotlib, print_json, print_left, print_lines, progress_bar
 from ocio.defaults import ESTIMATES
 from ocio.movies.frames import MovieFrames
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
@@ -57,14 +57,18 @@ def _run_each(arguments: argparse.Namespace, options: EstimateOptions, outputs: 
         raise PhotoError("--frames chooses the frames of one response, --each wants one of each photograph; drop one")
     photographs = pipeline.find_photographs(arguments.photos)
     tasks = pipeline.plan_each(arguments.out, photographs, options, plate_options(arguments), outputs)
+    left = [path.relative_to(arguments.out).as_posix() for task in tasks for path in task.left]
     with progress_bar("photographs") as progress:
         records = pipeline.estimate_each(
             arguments.out, tasks, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
         )
     if arguments.json:
-        print_json({"folder": str(arguments.out), "estimates": [asdict(record) for record in records]})
+        document = {"folder": str(arguments.out), "estimates": [asdict(record) for record in records]}
+        print_json(document | ({"left": left} if left else {}))
     else:
-        _print_records(records, tasks[0].files, arguments.out)
+        written = (task.files for task, record in zip(tasks, records, strict=True) if not record.error)
+        _print_records(records, next(written, None), arguments.out)
+        print_left(left, "these estimates")
     pipeline.check_records(records)
 
 
@@ -79,9 +83,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
         *report.offer_lines(estimated.offers),
     ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
-    if plan.left:
-        names = ", ".join(path.name for path in plan.left)
-        print_lines([f"Warning: of an earlier run, and not of this estimate, are {names}; remove them."])
+    print_left([path.name for path in plan.left], "this estimate")
     print_lines([""])
     plate = estimated.plates[0]
     if isinstance(plate, MovieFrames):
@@ -99,9 +101,10 @@ def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> st
     return shlex.join([*command, *plate_arguments(plates)])
 
 
-def _print_records(records: Sequence[PhotographRecord], files: OutputFiles, folder: Path) -> None:
-    """Print the result of each photograph in one line, and what was written."""
-    print_lines(record.error or record.summary for record in records)
-    lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
-    print_lines(["", f"Written to {folder}, for each photograph as for the first:", *lines])
+def _print_records(records: Sequence[PhotographRecord], files: OutputFiles | None, folder: Path) -> None:
+    """Print the result of each photograph in one line, and what was written: the files of one, if there are any."""
+    print_lines([*(record.error or record.summary for record in records), ""])
+    if files:
+        lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
+        print_lines([f"Written to {folder}, for each photograph as for the first:", *lines])
     print_lines([f"All results, one JSON line each: {folder / ESTIMATES}"])

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import sys
 import time
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from typing import Any
@@ -17,6 +17,9 @@ from crfnet_core.types import Progress
 
 #: Seconds between two lines of progress where there is no terminal.
 LINE_SECONDS = 60
+
+#: Most files that a warning names.
+MOST_NAMES = 20
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
@@ -38,6 +41,14 @@ def print_json(document: Mapping[str, Any]) -> None:
 def print_lines(lines: Iterable[str]) -> None:
     """Print lines."""
     sys.stdout.writelines(f"{line}\n" for line in lines)
+
+
+def print_left(left: Sequence[str], what: str) -> None:
+    """Warn of files of an earlier run that do not belong to what was written; of many, the first are named."""
+    if left:
+        more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
+        names = ", ".join(left[:MOST_NAMES]) + more
+        print_lines([f"Warning: of an earlier run, and not of {what}, are {names}; remove them."])
 
 
 @contextmanager

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import hashlib
 import json
 import shutil
 from collections.abc import Iterable, Mapping
@@ -10,7 +9,7 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from crfnet_core.errors import ConfigError
-from crfnet_core.files import atomic_write_text, read_json
+from crfnet_core.files import atomic_write_text, file_sha256, read_json
 from ocio.defaults import CONFIG_NAME
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
@@ -58,9 +57,11 @@ def read_record(config: Path) -> InstallationRecord | None:
     try:
         entries = read_json(own_folder(config) / RECORD_NAME)
         folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
-        files = tuple(entries.get("files", ()))
-        return InstallationRecord(entries["sha256"], entries["backup"], folders, plates, files)
-    except (OSError, ValueError, KeyError, TypeError):
+        files, backup = tuple(entries.get("files", ())), entries["backup"]
+        if not all(Path(name).name == name not in ("", "..") for name in (*folders, *([backup] if backup else []))):
+            return None  # what leads elsewhere was not written by us, and might be removed
+        return InstallationRecord(entries["sha256"], backup, folders, plates, files)
+    except (OSError, KeyError, OverflowError, TypeError, ValueError):
         return None
 
 
@@ -108,4 +109,4 @@ def files_in(folder: Path, names: Iterable[str]) -> list[str]:
 
 def digest(path: Path) -> str:
     """Return a file's SHA-256, or an empty text if there is no file."""
-    return hashlib.sha256(path.read_bytes()).hexdigest() if path.is_file() else ""
+    return file_sha256(path) if path.is_file() else ""

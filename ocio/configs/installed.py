@@ -37,7 +37,7 @@ from ocio.configs.plate_color_space import (
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_folder, distinct_names, new_files_removed_on_failure, output_folder
+from ocio.output_files import check_config_folder, distinct_names, new_files_removed_on_failure, output_folder
 
 
 @dataclass(frozen=True)
@@ -110,7 +110,7 @@ def install(
     ConfigError, PlateError, LutError
         If the folder cannot be written to, or OpenColorIO refuses the config, which is then as it was.
     """
-    check_folder(folder)
+    check_config_folder(folder)
     config = folder / CONFIG_NAME
     record = read_record(config)
     plates = dict(record.plates) if record else {}
@@ -190,9 +190,9 @@ def installed_color_spaces(folder: Path) -> tuple[str, ...]:
 
 
 def missing_color_spaces(folder: Path, base: Path) -> tuple[str, ...]:
-    """Return the colour spaces of a program's own config, `base`, that the config of `folder` lacks, which it replaces.
+    """Return the colour spaces of a program's own config, `base`, that are missing in the config that replaces it.
 
-    There are some after the program has been updated: the config in the folder was built on that of its earlier
+    There are some after the program has been updated: the config in `folder` was built on that of its earlier
     version. There are none if nothing was installed there, or the folder had a config of somebody else's before.
 
     Raises

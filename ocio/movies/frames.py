@@ -69,7 +69,7 @@ class MovieFrames:
         numbers = tuple(number for number in wanted if 1 <= number <= count)
         if not numbers:
             raise PlateError(f"{path}: there are {format_frames(range(1, count + 1))}; check the frames")
-        return cls(movie, numbers, tuple(number for number in wanted if number not in set(numbers)))
+        return cls(movie, numbers, tuple(number for number in wanted if not 1 <= number <= count))
 
     @property
     def paths(self) -> tuple[Path, ...]:

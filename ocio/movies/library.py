@@ -34,8 +34,10 @@ _TRANSPORT = ((188, 0), (192, 4))
 
 
 def is_movie(path: Path) -> bool:
-    """Return whether a file is a movie, by how it begins; False for what is no readable file."""
+    """Return whether a file is a movie, by how it begins; False for what is no readable file, such as a pipe."""
     try:
+        if not path.is_file():
+            return False
         with path.open("rb") as file:
             head = file.read(600)
     except (OSError, ValueError):

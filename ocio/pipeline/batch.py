@@ -68,7 +68,7 @@ def check_tasks(out: Path, tasks: Sequence[Task], *, shared: Sequence[Path] = ()
     tasks : sequence of Task
         At least one. Those that `run_tasks` will refuse write nothing.
     shared : sequence of Path
-        Further files, of several photographs.
+        The configs, of several photographs.
 
     Raises
     ------

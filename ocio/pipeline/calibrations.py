@@ -21,6 +21,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.response import response_of_lut
 from ocio.options import OutputOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
+from ocio.pipeline.folders import left_files
 from ocio.report import calibration_document, calibration_provenance
 from ocio.staging import staged_files
 
@@ -39,12 +40,15 @@ class CalibrationPlan:
         Entries of the LUTs.
     overwrite : bool
         Whether existing files may be replaced.
+    left : tuple of Path
+        Files of an earlier run with other options that stay there, although they are not of this calibration.
     """
 
     files: OutputFiles
     config: OCIO.Config
     lut_length: int
     overwrite: bool = False
+    left: tuple[Path, ...] = ()
 
 
 def plan_calibration(
@@ -81,7 +85,8 @@ def plan_calibration(
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite)
+    left = left_files(files, [stem])
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, left)
 
 
 def write_calibration(
@@ -134,7 +139,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
         return ResponseCurve.from_samples(samples)
     except OSError as problem:
         raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem
-    except (ValueError, KeyError, TypeError, CurveError) as problem:
+    except (KeyError, OverflowError, TypeError, ValueError, CurveError) as problem:
         raise CalibrationError(
             f"{path}: holds no response; give the JSON that crfnet estimate or calibrate wrote, or a LUT"
         ) from problem

@@ -19,7 +19,7 @@ from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, output_folder
 from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_photographs
-from ocio.pipeline.folders import estimated_light, with_light, write_estimate
+from ocio.pipeline.folders import estimated_light, left_files, with_light, write_estimate
 from ocio.pipeline.loading import load_camera
 from ocio.pipeline.manifest import Manifest, PhotographRecord
 from ocio.pipeline.photographs import without_outputs
@@ -45,6 +45,11 @@ class EstimateTask(Task):
 
     files: OutputFiles
     outputs: OutputOptions
+
+    @property
+    def left(self) -> tuple[Path, ...]:
+        """Files of an earlier run with other options that stay there, although they are not of this one."""
+        return left_files(self.files, (self.photo,))
 
     @property
     def targets(self) -> tuple[Path, ...]:
@@ -176,7 +181,7 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
             files[0].config.unlink(missing_ok=True)
             continue
         spaces = [_color_space(own, record, output_space) for own, record in written.values()]
-        check = {files[0].color_space: read_lut(files[0].spi1d).channels[0]}  # they all are made alike
+        check = {own.color_space: read_lut(own.spi1d).channels[0] for own in files}
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
 
 

@@ -80,14 +80,25 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
-    return OutputPlan(files, space, plates, outputs.lut_length, _left(files, photos))
+    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos))
 
 
-def _left(files: OutputFiles, photos: Sequence[Path]) -> tuple[Path, ...]:
-    """Return those files of an earlier run of the same name that this one does not write."""
+def left_files(files: OutputFiles, photos: Sequence[Path]) -> tuple[Path, ...]:
+    """Return those files of an earlier run of the same name that this one does not write.
+
+    `a_forward.cube` is none of `a` if there is `a_forward.json`: it belongs to the photograph `a_forward`.
+
+    Parameters
+    ----------
+    files : OutputFiles
+        What is written, before it is.
+    photos : sequence of Path
+        The photographs after which the files are named.
+    """
     every = OutputFiles.named(files.report.parent, photos, has_forward=True).own if files.report.exists() else ()
     kept = {*files.own, *(photo.absolute() for photo in photos)}
-    return tuple(path for path in every if path.exists() and not kept & {path, path.absolute()})
+    there = (path for path in every if path.exists() and not kept & {path, path.absolute()})
+    return tuple(path for path in there if not path.with_suffix(".json").exists())
 
 
 def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:

@@ -10,7 +10,7 @@ from typing import Any
 
 from crfnet_core.errors import PhotoError, PlateError
 from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, parse_json
 from crfnet_core.metadata.color_tags import Primaries
 from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
@@ -100,7 +100,8 @@ class PhotographRecord:
         if self.primaries is None:
             return PlatePrimaries(None, self.primaries_source)
         fields: dict[str, Any] = {
-            name: tuple(value) if isinstance(value, list) else value for name, value in self.primaries.items()
+            name: tuple(map(float, value)) if isinstance(value, list) else value
+            for name, value in self.primaries.items()
         }
         return PlatePrimaries(Primaries(**fields), self.primaries_source)
 
@@ -151,10 +152,10 @@ class Manifest:
         """Read the records of an earlier run; a last line that was cut short is left out."""
         *lines, _ = self.path.read_bytes().split(b"\n")
         try:
-            entries = list(map(json.loads, lines))
-            settings = entries[0]["settings"]
+            entries = list(map(parse_json, lines))
+            settings = dict(entries[0]["settings"])
             records = list(map(_record, entries[1:]))
-        except (IndexError, KeyError, TypeError, ValueError) as problem:
+        except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as problem:
             raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
         if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
             raise PlateError(
@@ -180,7 +181,10 @@ def check_records(records: Sequence[PhotographRecord]) -> None:
 def _record(entry: Mapping[str, Any]) -> PhotographRecord:
     """Return a record of a manifest's line."""
     several = {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
-    return PhotographRecord(**{**entry, **several})
+    record = PhotographRecord(**{**entry, **several, "exposure": float(entry.get("exposure", 0.0))})
+    if not all(isinstance(text, str) for text in (record.photograph, record.folder, record.error, record.plate.name)):
+        raise TypeError("a name is no text")
+    return record
 
 
 def _line(entry: Mapping[str, Any]) -> str:

@@ -22,6 +22,9 @@ from ocio.plates.primaries import PlatePrimaries, plate_primaries
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
 PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
 
+#: The name under which `_attributes` has the sample type, which is no attribute.
+_DEPTH = "crfnet:depth"
+
 #: Largest difference in stops between exposures that are the same.
 SAME_EXPOSURE = 1e-3
 
@@ -78,28 +81,30 @@ class PlateLight:
         return {name: value for name, value in attributes.items() if value not in ("", ())}
 
 
-def check_finished(frames: Iterable[Path], light: PlateLight) -> None:
-    """Check that finished frames mean the same as those that will stand beside them.
+def check_finished(frames: Iterable[Path], light: PlateLight, depth: str) -> None:
+    """Check that finished frames mean the same, and have the same sample type, as those that will stand beside them.
 
     Files that say nothing, or cannot be read, pass: they were not written by this command.
 
     Raises
     ------
     PlateError
-        If a frame has another exposure, LUT or space, or was made of other primaries.
+        If a frame has another exposure, LUT, space or sample type, or was made of other primaries.
     """
     for path in frames:
         written = _attributes(path)
-        if EXPOSURE in written and (difference := _difference(written, light)):
+        if EXPOSURE in written and (difference := _difference(written, light, depth)):
             raise PlateError(
                 f"{path}: is there already, with {difference}; repeat that, add --overwrite or change --out"
             )
 
 
-def _difference(written: dict[str, Any], light: PlateLight) -> str:
+def _difference(written: dict[str, Any], light: PlateLight, depth: str) -> str:
     """Return in words how a finished frame differs; empty if it does not."""
+    if written[_DEPTH] != depth:
+        return f"{written[_DEPTH]} samples, not {depth}"
     if abs(written[EXPOSURE] - light.stops) > SAME_EXPOSURE:
-        return f"an exposure of {written[EXPOSURE]:+.3g} stops, not {light.stops:+.3g}"
+        return f"an exposure of {round(written[EXPOSURE], 3):+g} stops, not {round(light.stops, 3):+g}"
     for name, words in ((PRIMARIES, "primaries"), ("colorInteropID", "color space")):
         if name in written and written[name] != light.attributes[name]:
             return f"the {words} {written[name]}, not {light.attributes[name]}"
@@ -107,12 +112,13 @@ def _difference(written: dict[str, Any], light: PlateLight) -> str:
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return what the header of an OpenEXR file holds, by name; nothing if it cannot be read."""
+    """Return what the header of an OpenEXR file holds, by name, and its sample type; nothing if it cannot be read."""
     source = oiio.ImageInput.open(str(path))
     if source is None:
         oiio_message()
         return {}
     try:
-        return {attribute.name: attribute.value for attribute in source.spec().extra_attribs}
+        header = source.spec()
+        return {attribute.name: attribute.value for attribute in header.extra_attribs} | {_DEPTH: str(header.format)}
     finally:
         source.close()

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError, PlateError
-from crfnet_core.files import atomic_write, check_target
+from crfnet_core.files import atomic_write, check_target, temporary_stem
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
 from ocio.luts.rgb_lut import AnyLut
@@ -114,9 +114,9 @@ def linearize_plates(
     The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
 
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
-    unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure or space is
-    refused then. So is what another process finishes meanwhile. Temporary files of a killed run are removed once they
-    are `STALE_SECONDS` old.
+    unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure, space or
+    depth is refused then. A frame that another process finishes meanwhile is left alone too, and checked in the same
+    way. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
     Missing frames are only reported, and a frame that fails does not stop the others. Only the frames that are worked
     on are in memory.
 
@@ -150,7 +150,7 @@ def linearize_plates(
     light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    check_finished(skipped, light)
+    check_finished(skipped, light, options.depth)
     left_alone = set(skipped)
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
     _remove_leftovers(pending)
@@ -174,7 +174,7 @@ def linearize_plates(
             show_progress(progress, done, len(targets))
     if failures:
         raise PlateError(_failure(failures, targets, sequence))
-    check_finished(elsewhere, light)
+    check_finished(elsewhere, light, options.depth)
     written = tuple(target for target in pending if target not in elsewhere)
     return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
 
@@ -263,11 +263,11 @@ def _worker_count(workers: int | None) -> int:
 
 def _remove_leftovers(targets: Iterable[Path]) -> None:
     """Remove old temporary files of frames about to be written; a recent one may belong to a running process."""
-    targets = set(targets)
-    for folder in {target.parent for target in targets}:
+    names = {target.with_name(temporary_stem(target) + target.suffix) for target in targets}
+    for folder in {name.parent for name in names}:
         for path in folder.iterdir():
             match = _LEFTOVER.fullmatch(path.name)
-            if match and folder / (match[1] + match[2]) in targets:
+            if match and folder / (match[1] + match[2]) in names:
                 with suppress(OSError):
                     if time.time() - path.stat().st_mtime > STALE_SECONDS:
                         path.unlink()

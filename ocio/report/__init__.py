@@ -23,7 +23,7 @@ from ocio.report.cameras import (
     photograph_lines,
 )
 from ocio.report.documents import estimate_document, lut_document, model_document, plate_document
-from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error, provenance, shape_error
+from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error_words, provenance, shape_error_words
 from ocio.report.words import (
     REMEDIES,
     VERDICTS,
@@ -50,7 +50,7 @@ __all__ = [
     "camera_line",
     "camera_summary",
     "comparison_lines",
-    "curve_error",
+    "curve_error_words",
     "disagreement_lines",
     "estimate_document",
     "file_lines",
@@ -68,7 +68,7 @@ __all__ = [
     "plate_lines",
     "provenance",
     "result_line",
-    "shape_error",
+    "shape_error_words",
     "source_line",
     "verdict_lines",
 ]

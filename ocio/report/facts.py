@@ -9,6 +9,7 @@ import numpy as np
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.metrics import brightness_percent
 from crfnet_core.photo import Photo
+from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response_estimate import CameraAnswer
 
 
@@ -47,23 +48,24 @@ class PhotoFacts:
         return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits{base}"
 
 
-def curve_error(estimate: ResponseEstimate) -> str:
+def curve_error_words(estimate: ResponseEstimate) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    return f"{percent:.1f} % of the brightness range (E_est {estimate.uncertainty:.2f})"
+    return f"{percent:.1f} % of the brightness range (E_est {_beside(estimate.uncertainty, GOOD_ERROR)})"
 
 
-def shape_error(estimate: ResponseEstimate) -> str:
+def shape_error_words(estimate: ResponseEstimate) -> str:
     """Return in words how far the shape of the linear light is expected to be off; empty if that is not known.
 
     It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
     """
-    return f"{estimate.shape_uncertainty:.2f} stop" if np.isfinite(estimate.shape_uncertainty) else ""
+    shape = estimate.shape_uncertainty
+    return f"{_beside(shape, GOOD_STOPS, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
 
 
 def expected_errors(estimate: ResponseEstimate) -> str:
     """Return both expected errors in a few words, stops first."""
-    return ", ".join(filter(None, [shape_error(estimate), curve_error(estimate)]))
+    return ", ".join(filter(None, [shape_error_words(estimate), curve_error_words(estimate)]))
 
 
 def basis(estimate: ResponseEstimate) -> str:
@@ -103,6 +105,14 @@ def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
         "; ".join(filter(None, [f"Most likely {kind}" if kind else "", basis(estimate)])),
     )
     return tuple(filter(None, lines))
+
+
+def _beside(value: float, *limits: float) -> str:
+    """Return a number with two decimals, or more where two would hide on which side of a verdict's limit it lies."""
+    decimals = 2
+    while decimals < 6 and any((value > limit) != (round(value, decimals) > limit) for limit in limits):
+        decimals += 1
+    return f"{value:.{decimals}f}"
 
 
 def _metadata_words(estimate: ResponseEstimate) -> str:

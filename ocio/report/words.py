@@ -15,7 +15,7 @@ from ocio.output_files import OutputFiles
 from ocio.plates.frame_numbers import format_frames
 from ocio.plates.linear import PlateReport
 from ocio.report.documents import QUARTERS
-from ocio.report.facts import agreeing, basis, curve_error, expected_errors, shape_error
+from ocio.report.facts import agreeing, basis, curve_error_words, expected_errors, shape_error_words
 
 #: The verdicts in words for people.
 VERDICTS = {
@@ -170,7 +170,11 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
 
 def _expectation(estimate: ResponseEstimate) -> str:
     """Return how far the answer is expected to be off, beside gamma 2.2; without stops if they are not known."""
-    shape, curve, gamma = shape_error(estimate), curve_error(estimate), f"{brightness_percent(GAMMA_ERROR):.0f} %"
+    shape, curve, gamma = (
+        shape_error_words(estimate),
+        curve_error_words(estimate),
+        f"{brightness_percent(GAMMA_ERROR):.0f} %",
+    )
     if not shape:
         return f"Expect the curve to be off by {curve}; gamma 2.2 is usually off by {gamma}."
     return (

@@ -5,7 +5,7 @@ import stat
 import pytest
 
 from crfnet_core.errors import CRFNetError, LutError
-from crfnet_core.files import LONGEST_NAME, atomic_write, shortened
+from crfnet_core.files import LONGEST_NAME, atomic_write, cut_to_bytes
 
 
 def test_a_file_takes_its_name_when_it_is_whole(tmp_path):
@@ -76,7 +76,7 @@ def test_the_mask_of_permissions_holds_and_is_left_alone(tmp_path, monkeypatch):
 @pytest.mark.parametrize("character", ["a", "\u00e9", "\u5199", "\U0001f4f7"])
 def test_the_longest_names_are_written(tmp_path, character):
     ending = ".cube"
-    name = shortened(character * LONGEST_NAME, LONGEST_NAME - len(ending)) + ending
+    name = cut_to_bytes(character * LONGEST_NAME, LONGEST_NAME - len(ending)) + ending
     with atomic_write(tmp_path / name) as temporary:
         assert temporary.suffix == ending
         temporary.write_text("whole")
@@ -100,4 +100,4 @@ def test_the_temporary_name_says_which_file_it_is_of(tmp_path):
     [("plate", 5, "plate"), ("plate", 4, "plat"), ("\u00e9\u00e9", 3, "\u00e9"), ("a\udcffb", 9, "ab"), ("a", -1, "")],
 )
 def test_names_are_cut_between_characters(name, most, expected):
-    assert shortened(name, most) == expected
+    assert cut_to_bytes(name, most) == expected

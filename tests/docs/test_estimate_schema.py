@@ -16,31 +16,17 @@ from crfnet_core.metadata.origin import SHAPES, Encoding
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response_estimate import SCHEMA_VERSION
 from tests.helpers.cameras import photograph
-
-jsonschema = pytest.importorskip("jsonschema")
+from tests.helpers.schemas import problems_by, read_schema
 
 
 @pytest.fixture(scope="module")
-def schema(root):
-    return json.loads((root / "docs" / "estimate.schema.json").read_text(encoding="utf-8"))
+def schema():
+    return read_schema("estimate")
 
 
 @pytest.fixture(scope="module")
 def problems(schema):
-    """The entries of a document that the schema forbids, or does not describe: problems(document)."""
-    jsonschema.Draft202012Validator.check_schema(schema)
-    strict = jsonschema.Draft202012Validator(closed(schema))
-    return lambda document: [error.json_path for error in strict.iter_errors(document)]
-
-
-def closed(schema):
-    """The schema with each object closed: for our own documents, every entry must be described."""
-    if isinstance(schema, list):
-        return list(map(closed, schema))
-    if not isinstance(schema, dict):
-        return schema
-    more = {"additionalProperties": False} if "properties" in schema and schema.get("type") == "object" else {}
-    return more | {name: closed(part) for name, part in schema.items()}
+    return problems_by(schema)
 
 
 @pytest.fixture(scope="module")

@@ -66,6 +66,23 @@ def test_the_lines_of_an_estimate(estimate):
     assert windows.endswith(" of 2 windows agree.")
 
 
+@pytest.mark.parametrize(
+    ("fields", "words"),
+    [
+        ({"shape_uncertainty": 0.3002}, "0.3002 stop"),
+        ({"shape_uncertainty": 0.2998}, "0.30 stop"),
+        ({"shape_uncertainty": 0.3}, "0.30 stop"),
+        ({"shape_uncertainty": 0.1101}, "0.1101 stop"),
+        ({"shape_uncertainty": 0.114}, "0.114 stop"),
+        ({"uncertainty": 1.504}, "(E_est 1.504)"),
+        ({"uncertainty": 1.496}, "(E_est 1.50)"),
+        ({"uncertainty": 2.504}, "(E_est 2.50)"),
+    ],
+)
+def test_a_number_lies_on_the_side_of_a_limit_that_the_verdict_says(estimate, fields, words):
+    assert words in report.verdict_lines(estimate(**fields))[1]
+
+
 def test_warnings_come_last(estimate):
     assert report.verdict_lines(estimate(warnings=("dark", "gray")))[-2:] == ["Warning: dark.", "Warning: gray."]
 

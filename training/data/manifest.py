@@ -17,10 +17,9 @@ from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import atomic_write_text
+from crfnet_core.files import atomic_write_text, file_sha256
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.scenes import split_scenes
-from training.provenance import file_sha256
 
 #: The manifest of the data that the packaged models were trained and measured with.
 MANIFEST_FILE = Path(__file__).with_name("manifest.csv")

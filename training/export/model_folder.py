@@ -14,6 +14,7 @@ from pathlib import Path
 import torch
 from torch import nn
 
+from crfnet_core.files import file_sha256
 from crfnet_core.network import ModelConfig
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
@@ -22,7 +23,7 @@ from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded
 from training.network.model import KINDS, NetworkConfig, PhotographNet, ShippedNetwork
 from training.network.train import CHECKPOINT
-from training.provenance import RUN_FILE, Record, file_sha256, read_run, training_commit, write_json
+from training.provenance import RUN_FILE, Record, read_run, training_commit, write_json
 
 
 def load_network(run: Path, *, without: Sequence[str] = ()) -> ShippedNetwork:

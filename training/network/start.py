@@ -9,8 +9,8 @@ import torch
 from onnx import numpy_helper
 from torch import Tensor
 
+from crfnet_core.files import file_sha256
 from training.network.model import PhotographNet
-from training.provenance import file_sha256
 
 #: In front of the names of the parameters in the graph of a packaged model.
 GRAPH_PREFIX = "net."

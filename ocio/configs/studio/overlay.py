@@ -27,7 +27,7 @@ from ocio.configs.studio.plates import PlateInConfig, plates_in_config
 from ocio.configs.studio.sources import ConfigSource
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_folder, new_files_removed_on_failure, output_folder
+from ocio.output_files import check_config_folder, new_files_removed_on_failure, output_folder
 
 #: The config without plates.
 TEMPLATE = """\
@@ -109,7 +109,7 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     """
     target = target.resolve()
     merge_file = target.with_suffix(".ociom")
-    check_folder(target.parent)
+    check_config_folder(target.parent)
     if target == base.path:
         raise ConfigError(f"{target}: is the config to merge with; choose another name for the overlay")
     config, luts, identities = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Lut1D](), dict[str, str]()

@@ -14,7 +14,7 @@ from ocio.configs.files import plate_exposure
 from ocio.configs.plate_color_space import FAMILY
 from ocio.configs.plate_views import plate_views
 from ocio.configs.studio.sources import ConfigSource
-from ocio.output_files import check_folder
+from ocio.output_files import check_config_folder
 
 
 @dataclass(frozen=True)
@@ -93,5 +93,5 @@ def checked_target(source: ConfigSource, target: Path | None) -> Path:
         raise ConfigError(f"{path}: is read-only; add --out FILE.ocio")
     if path.is_dir():
         raise ConfigError(f"{path}: is a folder; name a file")
-    check_folder(path.parent)
+    check_config_folder(path.parent)
     return path

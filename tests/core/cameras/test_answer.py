@@ -22,8 +22,9 @@ from crfnet_core.cameras import (
     with_camera,
 )
 from crfnet_core.cameras.answer import brightness_per_stop
-from crfnet_core.cameras.camera import KEY_LENGTH, file_sha256
+from crfnet_core.cameras.camera import KEY_LENGTH
 from crfnet_core.errors import CameraError, CRFNetError, PhotoError
+from crfnet_core.files import file_sha256
 from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior import Prior, Verdict

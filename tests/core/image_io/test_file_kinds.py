@@ -1,12 +1,13 @@
-"""JPEG XL, JPEG 2000, BMP and TGA are read with all their bits; GIF and camera raw by content are refused."""
+"""JPEG XL, JPEG 2000, BMP and TGA are read with all their bits; palettes and camera raw by content are refused."""
 
 import struct
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_codes, read_photo
+from crfnet_core.image_io import read_codes, read_metadata, read_photo
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 from tests.helpers.images import write_image
@@ -75,6 +76,30 @@ def test_gif_is_refused_for_its_palette(tmp_path):
     path = write_image(tmp_path / "a.gif", colored_ramp(8))
     with pytest.raises(PhotoError, match=r"GIF holds at most 256 colours.*give the photograph that it was made from"):
         read_photo(path)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp", "a.tga"])
+@pytest.mark.parametrize("colors", [16, 256])
+def test_other_palettes_are_refused_alike(tmp_path, name, colors):
+    Image.fromarray(colored_ramp(8).astype(np.uint8)).quantize(colors).save(tmp_path / name)
+    for read in (read_photo, read_metadata):
+        with pytest.raises(PhotoError, match=r"a [A-Z]+ file with a palette holds at most 256 colours.*give the photo"):
+            read(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif"])
+def test_black_and_white_is_refused(tmp_path, name):
+    Image.fromarray(colored_ramp(8)[..., 0] > 127).save(tmp_path / name)
+    with pytest.raises(PhotoError, match="holds 1-bit uint8 samples; needs 8 to 16 bits"):
+        read_photo(tmp_path / name)
+
+
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp", "a.tga"])
+def test_gray_is_no_palette(tmp_path, name):
+    """Although a BMP file of 8 bits always has one."""
+    gray = colored_ramp(8).astype(np.uint8)[..., 0]
+    Image.fromarray(gray).save(tmp_path / name)
+    np.testing.assert_array_equal(read_codes(tmp_path / name).codes[..., 0], gray)
 
 
 def canon_raw(path):

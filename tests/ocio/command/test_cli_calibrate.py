@@ -150,8 +150,12 @@ def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, m
     assert not (tmp_path / "out").exists()
 
 
-def test_a_document_without_a_response_is_refused(crfnet, frames, tmp_path):
-    (tmp_path / "other.json").write_text('{"a": 1}')
+@pytest.mark.parametrize(
+    "text",
+    ['{"a": 1}', '{"response": {"brightness": [0, 1e999]}}', f'{{"response": {{"brightness": [0, 1{"0" * 400}]}}}}'],
+)
+def test_a_document_without_a_response_is_refused(crfnet, frames, tmp_path, text):
+    (tmp_path / "other.json").write_text(text)
     done = crfnet("calibrate", *frames, "--out", tmp_path / "out", "--compare", tmp_path / "other.json")
     assert done.code == BAD_INPUT
     assert "other.json: holds no response; give the JSON that crfnet estimate or calibrate wrote" in done.err
@@ -163,6 +167,17 @@ def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     assert done.code == BAD_INPUT
     assert "eos20d.cube exists already; add --overwrite" in done.err
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
+
+
+def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tmp_path):
+    again = ("calibrate", *frames, "--out", tmp_path, "--name", "eos20d", "--no-sheet", "--overwrite")
+    (tmp_path / "eos20d.json").write_text("{}")
+    (tmp_path / "eos20d_sheet.png").write_text("of an earlier run")
+    done = crfnet(*again)
+    assert "Warning: of an earlier run, and not of this calibration, are eos20d_sheet.png; remove them." in done.out
+    assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]
+    (tmp_path / "eos20d_sheet.png").unlink()
+    assert "of an earlier run" not in crfnet(*again).out
 
 
 def test_a_response_from_a_lut_is_gamma(tmp_path):

@@ -7,7 +7,7 @@ import pytest
 
 from crfnet_core import ResponseCurve
 from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
-from crfnet_core.cameras.camera import file_sha256
+from crfnet_core.files import file_sha256
 from crfnet_core.metrics import estimation_error
 from ocio.arguments.parts import BAD_INPUT
 from ocio.luts.files import read_lut

@@ -77,6 +77,16 @@ def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_pa
     assert "CRF bad" not in (tmp_path / "out" / "config.ocio").read_text()
 
 
+def test_only_files_that_were_written_are_named(estimate, photographs):
+    for name in ("a.jpg", "b.JPG"):
+        (photographs / name).write_bytes(b"no photograph")
+    bad = (photographs / "a.jpg", photographs / "b.JPG")
+    assert "a.spi1d" not in estimate(*bad, *QUICK).out
+    shutil.copy(photographs / "day 2" / "a.jpg", photographs / "b.JPG")
+    out = estimate(*bad, *QUICK).out
+    assert ("a.spi1d" in out, "  b.spi1d, b.cube, b.clf" in out) == (False, True)
+
+
 def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, monkeypatch):
     (photographs / "bad.jpg").write_bytes(b"no photograph")
     estimate(photographs, *QUICK)
@@ -133,6 +143,36 @@ def test_what_is_no_manifest_is_refused(estimate, photographs, tmp_path):
     assert done.code == BAD_INPUT
     assert "is no manifest" in done.err
     assert tree(tmp_path / "out") == {ESTIMATES: b"mine\n"}
+
+
+@pytest.mark.parametrize(
+    "change",
+    [
+        {"exposure": 10**400},
+        {"exposure": float("inf")},
+        {"exposure": "much"},
+        {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
+        {"primaries": {"name": "mine", "red": ["a", "b"], "green": [0, 1], "blue": [0, 0]}},
+        {"photograph": 1},
+    ],
+)
+def test_a_damaged_manifest_is_refused_in_one_line(estimate, photographs, tmp_path, change):
+    estimate(photographs / "a.jpg", *QUICK)
+    (settings, record), path = (tmp_path / "out" / ESTIMATES).read_text().splitlines(), tmp_path / "out" / ESTIMATES
+    path.write_text(f"{settings}\n{json.dumps(json.loads(record) | change)}\n")
+    before = tree(tmp_path / "out")
+    done = estimate(photographs / "a.jpg", *QUICK)
+    assert done.code == BAD_INPUT
+    assert done.err == f"crfnet: error: {path}: is no manifest; choose another folder, or add --overwrite\n"
+    assert tree(tmp_path / "out") == before
+
+
+@pytest.mark.parametrize("text", ["[]", '{"settings": 1}', '{"settings": {}}\n[]', "[" * 200000])
+def test_what_is_another_json_is_no_manifest(estimate, photographs, tmp_path, text):
+    (tmp_path / "out").mkdir()
+    (tmp_path / "out" / ESTIMATES).write_text(f"{text}\n")
+    done = estimate(photographs, *QUICK)
+    assert (done.code, "is no manifest" in done.err, done.err.count("\n")) == (BAD_INPUT, True, 1)
 
 
 def test_a_crowded_folder_gets_no_config(estimate, photographs, tmp_path, monkeypatch):

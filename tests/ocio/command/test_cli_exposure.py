@@ -88,8 +88,10 @@ class TestResuming:
         [
             (("--exposure", "1"), "an exposure of +0 stops, not +1"),
             (("--exposure", "gray"), "an exposure of +0 stops, not "),
+            (("--exposure", "12.304"), "an exposure of +0 stops, not +12.304"),
             (("--output-space", "ACEScg"), "the color space lin_rec709_scene, not lin_ap1_scene"),
             (("--primaries", "p3"), "the primaries Rec.709, not Display P3"),
+            (("--depth", "float"), "half samples, not float"),
         ],
     )
     def test_a_sequence_is_not_mixed(self, crfnet, frames, look, arguments, difference):

@@ -117,6 +117,26 @@ def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, 
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.parametrize("folder", ["$HOME", "projects$", "a%b%"])
+def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet, plate, tmp_path, folder):
+    """At once, since hosts would find no LUT beside the config. Linear plates need no config, and are written."""
+    (tmp_path / folder).mkdir()
+    lut_file = tmp_path / "a.spi1d"
+    write_spi1d(lut_file, inverse_response_lut(ResponseCurve.gamma()))
+    base = "ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4"
+    for command in (
+        ("estimate", plate, "--out", tmp_path / folder),
+        ("estimate", plate, "--out", tmp_path / folder, "--each"),
+        ("config", "add", "--base", base, "--out", tmp_path / folder / "a.ocio", lut_file),
+        ("config", "overlay", "--base", base, "--out", tmp_path / folder / "a.ocio", lut_file),
+    ):
+        done = crfnet(*command)
+        words = f"{tmp_path / folder}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"
+        assert (done.code, done.err) == (BAD_INPUT, f"crfnet: error: {words} folder\n")
+        assert list((tmp_path / folder).iterdir()) == []
+    assert crfnet("linearize", plate, "--lut", lut_file, "--out", tmp_path / folder / "a.exr").code == 0
+
+
 @pytest.mark.parametrize("arguments", [(), ("nonsense",), ("completion", "dos")])
 def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
     done = crfnet(*arguments)

@@ -161,9 +161,12 @@ def test_a_config_changed_since_gets_a_backup_of_its_own(folder, base):
     assert second.read_bytes().endswith(b"# mine again\n")
 
 
-def test_a_damaged_record_counts_as_none(folder, base):
+@pytest.mark.parametrize("change", [None, {"folders": [5]}, {"backup": 5}, {"folders": [".."]}, {"backup": "../a"}])
+def test_a_damaged_record_counts_as_none(folder, base, change):
+    """And so does one that would have files removed or moved elsewhere."""
     install(folder, base, SPACE, LUT, plate=PLATE)
-    (folder / FOLDER / RECORD_NAME).write_text("{}")
+    record = folder / FOLDER / RECORD_NAME
+    record.write_text("{}" if change is None else json.dumps(json.loads(record.read_text()) | change))
     with pytest.raises(ConfigError, match="there is nothing to restore"):
         restore(folder)
     assert install(folder, base, SPACE, LUT, plate=PLATE).backup is not None

@@ -1,5 +1,6 @@
 """What a movie says of its pictures."""
 
+import os
 import struct
 from fractions import Fraction
 
@@ -223,3 +224,15 @@ def test_interlaced_movies_are_named(tmp_path):
 
 def test_progressive_movies_pass(movie):
     check_progressive(read_stream(movie))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_is_no_movie(tmp_path):
+    """It is not opened, which would wait for a writer; here there is one, so that the test would not."""
+    os.mkfifo(tmp_path / "a.avi")
+    writer = os.open(tmp_path / "a.avi", os.O_RDWR)
+    try:
+        os.write(writer, b"RIFF....AVI ".ljust(600, b"\0"))
+        assert not is_movie(tmp_path / "a.avi")
+    finally:
+        os.close(writer)

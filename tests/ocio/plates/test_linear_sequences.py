@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PlateError
-from crfnet_core.files import atomic_write
+from crfnet_core.files import LONGEST_NAME, atomic_write
 from crfnet_core.image_io import read_photo
 from ocio.luts.lut1d import Lut1D
 from ocio.plates import linear
@@ -155,6 +155,18 @@ def test_old_leftovers_of_these_frames_are_removed(tmp_path, out):
     linearize(pattern, out / "a.####.exr", LUT)
     expected = {*names[1:], ".a.0002.abcdefgh.exr", "a.0001.exr", "a.0002.exr"}
     assert set(listed(out)) == expected, "only what is old and belongs to a frame of this run goes"
+
+
+@pytest.mark.parametrize("stem", ["a" * (LONGEST_NAME - len(".0001.exr")), "\u5199" * 80])
+def test_so_are_those_of_long_names(tmp_path, out, stem):
+    pattern = write_sequence(tmp_path, (1,))
+    with atomic_write(out / f"{stem}.0001.exr") as temporary:
+        pass
+    (out / f"{stem}.0001.exr").unlink()
+    temporary.touch()
+    os.utime(temporary, (0, 0))
+    linearize(pattern, out / f"{stem}.####.exr", LUT)
+    assert listed(out) == [f"{stem}.0001.exr"]
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
