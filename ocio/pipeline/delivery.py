@@ -12,7 +12,7 @@ from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
-from ocio.output_files import OutputFiles, check_config_folder, output_folder
+from ocio.output_files import OutputFiles, check_config_folder, check_folder, output_folder
 from ocio.staging import staged_files
 
 
@@ -38,6 +38,7 @@ def export_luts(files: OutputFiles, space: PlateColorSpace, lut: Lut1D, *, overw
         If a file exists and may not be replaced, or cannot be written, or OpenColorIO refuses the config.
     """
     written = (*files.luts, files.config)
+    check_config_folder(files.config.parent)
     with all_or_none(written, overwrite=overwrite) as (*luts, config):
         for path in luts:
             write_lut(path, lut)
@@ -64,7 +65,7 @@ def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator
         If a file exists and may not be replaced, or the folder cannot be made or written to.
     """
     folder = targets[0].parent
-    check_config_folder(folder)
+    check_folder(folder)
     with output_folder(folder):
         for target in targets:
             check_target(target, overwrite=overwrite)

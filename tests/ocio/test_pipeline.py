@@ -193,6 +193,11 @@ class TestAllOrNone:
             bake(sequence, targets, LUT, PlateOptions())
         assert not (tmp_path / "new").exists()
 
+    def test_a_folder_in_which_opencolorio_finds_no_lut_is_fine_for_linear_plates(self, plate, tmp_path):
+        target = tmp_path / "projects$" / "lin.exr"
+        bake(FrameSequence((plate,)), [target], LUT, PlateOptions())
+        assert target.exists()
+
     def test_existing_files_are_refused_unless_asked(self, plate, tmp_path):
         single, target = FrameSequence((plate,)), tmp_path / "lin.exr"
         target.write_text("mine")
@@ -235,6 +240,12 @@ class TestExport:
         with pytest.raises(ZeroDivisionError):
             pipeline.export_luts(files, space, other, overwrite=True)
         assert {path: path.read_bytes() for path in files.config.parent.iterdir()} == earlier
+
+    def test_a_folder_in_which_opencolorio_finds_no_lut_is_refused(self, space, tmp_path):
+        files = OutputFiles.named(tmp_path / "projects$", [tmp_path / "plate.png"], has_sheet=False)
+        with pytest.raises(PlateError, match="OpenColorIO takes \\$ and % in it for variables"):
+            pipeline.export_luts(files, space, LUT)
+        assert not files.config.parent.exists()
 
     @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
     def test_a_failure_in_the_middle_leaves_nothing(self, files, space, monkeypatch, problem):
