@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 import numpy as np
 
 from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
+from crfnet_core.emor import EmorBasis
 from crfnet_core.metadata import FileOrigin, family_factors
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
@@ -49,12 +50,14 @@ def estimate_response(
 
     Windows are cut from every photograph. The network reads them, or statistics that are counted in them, and states
     evidence: which responses make such a photograph likely. Prior times the evidence of all photographs is the
-    posterior over a bank of responses, and the answer is the response of least expected error in it.
+    posterior over a bank of responses, and the answer is their mean in log irradiance: the response of least expected
+    squared error in stops.
 
     Parameters
     ----------
     photos : Photo or iterable of Photo
-        Photographs of one camera with the same settings; an iterator needs the memory of one photograph only.
+        Photographs of one camera with the same settings; of an iterator, one photograph is in memory
+        at a time, and the windows of all.
     network : ResponseNetwork
         See `ResponseNetwork.load`.
     prior : Prior, optional
@@ -120,7 +123,7 @@ def estimate_of(
     doubts = _doubts(photographs, origins)
     return ResponseEstimate(
         curve=posterior.curve,
-        weights=posterior.mean_weights,
+        weights=EmorBasis.load().project(posterior.curve.brightness),
         windows=_window_estimates(photographs, bank, prior),
         uncertainty=posterior.expected_error,
         shape_uncertainty=posterior.expected_shape_error,
@@ -164,17 +167,16 @@ def _window_estimates(
     photographs: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
 ) -> tuple[WindowEstimate, ...]:
     """Return what each window says by itself, in the order of the photographs."""
-    origins = [(number, window) for number, photo in enumerate(photographs) for window in photo.windows]
-    if not origins:
-        return ()
-    posteriors = [Posterior.of(bank, prior, [found]) for photo in photographs for found in photo.window_evidences]
-    weights = np.stack([posterior.mean_weights for posterior in posteriors])
-    answers = zip(weights, (posterior.expected_distance for posterior in posteriors), strict=True)
-    kept = pooling.inliers(weights).tolist()
-    return tuple(
-        WindowEstimate(*origin, *answer, kept=is_kept)
-        for origin, answer, is_kept in zip(origins, answers, kept, strict=True)
-    )
+    found = []
+    for number, photo in enumerate(photographs):
+        if not photo.windows:
+            continue
+        for window, evidence, kept in zip(
+            photo.windows, photo.window_evidences, pooling.agreeing(photo.window_evidences).tolist(), strict=True
+        ):
+            alone = Posterior.of(bank, prior, [evidence])
+            found.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, kept))
+    return tuple(found)
 
 
 def _doubts(photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin]) -> list[str]:

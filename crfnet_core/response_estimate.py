@@ -41,7 +41,8 @@ class WindowEstimate:
     expected_error : float
         The E_est that is expected of them.
     kept : bool
-        Whether the window agrees with the others (`pooling.inliers`). Without learned pooling, only such windows count.
+        Whether the window agrees with the photograph's others (`pooling.agreeing`). Without learned pooling, only such
+        windows count.
     """
 
     photo: int
@@ -96,7 +97,7 @@ class ResponseEstimate:
     curve : ResponseCurve
         The estimated response.
     weights : ndarray, float64, shape (11,)
-        Its EMoR weights.
+        The EMoR weights nearest to it.
     windows : tuple of WindowEstimate
         What each window says by itself.
     uncertainty : float

@@ -14,7 +14,7 @@ from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, M
 from crfnet_core.errors import CameraError, CRFNetError, one_line
 from crfnet_core.files import read_json
 from crfnet_core.metadata import FileOrigin
-from crfnet_core.posterior import STATED_ODDS, Evidence
+from crfnet_core.posterior import UNUSUAL, Evidence
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.recognition import Levels
 from crfnet_core.recognition.levels import BINS
@@ -149,7 +149,7 @@ def _photograph_document(photograph: KeptPhotograph) -> dict[str, Any]:
 def _photograph(entry: Mapping[str, Any]) -> KeptPhotograph:
     """Return the photograph in a document."""
     evidence, levels, settings = entry["evidence"], entry["levels"], _settings(entry)
-    size, odds = EVIDENCE_WEIGHTS, len(STATED_ODDS)
+    size, odds = EVIDENCE_WEIGHTS, len(UNUSUAL)
     return KeptPhotograph(
         sha256=str(entry["sha256"]),
         model=str(entry["network"]),

@@ -27,12 +27,16 @@ def inliers(weights: Float64Array) -> BoolArray:
     return np.asarray(distances <= OUTLIER_FACTOR * np.median(distances))
 
 
+def agreeing(windows: Sequence[Evidence]) -> BoolArray:
+    """Return which windows of a photograph agree with the others, by the locations of their evidence, shape (N,)."""
+    return inliers(np.stack([evidence.location for evidence in windows]))
+
+
 def robust_mean(windows: Sequence[Evidence]) -> Evidence:
-    """Return the mean of the evidence of the windows whose locations agree.
+    """Return the mean of the evidence of the windows that agree.
 
     The factor of such a network is that of a whole photograph already: it was fitted to errors of these means.
     """
-    locations = np.stack([evidence.location for evidence in windows])
-    kept = [evidence for evidence, is_kept in zip(windows, inliers(locations), strict=True) if is_kept]
+    kept = [evidence for evidence, is_kept in zip(windows, agreeing(windows), strict=True) if is_kept]
     parts = zip(*((evidence.location, evidence.factor, evidence.log_odds) for evidence in kept), strict=True)
     return Evidence(*(np.mean(part, axis=0) for part in parts))

@@ -12,14 +12,14 @@ from crfnet_core.network.graph import check_graph
 from crfnet_core.network.model import ModelConfig
 from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from crfnet_core.posterior.families import STATED_ODDS
+from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.statistics.layout import LENGTH
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import WINDOW_SIZE
 
 #: Shape of a row of each input, and of the outputs: location, factor and log-odds, once or twice.
 INPUT_SHAPES = {"windows": (WINDOW_SIZE, WINDOW_SIZE, 3), "statistics": (LENGTH,)}
-OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len(STATED_ODDS),))
+OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len(UNUSUAL),))
 
 #: Largest number in an output: those of the packaged ones are below 10, and the square of this one has room in float64.
 MOST = 1e9

@@ -9,7 +9,7 @@
 """
 
 from crfnet_core.posterior.evidence import Evidence, independent_share, scene_similarities
-from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, STATED_ODDS, UNUSUAL, Family, LikelyKind
+from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, UNUSUAL, Family, LikelyKind
 from crfnet_core.posterior.posterior import Posterior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
 from crfnet_core.posterior.responses import BANK_FILE, ResponseBank
@@ -20,7 +20,6 @@ __all__ = [
     "DEFAULT_PRIOR",
     "FAMILY_WORDS",
     "IN_CAMERA",
-    "STATED_ODDS",
     "UNUSUAL",
     "Evidence",
     "Family",

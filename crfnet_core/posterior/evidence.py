@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.posterior.families import STATED_ODDS
+from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.types import Float64Array, same_fields
 
@@ -22,7 +22,7 @@ DEGREES_OF_FREEDOM = 5.0
 class Evidence:
     """A likelihood of responses, up to a factor.
 
-    Of ordinary responses it is Student's t in their first EMoR weights. Of the families `STATED_ODDS`, whose pictures
+    Of ordinary responses it is Student's t in their first EMoR weights. Of the families `UNUSUAL`, whose pictures
     show more than their curve, it is one number for all members.
 
     Parameters
@@ -32,7 +32,7 @@ class Evidence:
     factor : ndarray, float64, shape (5, 5)
         A factor of the precision matrix P = factor @ factor.T.
     log_odds : ndarray, float64, shape (3,)
-        Logarithms of the likelihoods of the families `STATED_ODDS` against that of an ordinary response at `location`.
+        Logarithms of the likelihoods of the families `UNUSUAL` against that of an ordinary response at `location`.
     """
 
     location: Float64Array
@@ -49,7 +49,7 @@ class Evidence:
         squares = np.sum(offsets**2, axis=1)
         exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
         likelihoods = -exponent * np.log1p(squares / DEGREES_OF_FREEDOM)
-        for family, log_odds in zip(STATED_ODDS, self.log_odds, strict=True):
+        for family, log_odds in zip(UNUSUAL, self.log_odds, strict=True):
             likelihoods[bank.of(family)] = log_odds
         return np.asarray(likelihoods)
 

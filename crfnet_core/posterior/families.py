@@ -30,11 +30,9 @@ class Family(StrEnum):
 #: What a camera renders itself.
 IN_CAMERA = (Family.PHONE, Family.COMPACT, Family.CAMERA)
 
-#: Families in which the answer is not to be trusted as a display-referred camera response.
+#: Families in which the answer is not to be trusted as a display-referred camera response. All others are "ordinary". A
+#: network states how likely these make a photograph, against an ordinary response, in this order.
 UNUSUAL = (Family.LINEAR, Family.LOG, Family.UNEXPLAINED)
-
-#: The families whose log-odds a network states, against all others together: the order of its outputs.
-STATED_ODDS = (Family.LINEAR, Family.LOG, Family.UNEXPLAINED)
 
 #: Groups of families in words for people, in the order in which they are asked.
 FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {

@@ -10,7 +10,7 @@ import numpy as np
 
 from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior.evidence import Evidence
-from crfnet_core.posterior.families import STATED_ODDS, Family
+from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
@@ -76,9 +76,9 @@ class Posterior:
             after = before + prior.evidence * likelihoods[ordinary]
             logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
             gains = _bounded(log_odds - average, prior.lookalikes)
-            for family, gain in zip(STATED_ODDS, gains, strict=True):
+            for family, gain in zip(UNUSUAL, gains, strict=True):
                 logarithms[bank.of(family)] += gain
-            unexplained += float(gains[STATED_ODDS.index(Family.UNEXPLAINED)])
+            unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
         explained = _log_sum(logarithms)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - unexplained, 700.0))))

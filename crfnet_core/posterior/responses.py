@@ -10,7 +10,7 @@ import numpy as np
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
-from crfnet_core.posterior.families import STATED_ODDS, Family
+from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray, same_fields
 
@@ -72,8 +72,8 @@ class ResponseBank:
 
     @cached_property
     def ordinary(self) -> BoolArray:
-        """Which responses are of no family in `STATED_ODDS`, bool (N,)."""
-        return np.array([member not in STATED_ODDS for member in self.families])
+        """Which responses are of no family in `UNUSUAL`, bool (N,)."""
+        return np.array([member not in UNUSUAL for member in self.families])
 
     @cached_property
     def weights(self) -> Float64Array:

@@ -14,7 +14,7 @@ import numpy as np
 from onnx import TensorProto, helper, numpy_helper
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.windows import WINDOW_SIZE
 
@@ -41,7 +41,7 @@ def make_graph() -> bytes:
         "start": start.astype(np.float32),
         "column": np.array([1], dtype=np.int64),
         "matrix": np.array([1, 2], dtype=np.int64),
-        "zeros": np.zeros((1, len(STATED_ODDS)), dtype=np.float32),
+        "zeros": np.zeros((1, len(UNUSUAL)), dtype=np.float32),
         "odds": np.float32(LOG_ODDS),
         "nothing": np.zeros((1, 1, 1), dtype=np.float32),
         "factor": (np.eye(EVIDENCE_WEIGHTS)[None] * PRECISION_FACTOR).astype(np.float32),
@@ -61,7 +61,7 @@ def make_graph() -> bytes:
     shapes = {
         "locations": [EVIDENCE_WEIGHTS],
         "factors": [EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS],
-        "log_odds": [len(STATED_ODDS)],
+        "log_odds": [len(UNUSUAL)],
     }
     outputs = [helper.make_tensor_value_info(name, TensorProto.FLOAT, ["n", *shape]) for name, shape in shapes.items()]
     initial = [numpy_helper.from_array(np.asarray(values), name) for name, values in constants.items()]

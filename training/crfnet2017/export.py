@@ -11,7 +11,7 @@ from pathlib import Path
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from training.crfnet2017.checkpoints import fold_normalization
 from training.crfnet2017.likelihood import Likelihood, fit, validation_answers
@@ -56,7 +56,7 @@ class ShippedCRFNet(nn.Module):
         """Return the evidence of windows, shape (N, 227, 227, 3) in [0, 1]."""
         locations = (self.answers(windows)[:, :EVIDENCE_WEIGHTS] - self.intercepts) / self.slopes
         factors = self.factor.expand(windows.shape[0], -1, -1)
-        return locations, factors, locations[:, : len(STATED_ODDS)] * 0 + self.log_odds
+        return locations, factors, locations[:, : len(UNUSUAL)] * 0 + self.log_odds
 
 
 def load_network(run: Path) -> WindowAnswers:

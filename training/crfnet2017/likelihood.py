@@ -17,7 +17,7 @@ from tqdm import tqdm
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.network import pooling
-from crfnet_core.posterior import STATED_ODDS, Evidence
+from crfnet_core.posterior import UNUSUAL, Evidence
 from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM, EVIDENCE_WEIGHTS
 from crfnet_core.types import Float64Array
 from crfnet_core.windows import cut_windows, select_windows
@@ -42,7 +42,7 @@ class Likelihood:
     factor : ndarray, shape (5, 5)
         Of the precision of the weights.
     log_odds : float
-        Of every family in `STATED_ODDS`: the mean log likelihood of ordinary responses, so that the answer says
+        Of every family in `UNUSUAL`: the mean log likelihood of ordinary responses, so that the answer says
         nothing for or against these families, which the network does not know.
     """
 
@@ -96,5 +96,5 @@ def validation_answers(network: nn.Module, data: Path) -> tuple[Float64Array, Fl
 
 def _pooled(answers: Float64Array) -> Float64Array:
     """Return the mean over the windows that agree, as the product takes it, shape (5,)."""
-    nothing = np.eye(EVIDENCE_WEIGHTS), np.zeros(len(STATED_ODDS))
+    nothing = np.eye(EVIDENCE_WEIGHTS), np.zeros(len(UNUSUAL))
     return pooling.robust_mean([Evidence(answer, *nothing) for answer in answers]).location

@@ -24,7 +24,7 @@ class EvidenceLoss:
     weights : Tensor, shape (M, 11)
         EMoR weights of the responses that the truth competes with.
     families : Tensor, int, shape (M,)
-        0 of an ordinary response, else 1 + its position in `STATED_ODDS`.
+        0 of an ordinary response, else 1 + its position in `UNUSUAL`.
     """
 
     def __init__(self, weights: Tensor, families: Tensor) -> None:

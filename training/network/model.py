@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.posterior import STATED_ODDS
+from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from training.network.features import (
     CANDIDATE_FEATURES,
@@ -125,7 +125,7 @@ class Head(nn.Module):
         self.trunk = _dense(inputs, config)
         self.location = nn.Linear(config.width, EVIDENCE_WEIGHTS)
         self.factor = nn.Linear(config.width, EVIDENCE_WEIGHTS**2)
-        self.log_odds = nn.Linear(config.width, len(STATED_ODDS))
+        self.log_odds = nn.Linear(config.width, len(UNUSUAL))
         self.register_buffer("units", torch.tensor(WEIGHT_UNITS))
         self.register_buffer("below", torch.tril(torch.ones(EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), -1))
         self.register_buffer("diagonal", torch.eye(EVIDENCE_WEIGHTS))

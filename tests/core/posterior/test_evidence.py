@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from crfnet_core.posterior import STATED_ODDS, Evidence, Family, independent_share, scene_similarities
+from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_share, scene_similarities
 from tests.helpers.posteriors import small_bank
 
 
@@ -19,7 +19,7 @@ def test_the_likelihood_of_an_ordinary_response_is_student_s_t(bank):
     found = Evidence(location, factor, np.array([-1.0, -2.0, -3.0])).log_likelihoods(bank)
     precision = factor @ factor.T
     for number, family in enumerate(bank.families):
-        if family in STATED_ODDS:
+        if family in UNUSUAL:
             continue
         offset = bank.weights[number, :5] - location
         square = sum(offset[i] * precision[i, j] * offset[j] for i in range(5) for j in range(5))

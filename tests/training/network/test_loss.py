@@ -5,7 +5,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
-from crfnet_core.posterior import STATED_ODDS, Evidence, Posterior, Prior
+from crfnet_core.posterior import UNUSUAL, Evidence, Posterior, Prior
 from tests.helpers.posteriors import small_bank
 from training.network.loss import ERROR_WEIGHT, WINDOW_WEIGHT, EvidenceLoss, log_likelihoods
 
@@ -18,7 +18,7 @@ def bank():
 @pytest.fixture(scope="module")
 def competitors(bank):
     """The responses of the bank as the loss knows them: weights and families."""
-    families = [1 + STATED_ODDS.index(f) if f in STATED_ODDS else 0 for f in bank.families]
+    families = [1 + UNUSUAL.index(f) if f in UNUSUAL else 0 for f in bank.families]
     return torch.from_numpy(bank.weights), torch.tensor(families)
 
 
@@ -46,7 +46,7 @@ def by_hand(evidence, bank, weights, family):
     loss = -np.log(np.exp(own) / likelihoods.sum()) - np.log(len(scores))
     if family:
         return loss
-    ordinary = ~np.isin(bank.families, STATED_ODDS)
+    ordinary = ~np.isin(bank.families, UNUSUAL)
     posterior = np.exp(scores[ordinary])
     mean = posterior / posterior.sum() @ bank.weights[ordinary]
     return loss + ERROR_WEIGHT * np.sqrt(np.sum((mean - weights) ** 2) + 1e-6)
@@ -89,7 +89,7 @@ def test_evidence_that_says_nothing_costs_nothing_but_the_error_of_the_mean(comp
 def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):
     """The posterior's mean, under a prior that gives every ordinary response the same share."""
     (evidence,), tensors = drawn(1)
-    counts = {family: float(bank.of(family).sum()) for family in bank.families if family not in STATED_ODDS}
+    counts = {family: float(bank.of(family).sum()) for family in bank.families if family not in UNUSUAL}
     prior = Prior("p", {family: count / sum(counts.values()) for family, count in counts.items()}, 1.0)
     mean = Posterior.of(bank, prior, [evidence]).mean_weights
     found = EvidenceLoss(*competitors).errors(tensors, torch.zeros(1, 11, dtype=torch.float64))

@@ -13,7 +13,7 @@ import numpy as np
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.network import ResponseNetwork
+from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response import ResponseCurve
@@ -155,5 +155,6 @@ def queried_curve(estimate: ResponseEstimate, query: Query) -> ResponseCurve:
     """Return the product's response or, where the query asks for it, the mean of the windows' own."""
     if query.averaged is None:
         return estimate.curve
-    chosen = [part.weights for part in estimate.windows if part.kept or query.averaged == "all"]
-    return ResponseCurve.from_samples(EmorBasis.load().reconstruct(np.mean(chosen, axis=0)))
+    weights = np.stack([part.weights for part in estimate.windows])
+    chosen = weights if query.averaged == "all" else weights[pooling.inliers(weights)]
+    return ResponseCurve.from_samples(EmorBasis.load().reconstruct(chosen.mean(axis=0)))
