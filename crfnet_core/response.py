@@ -214,7 +214,8 @@ class _PiecewiseLinear:
     def _table(self) -> tuple[IndexArray, Float64Array, Float64Array, Float64Array, Float64Array]:
         """Of each cell its first knot; of each knot the next one, itself, the slope behind it, and the value.
 
-        A cell with several knots inside has the number of one more knot in place of its first: its value is NaN.
+        A cell that holds several knots is marked by the number of knots in place of its first knot. The value there is
+        NaN, and `_evaluated` asks `numpy.interp` for such arguments.
         """
         edges = np.arange(CELLS + 1) / CELLS  # the last cell is 1 alone
         first = np.searchsorted(self._knots, edges, side="right") - 1

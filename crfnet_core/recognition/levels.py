@@ -10,8 +10,8 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, Pixels
 
-#: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. So few samples below
-#: black are dead pixels; a lens puts no more above white than reflections.
+#: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. What lies
+#: below black is dead pixels, and what lies above white is reflections.
 BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 
 #: Luma of red, green and blue, as JPEG and most video encoders compute it (ITU-R BT.601).

@@ -10,8 +10,8 @@ LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255
 #: How far around them samples count as theirs: three codes.
 MARGIN = 3 / 255
 
-#: The largest share of samples outside, the least share at either end, and how dense one end is beside its neighbours.
-MOST_OUTSIDE, LEAST_AT_END, PILE = 0.002, 1e-4, 1.0
+#: The largest share of samples outside, and the least share at either end.
+MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 
 #: The share of pixels whose luma lies beyond black and white, and between which codes these two lie after compression.
 BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
@@ -42,7 +42,7 @@ def _has_piles(levels: Levels) -> bool:
     inside_dark = levels.share(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
     inside_bright = levels.share(LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
     is_inside, is_reached = max(below, above) <= MOST_OUTSIDE, min(dark, bright) >= LEAST_AT_END
-    return is_inside and is_reached and (dark > PILE * inside_dark or bright > PILE * inside_bright)
+    return is_inside and is_reached and (dark > inside_dark or bright > inside_bright)
 
 
 def _end(levels: Levels, end: float) -> float:

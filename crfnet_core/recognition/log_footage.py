@@ -59,8 +59,9 @@ class NearCurve:
 def log_factor(levels: Levels) -> float:
     """Return the likelihood of the levels of log footage, relative to that of ordinary photographs: Eq. 40.
 
-    1 if black is not lifted: footage whose legal range was stretched when it was decoded has such a black, too. And 1
-    if it lies too high, or the picture spans too little of the range to tell.
+    It is 1 if black is not lifted, which proves nothing: log footage whose legal range was stretched when it was
+    decoded has a low black too. It is also 1 if black lies too high, or the picture spans too little of the range to
+    tell.
     """
     is_lifted = LIFTED_BLACK <= levels.black <= HIGHEST_BLACK
     if not is_lifted or levels.white - levels.black < LEAST_SPAN:

@@ -31,8 +31,8 @@ class Triples(NamedTuple):
     a, b, c, low : ndarray
         Codes; low is the lower one of a and c.
     height, rise : ndarray
-        Codes from low to the other side, and to b. If b is not between a and c, the rise is above the height: below low
-        it wraps around to 256 less what is missing, which is more than is left above low.
+        Codes from low to the other side, and to b. For b below low, the rise is (b - low) modulo 256, which is more
+        than any height can be. So b lies between a and c exactly if the rise is at most the height.
     """
 
     a: Uint8Array

@@ -20,10 +20,10 @@ LITTLE, MUCH = (4, 24), (24, 80)
 #: The strides, and the ranges of the difference, at which shading is looked for.
 SHADING = ((1, LITTLE), (2, LITTLE), (4, LITTLE), (8, LITTLE), (16, LITTLE), (2, MUCH), (8, MUCH), (16, MUCH))
 
-#: Least difference in codes between the channels of a sample: in gray, shading says nothing.
+#: The first sample's channels have to differ by more codes than these: in gray, shading says nothing.
 LEAST_CHROMA = 24
 
-#: Samples outside these codes are skipped: black level and clipping distort their ratios.
+#: Samples at these codes and beyond are skipped: black level and clipping distort their ratios.
 DARKEST, BRIGHTEST = 8, 247
 
 #: Standard deviation, as a fraction of the logarithmic ratio, of differences between channels that have other causes
@@ -52,7 +52,7 @@ class Pairs:
     first, second : ndarray, uint8, shape (3, M)
         The samples.
     difference : ndarray, uint8, shape (M,)
-        The largest difference of a channel, in codes; 0 where a sample is gray, black or clipped.
+        The largest difference of a channel, in codes; 0 where the first sample is gray, or either is black or clipped.
     """
 
     first: Uint8Array

@@ -8,5 +8,9 @@ import_scenes  adds photographs of your own to the scenes
 studio_lights  five of Blender's studio lights, which the repository holds
 curves         responses to draw from: DoRF, in-camera base curves, mixtures
 dorf           converts DoRF's own text
+families       draws responses of the families that are not measured: edited, film, linear, log
+in_camera      a distribution of the responses that cameras render with, fitted to measured ones
+response_bank  computes the bank of responses that `crfnet_core` ships
+real           photographs of measured cameras, and their responses
 emor_basis     computes the EMoR basis that `crfnet_core` ships
 """

@@ -20,7 +20,8 @@ KINDS = ("phone", "compact", "camera")
 #: Components of the deviations; the first is mostly the headroom. With more nothing changed out of fold.
 COMPONENTS = 6
 
-#: Bodies that all kinds together count as, when the center and when the spread of one kind are taken.
+#: Shrinkage of each kind towards all kinds together: the number of bodies that these count as, for its center and for
+#: its spread.
 PSEUDO_BODIES, PSEUDO_BODIES_OF_SPREAD = 1.0, 4.0
 
 #: Weight of the darkest brightnesses, below code 16 of 255, in the components: noise and black level rule there.

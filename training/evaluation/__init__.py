@@ -8,6 +8,8 @@
 - `measure`: photographs to figures, kept on disk.
 - `summaries`: figures to means, intervals, comparisons and reliability.
 - `report`: the report's dataclasses, and how they are written.
-- `protocols`: runs P0 to P5 and writes the report.
+- `protocols`: runs P0 to P6 and writes the report.
+- `cameras`: what stored cameras are worth.
+- `recognition`: how often log footage and other unusual pictures are recognised.
 - `gamma_level`: why gamma 2.2 linearises our photographs worse than the paper's.
 """

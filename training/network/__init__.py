@@ -1,10 +1,11 @@
 """The photograph network and its training.
 
 shards               statistics of simulated photographs on disk
+start                where a run begins: a checkpoint, a model folder, or random weights
 features             statistics as the input of the network
 conjugate_gradients  the linear solver inside the graph
 model                the network
-loss                 the estimation error, and the likelihood of the expected error
+loss                 how probable the evidence makes the true response, and how far the mean answer is from it
 moving_average       the average of the weights, which a run yields
 train                the command that trains
 average              the mean of the weights of several runs

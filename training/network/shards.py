@@ -18,7 +18,7 @@ from tqdm import tqdm
 
 from crfnet_core.emor import EmorBasis
 from crfnet_core.files import atomic_write
-from crfnet_core.posterior import STATED_ODDS, Family
+from crfnet_core.posterior import UNUSUAL, Family
 from crfnet_core.statistics import window_statistics
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
 from training.data.families import EditedResponses
@@ -69,9 +69,9 @@ UNUSUAL_KINDS: dict[int, tuple[UnusualKind, ...]] = {
     ),
 }
 
-#: The family of a set as the network states it: 0 of an ordinary response, else 1 + its position in `STATED_ODDS`.
+#: The family of a set as the network states it: 0 of an ordinary response, else 1 + its position in `UNUSUAL`.
 STATED_FAMILIES = {
-    curve_set: STATED_ODDS.index(Family(curve_set.name.lower())) + 1
+    curve_set: UNUSUAL.index(Family(curve_set.name.lower())) + 1
     for curve_set in (CurveSet.LINEAR, CurveSet.LOG, CurveSet.UNEXPLAINED)
 }
 
@@ -141,6 +141,7 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     path = shard_path(out, split, number)
     if path.exists():
         return path
+    # The length of the split's name (train 5, validation 10) tells the splits' seeds apart; kept for shards that exist.
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
     weights: list[np.ndarray] = []

@@ -18,15 +18,13 @@ MEASURING_CODE = (
     "crfnet_core/**/*.py",
     "crfnet_core/data/responses.npz",
     "crfnet_core/data/priors/*.json",
-    "training/data/in_camera.py",
-    "training/data/families.py",
-    "training/data/response_bank.py",
-    "training/data/scenes.py",
-    "training/data/studio_lights.py",
+    "crfnet_core/data/emor.npz",
+    "training/data/**/*.py",
     "training/synthesis/camera.py",
     "training/synthesis/unusual/*.py",
     "training/evaluation/baselines.py",
     "training/evaluation/plan.py",
+    "training/evaluation/test_sets.py",
     "training/evaluation/measure/*.py",
 )
 

@@ -14,7 +14,7 @@ BOTH = "both"
 FAR_OFF, FAR_OFF_STOPS = 3.0, 0.4
 
 
-#: Bodies that several photographs were given of, by how many of them -> the least number of photographs.
+#: Group of bodies, by how many photographs of each were given together -> the least number of photographs.
 POOLED = {"4 photographs": 4, "2 to 4 photographs": 2}
 
 
