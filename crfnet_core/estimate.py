@@ -20,7 +20,7 @@ from crfnet_core.posterior import (
     Prior,
     ResponseBank,
     Verdict,
-    independent_share,
+    independent_fraction,
     scene_similarities,
 )
 from crfnet_core.recognition import Levels, Recognition, log_factor, recognize
@@ -115,7 +115,7 @@ def estimate_of(
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
     prior = (prior or Prior.load()).given(_metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
-    independent = independent_share(scene_similarities([photograph.thumbnail for photograph in photographs]))
+    independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     evidences = [photograph.evidence for photograph in photographs]
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
     makes = tuple(photograph.make for photograph in photographs)

@@ -53,8 +53,8 @@ def math_node(
     node = grid.node(_MATH, column, row=row)
     node.operation = operation
     grid.link(value, node.inputs[0])
-    for place, number in enumerate(numbers, 1):
-        node.inputs[place].default_value = number
+    for index, number in enumerate(numbers, 1):
+        node.inputs[index].default_value = number
     return node.outputs[0]
 
 
@@ -65,8 +65,8 @@ def multiply_by_matrix(
     products = []
     for row, factors in enumerate(matrix.tolist()):
         total = math_node(grid, "MULTIPLY", column, row, channels[0], factors[0])
-        for place in (1, 2):
-            added = math_node(grid, "MULTIPLY_ADD", column + place, row, channels[place], factors[place])
+        for index in (1, 2):
+            added = math_node(grid, "MULTIPLY_ADD", column + index, row, channels[index], factors[index])
             grid.link(total, added.node.inputs[2])
             total = added
         products.append(total)

@@ -45,11 +45,11 @@ def chain_of_shifts(ranks: Sequence[Float64Array], order: Sequence[int], stride:
     """
     middle = len(order) // 2
     shifts: dict[int, Float64Array] = {order[middle]: np.zeros(2)}
-    for place in range(middle, len(order) - 1):
-        here, after = order[place], order[place + 1]
+    for index in range(middle, len(order) - 1):
+        here, after = order[index], order[index + 1]
         shifts[after] = shifts[here] + displacement(ranks[here], ranks[after])
-    for place in range(middle, 0, -1):
-        here, before = order[place], order[place - 1]
+    for index in range(middle, 0, -1):
+        here, before = order[index], order[index - 1]
         shifts[before] = shifts[here] + displacement(ranks[here], ranks[before])
     rounded = {frame: np.rint(shift * stride).astype(int).tolist() for frame, shift in shifts.items()}
     return tuple((rounded[frame][0], rounded[frame][1]) for frame in range(len(order)))
@@ -65,7 +65,7 @@ def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
     surface = np.fft.irfft2(spectrum / np.maximum(np.abs(spectrum), 1e-9), s=first.shape)
     reach = max(1, round(LARGEST_SHIFT * min(first.shape)))
     near = np.roll(surface, (reach, reach), axis=(0, 1))[: 2 * reach + 1, : 2 * reach + 1]
-    row, column = (int(place) for place in np.unravel_index(int(near.argmax()), near.shape))
+    row, column = (int(index) for index in np.unravel_index(int(near.argmax()), near.shape))
     whole = (row - reach, column - reach)
     least = max(correlation(first, second, (0, 0)) + LEAST_GAIN, LEAST_CORRELATION)
     if correlation(first, second, whole) < least:
@@ -100,10 +100,10 @@ def common_area(shape: tuple[int, int], shifts: Sequence[Shift]) -> tuple[slice,
     return rows, columns
 
 
-def _peak(row: Float64Array, place: int) -> float:
+def _peak(row: Float64Array, index: int) -> float:
     """Return how far the vertex of the parabola through three samples is from the middle one, at most half a sample."""
-    if not 0 < place < len(row) - 1:
+    if not 0 < index < len(row) - 1:
         return 0.0
-    before, here, after = (float(value) for value in row[place - 1 : place + 2])
-    bend = before - 2 * here + after
-    return float(np.clip(0.5 * (before - after) / bend, -0.5, 0.5)) if bend < 0 else 0.0
+    before, here, after = (float(value) for value in row[index - 1 : index + 2])
+    curvature = before - 2 * here + after
+    return float(np.clip(0.5 * (before - after) / curvature, -0.5, 0.5)) if curvature < 0 else 0.0

@@ -57,7 +57,7 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     have texture, samples become white gradually, and both ways find white too high, by about the blur of `_crossing`.
     The deviation holds how far the two are apart, half the blur, and the last half code, which no pixel shows.
     """
-    crosses = (seen.white_share >= ALL_WHITE).any(axis=1) & seen.is_used.any(axis=1)
+    crosses = (seen.white_fraction >= ALL_WHITE).any(axis=1) & seen.is_used.any(axis=1)
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
@@ -77,14 +77,14 @@ def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, flo
 
     The blur, in stops, is the fraction of white pixels below this irradiance, as far as it is more than noise makes.
     """
-    partly = (seen.white_share > PARTLY_WHITE).any(axis=1)
+    partly = (seen.white_fraction > PARTLY_WHITE).any(axis=1)
     flat = seen.spread <= np.quantile(seen.spread[partly], FLATTEST)
     order = log_exposed[flat].ravel().argsort()
-    stops, share = log_exposed[flat].ravel()[order], seen.white_share[flat].ravel()[order]
-    near = np.abs(stops - stops[np.cumsum(share - 0.5).argmin()]) < 1
-    stops, share = stops[near], share[near]
-    crossing = float(stops[np.cumsum(share - 0.5).argmin()])
-    below = share[(stops < crossing) & (stops > crossing - BELOW)]
+    stops, white = log_exposed[flat].ravel()[order], seen.white_fraction[flat].ravel()[order]
+    near = np.abs(stops - stops[np.cumsum(white - 0.5).argmin()]) < 1
+    stops, white = stops[near], white[near]
+    crossing = float(stops[np.cumsum(white - 0.5).argmin()])
+    below = white[(stops < crossing) & (stops > crossing - BELOW)]
     return crossing, max(float(below.mean()) - NOISE_BELOW, 0.0) if len(below) else 0.0
 
 

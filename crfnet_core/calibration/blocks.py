@@ -63,7 +63,7 @@ class Observations:
         Whether the brightness counts.
     is_white : ndarray, bool, shape (M, T)
         Whether the sample is white: it then says only that its irradiance is at least that of white.
-    white_share : ndarray, float64, shape (M, T)
+    white_fraction : ndarray, float64, shape (M, T)
         Share of white pixels.
     spread : ndarray, float64, shape (M,)
         Typical spread within the block, in brightness.
@@ -75,7 +75,7 @@ class Observations:
     deviation: Float64Array
     is_used: BoolArray
     is_white: BoolArray
-    white_share: Float64Array
+    white_fraction: Float64Array
     spread: Float64Array
     block: IndexArray
     channel: IndexArray
@@ -140,7 +140,7 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
         deviation=deviation.reshape(flat),
         is_used=is_used.reshape(flat),
         is_white=is_white.reshape(flat),
-        white_share=white.reshape(flat),
+        white_fraction=white.reshape(flat),
         spread=typical.ravel(),
         block=np.repeat(np.arange(blocks), channels),
         channel=np.tile(np.arange(channels), blocks),
@@ -194,12 +194,12 @@ def _check_often(is_often: BoolArray) -> None:
 
 
 def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:
-    """Return about `count` places of the lowest ranks, as evenly from the bins as they allow."""
+    """Return the indices of about `count` elements of the lowest ranks, as evenly from the bins as they allow."""
     order = np.lexsort((rank, bins))
     starts = np.flatnonzero(np.r_[True, np.diff(bins[order]) > 0]) if order.size else np.zeros(0, int)
     sizes = np.diff(np.r_[starts, order.size])
-    place = np.arange(order.size) - np.repeat(starts, sizes)  # place within the bin
-    return order[np.argsort(place, kind="stable")[:count]]
+    rank_in_bin = np.arange(order.size) - np.repeat(starts, sizes)
+    return order[np.argsort(rank_in_bin, kind="stable")[:count]]
 
 
 def _means(values: CodeArray | BoolArray, side: int) -> Float64Array:

@@ -82,8 +82,8 @@ def check_range(exposures: Exposures) -> None:
         )
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP:
         raise CalibrationError(
-            f"two neighbouring exposures are {step:.1f} stops apart, by EXIF or --times; check the times, or take frames"
-            " one or two stops apart"
+            f"two neighbouring exposures are {step:.1f} stops apart, by EXIF or --times; check the times, or take"
+            " frames one or two stops apart"
         )
 
 

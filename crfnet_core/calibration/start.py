@@ -53,8 +53,8 @@ def rough_irradiance(seen: Observations, exposures: Float64Array, curve: Respons
     codes = np.linspace(0, 1, SAMPLES)
     table = np.log2(np.maximum(curve.inverse(codes), 2.0**-14))
     slope = 1 / np.maximum(np.gradient(table, codes), 1e-3)
-    place = np.rint(seen.brightness * (SAMPLES - 1)).astype(np.intp)
-    weight = seen.is_used * slope[place] ** 2
+    index = np.rint(seen.brightness * (SAMPLES - 1)).astype(np.intp)
+    weight = seen.is_used * slope[index] ** 2
     total = weight.sum(axis=1)
-    mean = (weight * (table[place] - exposures)).sum(axis=1) / np.maximum(total, 1e-12)
+    mean = (weight * (table[index] - exposures)).sum(axis=1) / np.maximum(total, 1e-12)
     return np.where(total > 0, mean, np.nan)

@@ -8,7 +8,7 @@
 - `verdict`: the posterior in one word.
 """
 
-from crfnet_core.posterior.evidence import Evidence, independent_share, scene_similarities
+from crfnet_core.posterior.evidence import Evidence, independent_fraction, scene_similarities
 from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, UNUSUAL, Family, LikelyKind
 from crfnet_core.posterior.posterior import Posterior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
@@ -28,7 +28,7 @@ __all__ = [
     "Prior",
     "ResponseBank",
     "Verdict",
-    "independent_share",
+    "independent_fraction",
     "packaged_priors",
     "scene_similarities",
 ]

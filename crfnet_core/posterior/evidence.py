@@ -54,7 +54,7 @@ class Evidence:
         return np.asarray(likelihoods)
 
 
-def independent_share(similarities: Float64Array) -> float:
+def independent_fraction(similarities: Float64Array) -> float:
     """Return what fraction of the photographs' evidence is independent: Eq. 23 of docs/METHOD.md.
 
     Photographs of one scene repeat each other's errors. With similarities r between 0 and 1, n photographs count as

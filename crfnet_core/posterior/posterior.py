@@ -63,7 +63,7 @@ class Posterior:
         evidences : sequence of Evidence
             One of each photograph; without any, this is the prior.
         independent : float
-            Fraction of the evidence that is independent, in (0, 1]: see `independent_share`.
+            Fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
         """
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))

@@ -69,7 +69,7 @@ class Levels:
         """Return the luma in [0, 1] of which at most this fraction of the pixels lies below."""
         return _quantile(self.luma, fraction)
 
-    def share(self, low: float, high: float) -> float:
+    def fraction(self, low: float, high: float) -> float:
         """Return the fraction of the samples from one brightness to another, both included."""
         first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
         return float(self.histogram[max(first, 0) : last + 1].sum() / self.histogram.sum())

@@ -143,7 +143,7 @@ def _logistic(inputs: Float64Array, labels: Float64Array, weights: Float64Array)
     penalty = np.diag(np.append(np.full(inputs.shape[1] - 1, RIDGE), 1e-6))
     for _ in range(15):
         probability = 1 / (1 + np.exp(-np.clip(inputs @ coefficients, -30, 30)))
-        slope = inputs.T @ (weights * (probability - labels)) + penalty @ coefficients
-        bend = (inputs * (weights * probability * (1 - probability))[:, None]).T @ inputs + penalty
-        coefficients = coefficients - np.linalg.solve(bend, slope)
+        gradient = inputs.T @ (weights * (probability - labels)) + penalty @ coefficients
+        hessian = (inputs * (weights * probability * (1 - probability))[:, None]).T @ inputs + penalty
+        coefficients = coefficients - np.linalg.solve(hessian, gradient)
     return coefficients

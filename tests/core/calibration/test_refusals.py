@@ -53,7 +53,9 @@ def test_equal_exposures_are_refused(stack):
 
 @pytest.mark.parametrize("seconds", [[1, 1, 1, 1, 1, 1e4], [1e-308, 1, 2, 4, 8, 1e308]])
 def test_exposures_with_a_gap_are_refused(stack, seconds):
-    with pytest.raises(CalibrationError, match=r"two neighbouring exposures are \d+\.\d stops apart, by EXIF or --times;"):
+    with pytest.raises(
+        CalibrationError, match=r"two neighbouring exposures are \d+\.\d stops apart, by EXIF or --times;"
+    ):
         calibrate_stack(stack(frames=6), seconds=seconds)
 
 

@@ -3,7 +3,7 @@ import math
 import numpy as np
 import pytest
 
-from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_share, scene_similarities
+from crfnet_core.posterior import UNUSUAL, Evidence, Family, independent_fraction, scene_similarities
 from tests.helpers.posteriors import small_bank
 
 
@@ -42,13 +42,13 @@ def test_a_response_at_the_location_is_the_most_likely(bank):
 
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_photographs_of_one_scene_count_as_one_and_different_ones_each(count):
-    assert independent_share(np.ones((count, count))) * count == pytest.approx(1)
-    assert independent_share(np.eye(count)) * count == pytest.approx(count)
+    assert independent_fraction(np.ones((count, count))) * count == pytest.approx(1)
+    assert independent_fraction(np.eye(count)) * count == pytest.approx(count)
 
 
 def test_similar_photographs_count_for_something_between():
     similarities = np.array([[1, 0.5, 0], [0.5, 1, 0], [0, 0, 1]])
-    assert independent_share(similarities) * 3 == pytest.approx(9 / 4)
+    assert independent_fraction(similarities) * 3 == pytest.approx(9 / 4)
 
 
 def test_scenes_are_recognised_by_the_order_of_their_brightness():
