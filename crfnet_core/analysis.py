@@ -14,7 +14,7 @@ from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Evidence
 from crfnet_core.recognition import Levels, refuse_tagged
-from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, show_progress
+from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, counted_from
 from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
 #: Samples along each side of the thumbnails by which photographs of one scene are recognised.
@@ -78,11 +78,7 @@ def analyze_photographs(
     total, done = sum(len(source.samples) for source in sources), 0
     analyzed = []
     for source in sources:
-
-        def moved(count: int, _: int, before: int = done) -> None:
-            show_progress(progress, before + count, total)
-
-        analyzed.append(_analyzed(source, network, moved))
+        analyzed.append(_analyzed(source, network, counted_from(progress, done, total)))
         done += len(source.samples)
     return tuple(analyzed)
 
@@ -141,7 +137,7 @@ def _thumbnail(pixels: Pixels) -> Float64Array:
     return ranks
 
 
-def _analyzed(source: _Source, network: ResponseNetwork, progress: Progress) -> AnalyzedPhotograph:
+def _analyzed(source: _Source, network: ResponseNetwork, progress: Progress | None) -> AnalyzedPhotograph:
     """Return what the network reads in a photograph."""
     predictions = network.predict(network.inputs(source.samples, progress=progress), progress=progress)
     evidence = predictions.pooled or pooling.robust_mean(predictions.windows)

@@ -54,6 +54,11 @@ def show_progress(progress: Progress | None, done: int, total: int) -> None:
         progress(done, total)
 
 
+def counted_from(progress: Progress | None, start: int, total: int) -> Progress | None:
+    """Return a callback for a part of the work, which counts what was before it as done."""
+    return None if progress is None else lambda done, _total: progress(start + done, total)
+
+
 def cores() -> int:
     """Return the number of cores that this process may use, which may be fewer than the machine has."""
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1

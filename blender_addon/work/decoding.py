@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
-from crfnet_core.types import Progress
+from crfnet_core.types import Progress, show_progress
 from ocio.plates.frames import FrameSequence
 
 from .errors import AddonError
@@ -52,8 +52,7 @@ class FrameDecoder:
             target = self._folder / f"{path.stem}.png"
             self._ask(number, target)
             while not target.exists():
-                if progress is not None:
-                    progress(done, len(sequence.paths))
+                show_progress(progress, done, len(sequence.paths))
                 self._check(number, target)
             decoded.append(target)
         return FrameSequence(tuple(decoded), sequence.numbers, sequence.missing)

@@ -18,7 +18,7 @@ import OpenImageIO as oiio
 from crfnet_core.errors import CRFNetError
 from crfnet_core.image_io import read_codes
 from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Progress, Uint8Array
+from crfnet_core.types import Progress, Uint8Array, counted_from
 from ocio.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags, read_frame
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
@@ -177,11 +177,6 @@ def sampled_files(
                 with _reader(plate, folder) as read:  # the other Blender ends before the next one starts
                     files[index] = read(chosen[index], counted_from(progress, done, total))
         yield tuple(files)
-
-
-def counted_from(progress: Progress | None, start: int, total: int) -> Progress | None:
-    """Return a callback for a part of the frames, which counts those before it as done."""
-    return None if progress is None else lambda done, _total: progress(start + done, total)
 
 
 def _has_own_files(plate: Plate) -> bool:

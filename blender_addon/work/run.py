@@ -12,7 +12,7 @@ from crfnet_core.cameras import CameraSettings, offered_cameras
 from crfnet_core.errors import CRFNetError
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
-from crfnet_core.types import Progress
+from crfnet_core.types import Progress, show_progress
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.pipeline import (
     anchored_exposure,
@@ -190,8 +190,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
         not force the estimate.
     """
-    if progress is not None:
-        progress(0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
+    show_progress(progress, 0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
     plates = (job.plate, *job.estimation.photographs)
     sequences = (sequence, *map(frames_of, job.estimation.photographs))
     options, is_decoded = job.estimation.options, any(plate.decoder is not None for plate in plates)

@@ -15,7 +15,7 @@ import OpenImageIO as oiio
 from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write
 from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Float32Array, Progress
+from crfnet_core.types import Float32Array, Progress, counted_from, show_progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
@@ -29,7 +29,7 @@ from ocio.plates.linear import linear_targets, linearize_plates
 
 from .encoding_check import is_said_encoded
 from .errors import AddonError
-from .frame_files import FrameReader, PlateFrames, counted_from, frame_reader
+from .frame_files import FrameReader, PlateFrames, frame_reader
 from .job import ApplyMode, Job, Plate
 
 #: Decoded frames that are on the disk at a time; 4K frames of 8 bits take up to 25 MB each.
@@ -129,8 +129,7 @@ def _linearize_decoded(
         part = slice(start, start + FRAMES_DECODED)
         frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
         linearize(read(frames, counted_from(progress, start, len(targets))), targets[part])
-    if progress is not None:
-        progress(len(targets), len(targets))
+    show_progress(progress, len(targets), len(targets))
 
 
 def _linearize(

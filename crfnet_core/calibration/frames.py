@@ -15,7 +15,7 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.image_io import read_codes
 from crfnet_core.metadata import FileMetadata
 from crfnet_core.photo import CodeArray, CodeValues
-from crfnet_core.types import Float64Array, Progress
+from crfnet_core.types import Float64Array, Progress, show_progress
 
 #: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
 LEAST_FRAMES = 4
@@ -98,8 +98,7 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
     for number, path in enumerate(paths):
         frames.append(_frame(path, read_codes(path)))
         _check_like_first(frames[0], frames[-1])
-        if progress is not None:
-            progress(number + 1, len(paths))
+        show_progress(progress, number + 1, len(paths))
     return tuple(frames)
 
 

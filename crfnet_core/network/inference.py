@@ -16,7 +16,7 @@ from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_gr
 from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
-from crfnet_core.types import Float32Array, Progress, cores
+from crfnet_core.types import Float32Array, Progress, cores, show_progress
 
 
 @dataclass(frozen=True)
@@ -110,8 +110,7 @@ class ResponseNetwork:
         rows = []
         for number, window in enumerate(windows, start=1):
             rows.append(window_statistics(window))
-            if progress is not None:
-                progress(number, len(windows))
+            show_progress(progress, number, len(windows))
         return np.stack(rows)
 
     def predict(self, inputs: Float32Array, *, progress: Progress | None = None) -> Predictions:
@@ -147,8 +146,7 @@ class ResponseNetwork:
         try:
             for number, row in enumerate(pool.map(self._session.run, windows[:, None]), start=1):
                 rows.append(row)
-                if progress is not None:
-                    progress(number, len(windows))
+                show_progress(progress, number, len(windows))
         finally:
             pool.shutdown(cancel_futures=True)
         return rows
