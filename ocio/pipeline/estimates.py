@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
@@ -133,38 +133,55 @@ def estimate_photographs(
     PlateError
         If a movie cannot be read.
     """
-    facts: list[PhotoFacts] = []
-    tags: list[ColorTags] = []
-    settings: list[CameraSettings] = []
-    previews: list[Float32Array] = []
-    plates: list[FrameSequence | MovieFrames] = []
-
-    def photos() -> Iterator[Photo]:
-        for path in paths:
-            source = MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
-            for index, (plate, photo) in enumerate(_photos(source)):
-                facts.append(PhotoFacts.of(photo))
-                settings.append(CameraSettings.of(photo.metadata))
-                if not previews:
-                    stride = _stride(facts[0])
-                    previews.append(photo[::stride, ::stride].copy())
-                if index == 0:
-                    tags.append(photo.metadata.color if photo.metadata else ColorTags())
-                    plates.append(plate)
-                yield photo
-
-    estimate = _estimate(photos(), network, prior, options, progress)
+    kept = _Kept()
+    estimate = _estimate(kept.reading(paths, frames), network, prior, options, progress)
     is_offering = options.use_metadata and options.camera is None
     return PhotographEstimate(
         paths=tuple(paths),
-        facts=tuple(facts),
-        tags=tuple(tags),
-        preview=previews[0],
-        stride=_stride(facts[0]),
+        facts=tuple(kept.facts),
+        tags=tuple(kept.tags),
+        preview=kept.previews[0],
+        stride=_stride(kept.facts[0]),
         estimate=estimate,
-        plates=tuple(plates),
-        offers=tuple(offered_cameras(estimate, settings[0], prior=prior)) if is_offering else (),
+        plates=tuple(kept.plates),
+        offers=tuple(offered_cameras(estimate, kept.settings[0], prior=prior)) if is_offering else (),
     )
+
+
+@dataclass
+class _Kept:
+    """What is kept of photographs while they are read one by one.
+
+    Parameters
+    ----------
+    facts, settings : list
+        Of each photograph, and of each frame of a movie.
+    previews : list of ndarray
+        That of the first photograph.
+    tags, plates : list
+        Of each file.
+    """
+
+    facts: list[PhotoFacts] = field(default_factory=list)
+    settings: list[CameraSettings] = field(default_factory=list)
+    previews: list[Float32Array] = field(default_factory=list)
+    tags: list[ColorTags] = field(default_factory=list)
+    plates: list[FrameSequence | MovieFrames] = field(default_factory=list)
+
+    def reading(self, paths: Sequence[Path], frames: str | None) -> Iterator[Photo]:
+        """Yield the photographs, and the chosen frames of movies; one is in memory at a time."""
+        for path in paths:
+            source = MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
+            for index, (plate, photo) in enumerate(_photos(source)):
+                self.facts.append(PhotoFacts.of(photo))
+                self.settings.append(CameraSettings.of(photo.metadata))
+                if not self.previews:
+                    stride = _stride(self.facts[0])
+                    self.previews.append(photo[::stride, ::stride].copy())
+                if index == 0:
+                    self.tags.append(photo.metadata.color if photo.metadata else ColorTags())
+                    self.plates.append(plate)
+                yield photo
 
 
 def estimate_frames(
