@@ -57,8 +57,6 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
     """
     frame = read_frame(path, is_encoded=is_encoded)
     is_divided = frame.samples.dtype.kind == "f"  # by alpha, where the file says that it stores the product
-    if is_divided:
-        frame = replace(frame, largest=1)
     if frame.alpha is None or not alpha_mode:
         return frame
     if alpha_mode == "PREMUL":

@@ -92,8 +92,8 @@ def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
     alpha = None
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
-    samples = values.pixels() if values.is_associated else values.codes
-    return EncodedFrame(samples, values.largest, alpha, values.header, values.metadata.color)
+    samples, largest = (values.pixels(), 1) if values.is_associated else (values.codes, values.largest)
+    return EncodedFrame(samples, largest, alpha, values.header, values.metadata.color)
 
 
 def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:

@@ -140,8 +140,8 @@ def linearize_plates(
     ------
     PlateError
         If a target cannot be written, an option is out of range, finished frames mean something else, the primaries
-        are unknown and have to be converted, or, after all others are written, some frames
-        failed: the message names them.
+        are unknown and have to be converted, or, after all others are written, some frames failed: the message names
+        them.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if options.is_encoded and isinstance(sequence, FrameSequence):
@@ -219,7 +219,7 @@ class _Conversion:
         for top in range(0, height, _ROWS):
             rows = slice(top, top + _ROWS)
             block = frame.samples[rows]  # (_ROWS, W, 3)
-            values = _taken(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
+            values = _look_up(table, block) if is_coded else lut.apply(block) * np.float32(self.scale)
             if matrix is not None:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
@@ -230,7 +230,7 @@ class _Conversion:
         return linear
 
 
-def _taken(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
+def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
     """Return the entries of codes, shape (..., 3), from a table with one column, or with one for each channel."""
     if table.shape[1] == 1:
         return np.take(table[:, 0], codes)
