@@ -234,7 +234,9 @@ def check_targets(
     PlateError
         See `check_outputs`.
     """
-    (check_config_folder if shared else check_folder)(folder)
+    check_folder(folder)
+    for config in shared:
+        check_config_folder(config.parent)
     originals = {os.path.realpath(photo) for photo in photos}
     every = [*targets, *shared]
     for path in every:

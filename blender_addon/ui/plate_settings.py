@@ -167,7 +167,12 @@ def is_applied(datablock: bpy.types.ID) -> bool:
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:
     """Return whether settings of a plate with an estimate have been changed since they were applied."""
     applied = datablock[stored_estimate.KEY].get(APPLIED)
-    return applied is not None and applied.to_dict() != _comparable(datablock.camera_response_settings)
+    if applied is None:
+        return False
+    present = _comparable(datablock.camera_response_settings)
+    if "alpha" in present and "alpha" not in applied:  # applied by a version before the setting counted
+        del present["alpha"]
+    return applied.to_dict() != present
 
 
 def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:

@@ -16,7 +16,6 @@ import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.image_io import read_codes
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array, counted_from
 from ocio.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags, read_frame
@@ -55,15 +54,13 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
     PhotoError, PlateError
         See `read_frame`.
     """
-    frame = read_frame(path, is_encoded=is_encoded)
-    is_divided = frame.samples.dtype.kind == "f"  # by alpha, where the file says that it stores the product
-    if frame.alpha is None or not alpha_mode:
+    frame = read_frame(path, is_encoded=is_encoded, is_divided=alpha_mode in ("PREMUL", ""))
+    if frame.alpha is None or alpha_mode in ("STRAIGHT", ""):
         return frame
     if alpha_mode == "PREMUL":
+        is_divided = frame.samples.dtype.kind == "f"  # as the file says that it stores the product
         return frame if is_divided else _divided_by_alpha(frame)
-    if is_divided:
-        frame = _as_stored(path, frame)
-    return frame if alpha_mode == "STRAIGHT" else replace(frame, alpha=None)
+    return replace(frame, alpha=None)
 
 
 def _divided_by_alpha(frame: EncodedFrame) -> EncodedFrame:
@@ -72,15 +69,6 @@ def _divided_by_alpha(frame: EncodedFrame) -> EncodedFrame:
     alpha, samples = frame.alpha[..., None], np.zeros(frame.samples.shape, np.float32)
     np.divide(frame.samples, alpha * np.float32(frame.largest), out=samples, where=alpha > 0)
     return replace(frame, samples=np.minimum(samples, 1, out=samples), largest=1)
-
-
-def _as_stored(path: Path, frame: EncodedFrame) -> EncodedFrame:
-    """Return a frame that was divided by its alpha as its file stores it."""
-    if path.suffix.lower() == ".exr":
-        assert frame.alpha is not None
-        return replace(frame, samples=frame.samples * frame.alpha[..., None])
-    values = read_codes(path)
-    return replace(frame, samples=values.codes, largest=values.largest)
 
 
 def frames_of(plate: Plate) -> FrameSequence:

@@ -142,10 +142,14 @@ def _linearize(
 ) -> None:
     """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
-    linearize_plates(frames, targets, lut, options, progress=progress)
-    if alpha_mode == "CHANNEL_PACKED":
-        for path, target in zip(sequence.paths, targets, strict=True):
-            _add_channel(target, read_frame(path, is_encoded=options.is_encoded).alpha)
+    if alpha_mode != "CHANNEL_PACKED":
+        linearize_plates(frames, targets, lut, options, progress=progress)
+        return
+    count, total = len(targets), 2 * len(targets)
+    linearize_plates(frames, targets, lut, options, progress=counted_from(progress, 0, total))
+    for done, (path, target) in enumerate(zip(sequence.paths, targets, strict=True), count + 1):
+        _add_channel(target, read_frame(path, is_encoded=options.is_encoded).alpha)
+        show_progress(progress, done, total)
 
 
 def _add_channel(target: Path, alpha: Float32Array | None) -> None:

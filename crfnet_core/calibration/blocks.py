@@ -42,7 +42,7 @@ LEAST_SAMPLES = 200
 
 
 class BlockMeans(NamedTuple):
-    """Means over the blocks of one frame, each of shape (N, 3): brightness, its spread over cells, share of white."""
+    """Means over the blocks of one frame, each of shape (N, 3): brightness, its spread over cells, white fraction."""
 
     brightness: Float64Array
     spread: Float64Array
@@ -64,7 +64,7 @@ class Observations:
     is_white : ndarray, bool, shape (M, T)
         Whether the sample is white: it then says only that its irradiance is at least that of white.
     white_fraction : ndarray, float64, shape (M, T)
-        Share of white pixels.
+        Fraction of white pixels.
     spread : ndarray, float64, shape (M,)
         Typical spread within the block, in brightness.
     block, channel : ndarray, int, shape (M,)

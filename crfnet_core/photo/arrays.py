@@ -32,7 +32,7 @@ PILLOW_MODES: dict[str, ColorOrder] = {
 #: What to do about images of other modes; where nothing is said, Pillow's conversion to RGB is harmless.
 _NO_RGB = "which hides the camera's response; give the RGB photograph that it came from"
 _OTHER_MODES = {
-    "P": "a palette; give image.convert('RGB')",
+    "P": "a palette, from which no response can be estimated; give the photograph that it was made from",
     "CMYK": _NO_RGB,
     "LAB": _NO_RGB,
     "RGBa": "associated alpha; give image.convert('RGBA')",

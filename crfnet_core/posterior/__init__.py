@@ -4,7 +4,8 @@
 - `responses`: the bank.
 - `prior`: how likely each family is before the photograph is looked at.
 - `evidence`: what a network says of a photograph, as a likelihood of responses.
-- `posterior`: prior times evidence, the answer of least expected error, and how large its errors are expected to be.
+- `posterior`: prior times evidence, the answer (the mean in log irradiance), and how large its errors are expected
+  to be.
 - `verdict`: the posterior in one word.
 """
 

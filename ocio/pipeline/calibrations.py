@@ -85,7 +85,7 @@ def plan_calibration(
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
-    left = left_files(files, [stem])
+    left = left_files(files, [stem], is_measured=True)
     return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, left)
 
 

@@ -96,7 +96,7 @@ def plan_each(
         )
         for photo, folder in without_outputs(photographs, out).items()
     )
-    check_tasks(out, tasks, shared=[task.files.config for task in tasks[:1]])
+    check_tasks(out, tasks, shared=list(dict.fromkeys(task.files.config for task in tasks)))
     return tasks
 
 

@@ -83,7 +83,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos))
 
 
-def left_files(files: OutputFiles, photos: Sequence[Path]) -> tuple[Path, ...]:
+def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool = False) -> tuple[Path, ...]:
     """Return those files of an earlier run of the same name that this one does not write.
 
     `a_forward.cube` is none of `a` if there is `a_forward.json`: it belongs to the photograph `a_forward`.
@@ -94,8 +94,12 @@ def left_files(files: OutputFiles, photos: Sequence[Path]) -> tuple[Path, ...]:
         What is written, before it is.
     photos : sequence of Path
         The photographs after which the files are named.
+    is_measured : bool
+        Whether they are those of a measurement, which has no linear EXR and no LUT from light to code values.
     """
-    every = OutputFiles.named(files.report.parent, photos, has_forward=True).own if files.report.exists() else ()
+    if not files.report.exists():
+        return ()
+    every = OutputFiles.named(files.report.parent, photos, has_linear=not is_measured, has_forward=not is_measured).own
     kept = {*files.own, *(photo.absolute() for photo in photos)}
     there = (path for path in every if path.exists() and not kept & {path, path.absolute()})
     return tuple(path for path in there if not path.with_suffix(".json").exists())

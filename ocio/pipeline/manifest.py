@@ -8,6 +8,8 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from crfnet_core.errors import PhotoError, PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text, parse_json
@@ -155,7 +157,7 @@ class Manifest:
             entries = list(map(parse_json, lines))
             settings = dict(entries[0]["settings"])
             records = list(map(_record, entries[1:]))
-        except (AttributeError, IndexError, KeyError, OverflowError, TypeError, ValueError) as problem:
+        except (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError) as problem:
             raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
         if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
             raise PlateError(
@@ -184,6 +186,10 @@ def _record(entry: Mapping[str, Any]) -> PhotographRecord:
     record = PhotographRecord(**{**entry, **several, "exposure": float(entry.get("exposure", 0.0))})
     if not all(isinstance(text, str) for text in (record.photograph, record.folder, record.error, record.plate.name)):
         raise TypeError("a name is no text")
+    if any(path.is_absolute() or ".." in path.parts for path in (Path(record.folder), Path(record.linear))):
+        raise ValueError("a folder leads elsewhere")  # files there might be replaced
+    if (primaries := record.plate.primaries) and not np.isfinite(np.linalg.inv(primaries.to_xyz())).all():
+        raise ValueError("these are no primaries")
     return record
 
 

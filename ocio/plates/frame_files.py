@@ -70,7 +70,7 @@ class FrameSource(Protocol):
         """Yield what returns each frame, for ascending positions in `numbers`; a loader may be called in any thread."""
 
 
-def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
+def read_frame(path: Path, *, is_encoded: bool = False, is_divided: bool = True) -> EncodedFrame:
     """Return the encoded samples of one frame.
 
     Parameters
@@ -79,6 +79,8 @@ def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
         A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
     is_encoded : bool
         Whether an OpenEXR file that does not say how its values are encoded holds encoded values.
+    is_divided : bool
+        Whether samples that the file stores multiplied by alpha are divided by it; else they are as stored.
 
     Raises
     ------
@@ -87,12 +89,13 @@ def read_frame(path: Path, *, is_encoded: bool = False) -> EncodedFrame:
         so while `is_encoded` is not set.
     """
     if path.suffix.lower() == ".exr":
-        return _read_encoded_exr(path, is_encoded=is_encoded)
+        return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_divided)
     values = read_codes(path)
     alpha = None
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
-    samples, largest = (values.pixels(), 1) if values.is_associated else (values.codes, values.largest)
+    is_float = values.is_associated and is_divided
+    samples, largest = (values.pixels(), 1) if is_float else (values.codes, values.largest)
     return EncodedFrame(samples, largest, alpha, values.header, values.metadata.color)
 
 
@@ -118,8 +121,8 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
         source.close()
 
 
-def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
-    """Return the encoded values in an OpenEXR file, divided by its alpha."""
+def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
+    """Return the encoded values in an OpenEXR file, divided by its alpha or as stored."""
     with _opened_exr(path, is_encoded=is_encoded) as source:
         header = source.spec()
         values = source.read_image(0, 0, 0, header.nchannels, "float")
@@ -132,8 +135,9 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool) -> EncodedFrame:
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
     alpha = values[..., header.alpha_channel]  # (H, W)
-    covered = alpha[..., None] != 0
-    samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
+    if is_divided:
+        covered = alpha[..., None] != 0
+        samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
     return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
 
 

@@ -8,7 +8,7 @@ import pytest
 
 from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
-from blender_addon.work.frame_files import frames_of
+from blender_addon.work.frame_files import frames_of, read_plate_frame
 from blender_addon.work.job import ApplyMode
 from crfnet_core.errors import ConfigError, CRFNetError
 from crfnet_core.response import ResponseCurve
@@ -71,14 +71,49 @@ def test_a_cancelled_bake_leaves_nothing(make_job, sequence_file, tmp_path, step
 
 
 def test_a_cancelled_bake_leaves_what_was_there(make_job, sequence_file, tmp_path):
-    """Files of an earlier run stay, replaced or not; they are whole either way."""
+    """Files of an earlier run stay as they were, also those that would be replaced by then."""
     job = make_job(sequence_file, is_sequence=True, overwrite=True)
-    earlier = tmp_path / "out" / "shot_linear.0002.exr"
-    earlier.parent.mkdir()
-    earlier.write_bytes(b"earlier")
+    names = ["shot_linear.0001.exr", "shot_linear.0007.exr"]
+    (tmp_path / "out").mkdir()
+    for name in names:
+        (tmp_path / "out" / name).write_bytes(b"earlier")
     with pytest.raises(CancelledError):
-        write(job, cancelled_after(1))
-    assert files_in(tmp_path / "out") == ["shot_linear.0002.exr"]
+        write(job, cancelled_after(3))
+    assert files_in(tmp_path / "out") == names
+    assert all((tmp_path / "out" / name).read_bytes() == b"earlier" for name in names)
+
+
+def with_alpha(job, alpha_mode):
+    return dataclasses.replace(job, plate=dataclasses.replace(job.plate, alpha_mode=alpha_mode))
+
+
+@pytest.mark.parametrize(
+    ("alpha_mode", "color", "alpha"),
+    [("STRAIGHT", (0.3, 0.2), (0, 0.5)), ("PREMUL", (0, 0.4), (0, 0.5)), ("NONE", (0.3, 0.2), None)],
+)
+@pytest.mark.parametrize("suffix", [".exr", ".png"])
+def test_alpha_is_taken_as_by_blender(tmp_path, alpha_mode, color, alpha, suffix):
+    """Of two pixels that are stored as 0.3 and 0.2; also what an OpenEXR file holds under an alpha of 0."""
+    stored = np.array([[(0.3, 0.3, 0.3, 0), (0.2, 0.2, 0.2, 0.5)]], np.float32)
+    samples = stored if suffix == ".exr" else np.rint(stored * 65535).astype(np.uint16)
+    tags = {".exr": {"colorInteropID": "srgb_rec709_display"}, ".png": {"oiio:UnassociatedAlpha": 1}}
+    frame = read_plate_frame(write_image(tmp_path / f"a{suffix}", samples, **tags[suffix]), alpha_mode)
+    np.testing.assert_allclose(frame.samples[0, :, 0] / frame.largest, color, atol=1e-4)
+    assert (frame.alpha is None) == (alpha is None)
+    if alpha is not None:
+        np.testing.assert_allclose(frame.alpha[0], alpha, atol=1e-4)
+
+
+def test_a_bake_that_adds_alpha_as_a_channel_can_be_cancelled(make_job, tmp_path, codes):
+    path = write_image(tmp_path / "a.png", np.dstack([codes, codes[..., :1]]))
+    job, calls = with_alpha(make_job(path), "CHANNEL_PACKED"), []
+    (target,) = write(job, lambda *call: calls.append(call)).files
+    assert calls[-1] == (2, 2)
+    assert read_image(target).shape[2] == 4
+    target.unlink()
+    with pytest.raises(CancelledError):
+        write(job, cancelled_after(2))
+    assert not target.exists()
 
 
 def test_a_frame_that_fails_takes_the_others_back(make_job, sequence_file, tmp_path):

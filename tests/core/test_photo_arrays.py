@@ -126,7 +126,7 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
 @pytest.mark.parametrize(
     ("mode", "said"),
     [
-        ("P", r"palette; give image\.convert\('RGB'\)"),
+        ("P", r"palette, from which no response can be estimated; give the photograph that it was made from"),
         ("1", r"mode '1', which is not taken; give image\.convert\('RGB'\)"),
         ("CMYK", "hides the camera's response"),
         ("I", "astype"),

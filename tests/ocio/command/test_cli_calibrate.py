@@ -173,6 +173,7 @@ def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tm
     again = ("calibrate", *frames, "--out", tmp_path, "--name", "eos20d", "--no-sheet", "--overwrite")
     (tmp_path / "eos20d.json").write_text("{}")
     (tmp_path / "eos20d_sheet.png").write_text("of an earlier run")
+    (tmp_path / "eos20d_linear.exr").write_text("of another command, which stays unnamed")
     done = crfnet(*again)
     assert "Warning: of an earlier run, and not of this calibration, are eos20d_sheet.png; remove them." in done.out
     assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]

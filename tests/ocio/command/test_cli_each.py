@@ -153,7 +153,21 @@ def test_what_is_no_manifest_is_refused(estimate, photographs, tmp_path):
         {"exposure": "much"},
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
         {"primaries": {"name": "mine", "red": ["a", "b"], "green": [0, 1], "blue": [0, 0]}},
+        {
+            "primaries": {
+                "name": "mine",
+                "red": [0.6, 0.3],
+                "green": [0.6, 0.3],
+                "blue": [0.6, 0.3],
+                "white": [0.3, 0.3],
+            }
+        },
+        {"primaries": {"name": "mine", "red": [0.6, 0.3], "green": [0.3, 0.6], "blue": [0.1, 0.1], "white": [0.3, 0]}},
+        {"primaries": {"name": "mine", "red": [0.6], "green": [0.3, 0.6], "blue": [0.1, 0.1], "white": [0.3, 0.3]}},
         {"photograph": 1},
+        {"folder": "../elsewhere"},
+        {"folder": "/elsewhere"},
+        {"linear": "../elsewhere/a.exr"},
     ],
 )
 def test_a_damaged_manifest_is_refused_in_one_line(estimate, photographs, tmp_path, change):

@@ -1,5 +1,7 @@
 """The command refuses bad input on one line, and leaves everything as it was."""
 
+import shutil
+
 import numpy as np
 import pytest
 
@@ -135,6 +137,14 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
         assert (done.code, done.err) == (BAD_INPUT, f"crfnet: error: {words} folder\n")
         assert list((tmp_path / folder).iterdir()) == []
     assert crfnet("linearize", plate, "--lut", lut_file, "--out", tmp_path / folder / "a.exr").code == 0
+
+
+def test_so_is_one_of_the_folders_of_many_photographs(crfnet, plate, tmp_path):
+    (tmp_path / "plates" / "day $1").mkdir(parents=True)
+    shutil.copy(plate, tmp_path / "plates" / "day $1" / "a.jpg")
+    done = crfnet("estimate", tmp_path / "plates", "--out", tmp_path / "out", "--each")
+    assert (done.code, "day $1: OpenColorIO takes $ and % in it for variables" in done.err) == (BAD_INPUT, True)
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("arguments", [(), ("nonsense",), ("completion", "dos")])
