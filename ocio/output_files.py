@@ -269,9 +269,8 @@ def check_config_folder(folder: Path) -> None:
     check_folder(folder)
     path = str(folder.absolute())
     if "$" in path or path.count("%") > 1:
-        raise PlateError(
-            f"{path}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another folder"
-        )
+        reason = "OpenColorIO takes $ and % in it for variables and finds no LUT"
+        raise PlateError(f"{path}: {reason}; choose another folder")
 
 
 @contextmanager
