@@ -12,7 +12,6 @@ from functools import partial
 from pathlib import Path
 from typing import TypeAlias
 
-import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.errors import CRFNetError
@@ -54,21 +53,9 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
     PhotoError, PlateError
         See `read_frame`.
     """
-    frame = read_frame(path, is_encoded=is_encoded, is_divided=alpha_mode in ("PREMUL", ""))
-    if frame.alpha is None or alpha_mode in ("STRAIGHT", ""):
-        return frame
-    if alpha_mode == "PREMUL":
-        is_divided = frame.samples.dtype.kind == "f"  # as the file says that it stores the product
-        return frame if is_divided else _divided_by_alpha(frame)
-    return replace(frame, alpha=None)
-
-
-def _divided_by_alpha(frame: EncodedFrame) -> EncodedFrame:
-    """Return a frame whose codes are divided by its alpha, as brightnesses in [0, 1]."""
-    assert frame.alpha is not None
-    alpha, samples = frame.alpha[..., None], np.zeros(frame.samples.shape, np.float32)
-    np.divide(frame.samples, alpha * np.float32(frame.largest), out=samples, where=alpha > 0)
-    return replace(frame, samples=np.minimum(samples, 1, out=samples), largest=1)
+    is_associated = None if alpha_mode == "" else alpha_mode == "PREMUL"
+    frame = read_frame(path, is_encoded=is_encoded, is_associated=is_associated)
+    return replace(frame, alpha=None) if alpha_mode in ("NONE", "CHANNEL_PACKED") else frame
 
 
 def frames_of(plate: Plate) -> FrameSequence:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
 
@@ -70,7 +70,7 @@ class FrameSource(Protocol):
         """Yield what returns each frame, for ascending positions in `numbers`; a loader may be called in any thread."""
 
 
-def read_frame(path: Path, *, is_encoded: bool = False, is_divided: bool = True) -> EncodedFrame:
+def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | None = None) -> EncodedFrame:
     """Return the encoded samples of one frame.
 
     Parameters
@@ -79,8 +79,8 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_divided: bool = True)
         A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
     is_encoded : bool
         Whether an OpenEXR file that does not say how its values are encoded holds encoded values.
-    is_divided : bool
-        Whether samples that the file stores multiplied by alpha are divided by it; else they are as stored.
+    is_associated : bool or None
+        Whether the stored samples are multiplied by alpha, and so are divided by it; by default as the file says.
 
     Raises
     ------
@@ -89,13 +89,13 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_divided: bool = True)
         so while `is_encoded` is not set.
     """
     if path.suffix.lower() == ".exr":
-        return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_divided)
+        return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
     values = read_codes(path)
     alpha = None
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
-    is_float = values.is_associated and is_divided
-    samples, largest = (values.pixels(), 1) if is_float else (values.codes, values.largest)
+        values = values if is_associated is None else replace(values, is_associated=is_associated)
+    samples, largest = (values.pixels(), 1) if values.is_associated else (values.codes, values.largest)
     return EncodedFrame(samples, largest, alpha, values.header, values.metadata.color)
 
 
