@@ -16,7 +16,7 @@ from ocio import pipeline, report
 from ocio.commands.options import estimate_options, plate_arguments, plate_options
 from ocio.commands.printing import has_matplotlib, print_json, print_left, print_lines, progress_bar
 from ocio.defaults import ESTIMATES
-from ocio.movies.frames import MovieFrames
+from ocio.movies.source import movie_of
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import OutputPlan, PhotographEstimate, PhotographRecord
@@ -86,7 +86,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     print_left([path.name for path in plan.left], "this estimate")
     print_lines([""])
     plate = estimated.plates[0]
-    if isinstance(plate, MovieFrames):
+    if movie_of(plate):
         print_lines([f"The linear plate is frame {plate.numbers[0]}; the whole movie, with the LUT:"])
         print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
         return

@@ -16,11 +16,9 @@ from ocio.interchange.files import read_response
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.files import READERS
 from ocio.luts.rgb_lut import AnyLut
-from ocio.movies.frames import MovieFrames
-from ocio.movies.source import find_source
+from ocio.movies.source import PlateSource, find_source, movie_of
 from ocio.movies.stream import check_progressive
 from ocio.output_files import check_folder, output_folder
-from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
 
@@ -36,8 +34,8 @@ def run(arguments: argparse.Namespace) -> None:
             f"{len(arguments.plates)} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each"
         )
     sequence = find_source(arguments.plates[0], arguments.frames)
-    if isinstance(sequence, MovieFrames):
-        check_progressive(sequence.movie)
+    if movie := movie_of(sequence):
+        check_progressive(movie)
     targets = linear_targets(arguments.out, sequence)
     folder = Path(arguments.out).parent
     check_folder(folder)
@@ -51,11 +49,11 @@ def run(arguments: argparse.Namespace) -> None:
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
     document = report.plate_document(done, estimate)
-    movies = [str(sequence.movie)] if isinstance(sequence, MovieFrames) else []
     if arguments.json:
-        print_json(document | ({"movie": movies[0]} if movies else {}))
+        print_json(document | ({"movie": str(movie)} if movie else {}))
     else:
-        print_lines([*movies, *lines, *report.light_lines(document), *report.plate_lines(done)])
+        read = [str(movie)] if movie else []
+        print_lines([*read, *lines, *report.light_lines(document), *report.plate_lines(done)])
 
 
 def _run_each(arguments: argparse.Namespace) -> None:
@@ -85,7 +83,7 @@ def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
     return lines if inverted or path.suffix.lower() not in READERS else []
 
 
-def _response(sequence: FrameSequence | MovieFrames, arguments: argparse.Namespace) -> ResponseEstimate:
+def _response(sequence: PlateSource, arguments: argparse.Namespace) -> ResponseEstimate:
     """Return the response of a stored camera, or that of a sequence, with a progress bar."""
     options = estimate_options(arguments)
     if stored := pipeline.load_camera_response(options):

@@ -8,7 +8,6 @@ from pathlib import Path
 
 from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
 from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.image_io import read_photo
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
@@ -17,14 +16,13 @@ from crfnet_core.response_estimate import CameraAnswer
 from crfnet_core.types import Float32Array, Progress
 from ocio.defaults import LUT_LENGTH
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.movies.frames import MovieFrames
 from ocio.movies.library import is_movie
-from ocio.movies.selection import chosen_photos
+from ocio.movies.source import PlateSource, file_source, movie_of, photographs_of
 from ocio.options import EstimateOptions
 from ocio.pipeline.loading import load_camera
 from ocio.pipeline.photographs import each_once
 from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from ocio.plates.frames import find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
 
 #: Longer side in pixels of the photograph as the sheet shows it.
@@ -49,7 +47,7 @@ class PhotographEstimate:
         Distance between the pixels of `preview` in the photograph.
     estimate : ResponseEstimate
         The response that they have in common.
-    plates : tuple of FrameSequence or MovieFrames
+    plates : tuple of PlateSource
         For each of `paths`, what becomes its linear plate: the photograph, or the first frame of the movie analysed.
     offers : tuple of CameraAnswer
         Stored cameras of the first photograph's make and model, if none was asked for.
@@ -61,13 +59,13 @@ class PhotographEstimate:
     preview: Float32Array
     stride: int
     estimate: ResponseEstimate
-    plates: tuple[FrameSequence | MovieFrames, ...]
+    plates: tuple[PlateSource, ...]
     offers: tuple[CameraAnswer, ...] = ()
 
     @property
     def movies(self) -> tuple[str, ...]:
         """What the report says of each movie, one line each."""
-        return tuple(str(plate.movie) for plate in self.plates if isinstance(plate, MovieFrames))
+        return tuple(str(movie) for plate in self.plates if (movie := movie_of(plate)))
 
 
 def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> list[Path]:
@@ -166,13 +164,12 @@ class _Kept:
     settings: list[CameraSettings] = field(default_factory=list)
     previews: list[Float32Array] = field(default_factory=list)
     tags: list[ColorTags] = field(default_factory=list)
-    plates: list[FrameSequence | MovieFrames] = field(default_factory=list)
+    plates: list[PlateSource] = field(default_factory=list)
 
     def reading(self, paths: Sequence[Path], frames: str | None) -> Iterator[Photo]:
         """Yield the photographs, and the chosen frames of movies; one is in memory at a time."""
         for path in paths:
-            source = MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
-            for index, (plate, photo) in enumerate(_photos(source)):
+            for index, (plate, photo) in enumerate(photographs_of(file_source(path, frames))):
                 self.facts.append(PhotoFacts.of(photo))
                 self.settings.append(CameraSettings.of(photo.metadata))
                 if not self.previews:
@@ -185,7 +182,7 @@ class _Kept:
 
 
 def estimate_frames(
-    sequence: FrameSequence | MovieFrames,
+    sequence: PlateSource,
     network: ResponseNetwork,
     prior: Prior,
     options: EstimateOptions,
@@ -198,7 +195,7 @@ def estimate_frames(
 
     Parameters
     ----------
-    sequence : FrameSequence or MovieFrames
+    sequence : PlateSource
         The frames, or a single file, as `ocio.movies.source.find_source` returns them.
     network : ResponseNetwork
         See `load_network`.
@@ -214,7 +211,7 @@ def estimate_frames(
     PhotoError
         If a frame cannot be read or is smaller than a window, or a movie has a published curve.
     """
-    return _estimate((photo for _, photo in _photos(sequence)), network, prior, options, progress)
+    return _estimate((photo for _, photo in photographs_of(sequence)), network, prior, options, progress)
 
 
 def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
@@ -247,13 +244,6 @@ def _estimate(
         progress=progress,
     )
     return with_camera(estimate, camera, prior=prior) if camera else estimate
-
-
-def _photos(source: FrameSequence | MovieFrames) -> Iterator[tuple[FrameSequence | MovieFrames, Photo]]:
-    """Yield the photographs from which the response of a source is estimated, one at a time, each as a source first."""
-    if isinstance(source, MovieFrames):
-        return ((source.only(number), photo) for number, photo in chosen_photos(source))
-    return ((FrameSequence((path,)), read_photo(path)) for path in sample_frames(source))
 
 
 def _stride(facts: PhotoFacts) -> int:

@@ -33,11 +33,13 @@ class EncodedFrame:
     largest : int
         The code that stands for brightness 1; 1 for floats.
     alpha : ndarray, float32, shape (H, W), or None
-        Coverage in [0, 1].
+        Coverage in [0, 1], or other data.
     header : OpenImageIO.ImageSpec
         The header of the file.
     color : ColorTags
         What the file says of its primaries.
+    is_coverage : bool
+        Whether alpha is coverage, by which linear colours are multiplied; otherwise it is data, a channel of its own.
     """
 
     samples: NDArray[Any]
@@ -45,6 +47,7 @@ class EncodedFrame:
     alpha: Float32Array | None
     header: Any
     color: ColorTags = field(default_factory=ColorTags)
+    is_coverage: bool = True
 
 
 #: Returns a frame; raises a `CRFNetError` if it cannot be read.

@@ -108,7 +108,8 @@ def linearize_plates(
 
     Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused, as is
     one that says nothing, unless `is_encoded` is set: most of these are linear. Gray becomes RGB. Alpha is kept: the
-    colour is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires.
+    colour is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
+    of coverage.
     Rows and columns stay as stored, and so does the metadata that remains true.
     The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
     The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
@@ -207,13 +208,14 @@ class _Conversion:
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
-        """Return matrix @ lut.apply(B) * scale, times alpha, and alpha: (H, W, 3 or 4), of the output's type."""
+        """Return matrix @ lut.apply(B) * scale, times coverage, and alpha: (H, W, 3 or 4), of the output's type."""
         height, width, _ = frame.samples.shape
         linear = np.empty((height, width, 3 if frame.alpha is None else 4), SAMPLE_TYPES[self.options.depth])
         is_coded = frame.samples.dtype.kind == "u"
         codes = np.arange(frame.largest + 1) / frame.largest
         lut, matrix = self.light.lut, self.light.space.matrix
-        is_final = frame.alpha is None and matrix is None
+        is_multiplied = frame.alpha is not None and frame.is_coverage
+        is_final = matrix is None and not is_multiplied
         table = np.stack([channel.apply(codes) for channel in lut.channels], axis=1)  # (codes, 1 or 3)
         table = (table * self.scale).astype(linear.dtype if is_final else np.float32)
         for top in range(0, height, _ROWS):
@@ -224,7 +226,7 @@ class _Conversion:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
                 alpha = frame.alpha[rows, :, None]
-                values = values * alpha
+                values = values * alpha if frame.is_coverage else values
                 linear[rows, :, 3:] = alpha
             linear[rows, :, :3] = values
         return linear
