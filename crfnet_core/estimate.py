@@ -11,7 +11,7 @@ import numpy as np
 
 from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
 from crfnet_core.emor import EmorBasis
-from crfnet_core.metadata import FileOrigin, family_factors
+from crfnet_core.metadata import FileOrigin
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import (
@@ -21,6 +21,7 @@ from crfnet_core.posterior import (
     ResponseBank,
     Verdict,
     independent_fraction,
+    metadata_factors,
     scene_similarities,
 )
 from crfnet_core.recognition import Levels, Recognition, log_factor, recognize
@@ -114,7 +115,7 @@ def estimate_of(
     bank = bank or ResponseBank.load()
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
-    prior = (prior or Prior.load()).given(_metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
+    prior = (prior or Prior.load()).given(metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     evidences = [photograph.evidence for photograph in photographs]
     posterior = Posterior.of(bank, prior, evidences, independent=independent)
@@ -153,14 +154,6 @@ def _editor_warning(editor: str, is_developed: bool) -> str:
             " raw file to linear light, which needs no estimate"
         )
     return f"saved by {editor}, which may have changed the tones: give the camera's own file"
-
-
-def _metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
-    """Return factors on the families: the geometric mean over photographs, since one camera took them all."""
-    if not origins:
-        return {}
-    factors = [family_factors(origin) for origin in origins]
-    return {family: float(np.exp(np.mean([np.log(each[family]) for each in factors]))) for family in Family}
 
 
 def _window_estimates(

@@ -11,13 +11,11 @@ jpeg            the segments of a JPEG file before its first scan; the tables of
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name
 origin          what follows: device, editor, scaled or not, saved again or not, and this in words
-factors         how it shifts the prior's shares of the families of responses
 
 Nothing here opens a file: `image_io` hands over the header and the segments. Damaged metadata is never an error.
 """
 
-from crfnet_core.metadata.factors import FAMILIES, family_factors
 from crfnet_core.metadata.file_metadata import FileMetadata
 from crfnet_core.metadata.origin import FileOrigin, file_origin
 
-__all__ = ["FAMILIES", "FileMetadata", "FileOrigin", "family_factors", "file_origin"]
+__all__ = ["FileMetadata", "FileOrigin", "file_origin"]

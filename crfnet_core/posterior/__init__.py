@@ -3,6 +3,7 @@
 - `families`: where responses come from.
 - `responses`: the bank.
 - `prior`: how likely each family is before the photograph is looked at.
+- `factors`: how metadata shifts the prior.
 - `evidence`: what a network says of a photograph, as a likelihood of responses.
 - `posterior`: prior times evidence, the answer (the mean in log irradiance), and how large its errors are expected
   to be.
@@ -10,6 +11,7 @@
 """
 
 from crfnet_core.posterior.evidence import Evidence, independent_fraction, scene_similarities
+from crfnet_core.posterior.factors import metadata_factors
 from crfnet_core.posterior.families import FAMILY_WORDS, IN_CAMERA, UNUSUAL, Family, LikelyKind
 from crfnet_core.posterior.posterior import Posterior
 from crfnet_core.posterior.prior import DEFAULT_PRIOR, Prior, packaged_priors
@@ -30,6 +32,7 @@ __all__ = [
     "ResponseBank",
     "Verdict",
     "independent_fraction",
+    "metadata_factors",
     "packaged_priors",
     "scene_similarities",
 ]

@@ -9,12 +9,13 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, family_factors, file_origin
+from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.network.pooling import inliers, robust_mean
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import DEFAULT_PRIOR, Evidence, Family, Posterior, Prior, ResponseBank, Verdict
+from crfnet_core.posterior.factors import family_factors
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
 #: A file as the camera wrote it, and one that an editor saved.

@@ -8,7 +8,7 @@ import pytest
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import read_metadata, read_photo
-from crfnet_core.metadata import family_factors, file_origin
+from crfnet_core.metadata import file_origin
 from crfnet_core.metadata.jpeg import (
     ANNEX_K_CHROMA,
     ANNEX_K_LUMA,
@@ -18,6 +18,7 @@ from crfnet_core.metadata.jpeg import (
     scaled_table,
 )
 from crfnet_core.metadata.origin import ADOBE
+from crfnet_core.posterior.factors import family_factors
 from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
 from tests.helpers.images import write_image
 

@@ -6,16 +6,19 @@ They are set by hand, by the reasons beside them; none is fitted.
 
 from __future__ import annotations
 
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.origin import Encoding, FileOrigin
+from collections.abc import Sequence
 
-#: Families of responses: three of renderings inside the device, then what programs and other media do.
-FAMILIES = ("phone", "compact", "camera", "developed", "edited", "film", "linear", "log", "unexplained")
+import numpy as np
+
+from crfnet_core.metadata import FileOrigin
+from crfnet_core.metadata.devices import Device
+from crfnet_core.metadata.origin import Encoding
+from crfnet_core.posterior.families import Family
 
 #: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.
 LEAST_FACTOR = 0.005
 
-#: Finding -> P(finding | family) in the order of `FAMILIES`, up to a common factor; 1 says nothing.
+#: Finding -> P(finding | family) in the order of `Family`, up to a common factor; 1 says nothing.
 FACTORS: dict[str, tuple[float, ...]] = {
     # EXIF of a device is kept by editors and lost by scans and frames; apps write linear and log pictures, rarely.
     Device.PHONE: (1, 0.03, 0.03, 0.1, 0.3, 0.02, 0.02, 0.05, 0.2),
@@ -56,14 +59,22 @@ FACTORS: dict[str, tuple[float, ...]] = {
 }
 
 
-def family_factors(origin: FileOrigin) -> dict[str, float]:
-    """Return family -> P(metadata | family), relative: the largest is 1, and none is below `LEAST_FACTOR`.
+def metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
+    """Return what to multiply the prior shares of the families by, for photographs of one camera; {} without any.
 
-    Multiply the prior shares of the families by them, and divide by the sum.
+    It is the geometric mean of their `family_factors`, since one camera took them all.
     """
-    factors = dict.fromkeys(FAMILIES, 1.0)
+    if not origins:
+        return {}
+    factors = [family_factors(origin) for origin in origins]
+    return {family: float(np.exp(np.mean([np.log(each[family]) for each in factors]))) for family in Family}
+
+
+def family_factors(origin: FileOrigin) -> dict[Family, float]:
+    """Return family -> P(metadata | family), relative: the largest is 1, and none is below `LEAST_FACTOR`."""
+    factors = dict.fromkeys(Family, 1.0)
     for finding in findings(origin):
-        for family, factor in zip(FAMILIES, FACTORS[finding], strict=True):
+        for family, factor in zip(Family, FACTORS[finding], strict=True):
             factors[family] *= factor
     largest = max(factors.values())
     return {family: max(factor / largest, LEAST_FACTOR) for family, factor in factors.items()}

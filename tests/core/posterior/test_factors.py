@@ -1,0 +1,74 @@
+"""What metadata says of the families of responses."""
+
+import pytest
+
+from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.posterior import Family
+from crfnet_core.posterior.factors import FACTORS, LEAST_FACTOR, family_factors
+
+OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": (3,) * 64, "file_format": "JPEG"}
+
+
+def origin(**fields):
+    """The origin of a file with these metadata and a picture of 3504 x 2336 pixels."""
+    return file_origin(FileMetadata(**{"width": 3504, "height": 2336, "file_format": "JPEG"} | fields))
+
+
+def largest(**fields):
+    """The family that the metadata favours."""
+    factors = family_factors(origin(**fields))
+    return max(factors, key=factors.__getitem__)
+
+
+def test_a_row_for_every_family():
+    assert all(len(row) == len(Family) and min(row) > 0 for row in FACTORS.values())
+
+
+@pytest.mark.parametrize(
+    "fields", [{}, OWN_CAMERA, OWN_CAMERA | {"software": "GIMP"}, {"profile": "V-Log", "width": 640}]
+)
+def test_factors_are_relative_to_the_largest(fields):
+    factors = family_factors(origin(**fields))
+    assert tuple(factors) == tuple(Family)
+    assert max(factors.values()) == 1
+    assert min(factors.values()) >= LEAST_FACTOR
+
+
+def test_the_device_favours_its_family():
+    assert largest(make="Apple", model="iPhone 6") == "phone"
+    assert largest(make="Canon", model="Canon PowerShot G7") == "compact"
+    assert largest(make="Canon", model="Canon EOS 20D") == "camera"
+    assert largest(make="NORITSU KOKI", model="QSS-32_33") == "film"
+
+
+def test_an_editor_makes_edited_five_times_as_likely():
+    plain = family_factors(origin(make="DJI", model="FC220"))
+    edited = family_factors(origin(make="DJI", model="FC220", software="GIMP 2.8"))
+    assert edited["edited"] / edited["camera"] == pytest.approx(5 * plain["edited"] / plain["camera"])
+
+
+def test_what_was_developed_is_no_rendering_of_the_camera():
+    assert largest(**OWN_CAMERA, software="darktable 3.4") == "developed"
+    assert largest(**OWN_CAMERA, software="GIMP 2.8") == "developed"  # other programs save what was developed
+    factors = family_factors(origin(**OWN_CAMERA, software="darktable 3.4"))
+    assert factors["camera"] < 0.02
+
+
+def test_the_shape_counts_only_where_no_device_is_known():
+    camera = {"make": "Canon", "model": "Canon EOS 20D"}
+    wide, long = {"width": 3504, "height": 1971}, {"width": 3504, "height": 2336}
+    assert family_factors(origin(**camera, **wide)) == family_factors(origin(**camera, **long))
+    unknown_wide, unknown_long = family_factors(origin(**wide)), family_factors(origin(**long))
+    assert unknown_wide["phone"] > unknown_wide["camera"]
+    assert unknown_long["camera"] > unknown_long["phone"]
+
+
+def test_a_camera_file_as_written_is_hardly_edited():
+    as_written = family_factors(origin(**OWN_CAMERA))
+    unclear = family_factors(origin(**OWN_CAMERA, has_jfif=True))
+    assert as_written["edited"] < unclear["edited"]
+
+
+def test_a_profile_decides_for_linear_and_log():
+    assert largest(profile="Linear Rec.709", file_format="TIFF") == "linear"
+    assert largest(profile="S-Log3", file_format="TIFF") == "log"
