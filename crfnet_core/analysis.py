@@ -42,7 +42,7 @@ class AnalyzedPhotograph:
     is_gray : bool
         Whether its three channels are equal.
     clipped : float
-        Share of the samples of its windows at the ends of the range.
+        Fraction of the samples of its windows at the ends of the range.
     windows : tuple of Window
         Its windows; those of a photograph that was kept for later are gone.
     window_evidences : tuple of Evidence

@@ -43,6 +43,12 @@ def read_bytes(path: Path, *, most: int) -> bytes:
     return content
 
 
+def file_sha256(path: Path) -> str:
+    """Return the SHA-256 of a file."""
+    with path.open("rb") as file:
+        return hashlib.file_digest(file, "sha256").hexdigest()
+
+
 def read_json(path: Path) -> Any:
     """Return what a JSON file of at most `MAX_JSON_SIZE` bytes holds; see `parse_json`.
 
@@ -175,9 +181,3 @@ def _finite(text: str) -> float:
 def _temporary_name(path: Path) -> Path:
     """Return the name of a hidden file beside a file, `.stem.XXXXXXXX.suffix`."""
     return path.with_name(f".{temporary_stem(path)}.{secrets.token_hex(4)}{path.suffix}")
-
-
-def file_sha256(path: Path) -> str:
-    """Return the SHA-256 of a file."""
-    with path.open("rb") as file:
-        return hashlib.file_digest(file, "sha256").hexdigest()

@@ -265,7 +265,7 @@ def check_folder(folder: Path) -> None:
 
 
 def check_config_folder(folder: Path) -> None:
-    """Check a folder for a config as `check_folder` does, and that OpenColorIO would find the LUTs in it."""
+    """Refuse as `check_folder` does, and a folder in which OpenColorIO would find no LUTs: PlateError."""
     check_folder(folder)
     path = str(folder.absolute())
     if "$" in path or path.count("%") > 1:

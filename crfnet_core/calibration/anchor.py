@@ -17,7 +17,7 @@ LINE_FROM, PARABOLA_FROM, LAST_CODE, WHITE_CODE = 252, 240, 254, 254.5
 #: Samples that have to be white in one frame and measured in another for the crossing to be known.
 LEAST_CROSSINGS = 30
 
-#: Share of the samples, the flattest, that the crossing is looked for in.
+#: Fraction of the samples, the flattest, that the crossing is looked for in.
 FLATTEST = 0.5
 
 #: Stops below the crossing in which the fraction of white pixels is taken, and the fraction that noise makes there.

@@ -25,10 +25,10 @@ LEAST_RANGE, LARGEST_STEP = 2.0, 6.0
 #: Largest difference in stops between a frame's exposure and its label.
 MOST_OFFSET = 0.3
 
-#: Offset in stops from its label, and share of samples left out, from which a warning says so.
+#: Offset in stops from its label, and fraction of samples left out, from which a warning says so.
 NOTABLE_OFFSET, NOTABLE_OUTLIERS = 0.1, 0.1
 
-#: Largest root mean square residual in 8-bit codes, and largest share of samples that fit in no way.
+#: Largest root mean square residual in 8-bit codes, and largest fraction of samples that fit in no way.
 MOST_RESIDUAL, MOST_OUTLIERS = 2.5, 0.3
 
 #: Largest E_est between a measured response and the nearest known one.

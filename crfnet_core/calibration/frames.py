@@ -23,10 +23,10 @@ LEAST_FRAMES = 4
 #: Longest side in pixels that is kept: every second pixel, or fewer, of larger frames.
 KEPT_SIDE = 3000
 
-#: 8-bit code from which samples that pile up may be white, their least share, and the frames in which they have to.
-WHITE_FROM, WHITE_SHARE, WHITE_FRAMES = 236, 0.002, 2
+#: 8-bit code from which samples that pile up may be white, their least fraction, and the frames in which they have to.
+WHITE_FROM, WHITE_FRACTION, WHITE_FRAMES = 236, 0.002, 2
 
-#: How many times the share of the codes beside it, and of those further below, a pile has at least. Of 90 simulated
+#: How many times the fraction of the codes beside it, and of those further below, a pile has at least. Of 90 simulated
 #: stacks that clip at code 255 none has such a pile; of 180 that clip at 238 to 254, 175 have.
 ABOVE_NEIGHBOURS, ABOVE_REST = 1.5, 2.0
 
@@ -111,12 +111,12 @@ def white_level(frames: Sequence[Frame]) -> float:
     """
     green = [frame.codes[::2, ::2, 1] for frame in frames]
     steps = [_steps(codes, frame.largest) for codes, frame in zip(green, frames, strict=True)]
-    shares = np.array([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in steps])  # (T, 256)
-    piles = Counter(pile for share in shares if (pile := _pile(share)))
+    fractions = np.array([np.bincount(codes.ravel(), minlength=256) / codes.size for codes in steps])  # (T, 256)
+    piles = Counter(pile for row in fractions if (pile := _pile(row)))
     if not piles:
         return 1.0
     step, times = piles.most_common(1)[0]
-    highest = shares.max(axis=0)
+    highest = fractions.max(axis=0)
     if times < WHITE_FRAMES or highest[step] <= highest[-1]:
         return 1.0
     piled = np.concatenate([codes[where == step] for codes, where in zip(green, steps, strict=True)])
@@ -130,13 +130,13 @@ def _steps(codes: CodeArray, largest: int) -> CodeArray:
     return ((codes.astype(np.int64) * 255 + largest // 2) // largest).astype(np.uint8)
 
 
-def _pile(shares: Float64Array) -> int | None:
-    """Return the code below the largest at which samples of one frame pile up, given the share of each of 256 codes."""
-    pile = WHITE_FROM + int(shares[WHITE_FROM:].argmax())
-    if pile == 255 or shares[pile] < WHITE_SHARE:
+def _pile(fractions: Float64Array) -> int | None:
+    """Return the code below the largest at which samples of one frame pile up, given the fractions of all 256."""
+    pile = WHITE_FROM + int(fractions[WHITE_FROM:].argmax())
+    if pile == 255 or fractions[pile] < WHITE_FRACTION:
         return None
-    beside, below = shares[[pile - 1, pile + 1]].max(), shares[WHITE_FROM : pile - 2].max(initial=0)
-    return pile if shares[pile] > ABOVE_NEIGHBOURS * beside and shares[pile] > ABOVE_REST * below else None
+    beside, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
+    return pile if fractions[pile] > ABOVE_NEIGHBOURS * beside and fractions[pile] > ABOVE_REST * below else None
 
 
 def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[tuple[int, int], ...]]:

@@ -44,7 +44,7 @@ class Measurement:
     curve : ResponseCurve
         The response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`.
     outliers : float
-        Share of the samples that were left out.
+        Fraction of the samples that were left out.
     """
 
     seen: Observations

@@ -31,6 +31,9 @@ _RAW_BRAND = b"crx "
 #: Suffixes of Truevision TGA, which has no signature.
 TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
 
+#: What `_targa_kind` calls a file whose samples are numbers of colours.
+_PALETTED_TARGA = "TGA with a palette"
+
 #: Suffixes for which OpenImageIO invents a picture, whatever is in the file.
 _NULL_SUFFIXES = (".null", ".nul")
 
@@ -74,7 +77,9 @@ def file_kind(path: Path) -> str:
     for kind, signatures in SIGNATURES.items():
         if head.startswith(signatures):
             return kind
-    kind = _container_kind(head, brands) or ("TGA" if _is_targa(path) else "")
+    kind = _container_kind(head, brands) or _targa_kind(path)
+    if kind == _PALETTED_TARGA:
+        raise problems.paletted(path, "a TGA file with a palette")
     if not kind:
         raise PhotoError(f"{path}: is no {_WANTED} file, whatever its name says; save the photograph as one of these")
     return kind
@@ -115,20 +120,15 @@ def _split(brands: bytes) -> tuple[bytes, ...]:
     return tuple(brands[at : at + 4] for at in range(0, len(brands), 4) if at != 4)
 
 
-def _is_targa(path: Path) -> bool:
-    """Return whether suffix and header are those of TGA (Truevision TGA 2.0), which has no signature at its beginning.
-
-    A palette is refused.
-    """
+def _targa_kind(path: Path) -> str:
+    """Return "TGA", `_PALETTED_TARGA`, or "": TGA (Truevision TGA 2.0) is known by suffix and header."""
     if path.suffix.lower() not in TARGA_SUFFIXES:
-        return False
+        return ""
     with path.open("rb") as file:
         header = file.read(18)
     if len(header) < 18:
-        return False
+        return ""
     has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
     if not (has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)):
-        return False
-    if kind in (1, 9):
-        raise problems.paletted(path, "a TGA file with a palette")
-    return True
+        return ""
+    return _PALETTED_TARGA if kind in (1, 9) else "TGA"

@@ -19,8 +19,8 @@ _PALETTE = 3
 #: Bits of a sample; OpenImageIO makes as many of fewer, and does not say so.
 _WHOLE_BITS = 8
 
-#: Chunks of colour -> the size of their content, in bytes; a profile has any.
-_COLOR_CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
+#: Chunks that are read, the header and those of colour -> the size of their content, in bytes; a profile has any.
+_CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
 
 #: Chunks with which those of chromaticities and gamma do not count.
 _BEFORE_CHROMATICITIES = {b"cICP", b"iCCP", b"sRGB"}
@@ -73,7 +73,7 @@ def _color_chunks(path: Path) -> dict[bytes, bytes]:
             if name == b"IDAT":
                 break
             content = file.read(size)
-            if name in _COLOR_CHUNKS and len(content) == (_COLOR_CHUNKS[name] or size):
+            if name in _CHUNKS and len(content) == (_CHUNKS[name] or size):
                 found[name] = content
             file.seek(4, 1)  # the checksum
     return found

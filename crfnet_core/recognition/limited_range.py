@@ -10,10 +10,10 @@ LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255
 #: How far around them samples count as theirs: three codes.
 MARGIN = 3 / 255
 
-#: The largest share of samples outside, and the least share at either end.
+#: The largest fraction of samples outside, and the least fraction at either end.
 MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 
-#: The share of pixels whose luma lies beyond black and white, and between which codes these two lie after compression.
+#: The fraction of pixels with a luma beyond black and white, and between which codes these two lie after compression.
 BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
 
 _BAND = 2 * MARGIN + 1 / 255
@@ -46,5 +46,5 @@ def _has_piles(levels: Levels) -> bool:
 
 
 def _end(levels: Levels, end: float) -> float:
-    """Return the share of the samples at one end."""
+    """Return the fraction of the samples at one end."""
     return levels.fraction(end - MARGIN, end + MARGIN)

@@ -15,8 +15,8 @@ from ocio.movies.frames import MovieFrames
 #: Where in each part of the movie a frame is looked for, in turn.
 PLACES = (0.5, 0.2, 0.8)
 
-#: Brightness in [0, 1] between which a frame shows something, and the least share of its samples there.
-DARK, LIGHT, SHARE = 0.08, 0.98, 0.1
+#: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there.
+DARK, LIGHT, FRACTION = 0.08, 0.98, 0.1
 
 #: Least mean difference in brightness between two frames; two that differ less show the same picture.
 DIFFERENCE = 0.01
@@ -91,4 +91,4 @@ def _glimpse(photo: Photo) -> Float32Array:
 
 def _shows_something(glimpse: Float32Array) -> bool:
     """Return whether enough of a frame is neither black nor white."""
-    return bool(((glimpse > DARK) & (glimpse < LIGHT)).mean() >= SHARE)
+    return bool(((glimpse > DARK) & (glimpse < LIGHT)).mean() >= FRACTION)

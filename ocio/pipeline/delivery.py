@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
+from crfnet_core.errors import PlateError
 from crfnet_core.files import check_target
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
@@ -66,8 +67,13 @@ def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator
     """
     folder = targets[0].parent
     check_folder(folder)
-    with output_folder(folder):
-        for target in targets:
-            check_target(target, overwrite=overwrite)
-        with staged_files(folder, overwrite=overwrite) as temporary:
-            yield tuple(temporary / target.name for target in targets)
+    with ExitStack() as stack:
+        try:
+            stack.enter_context(output_folder(folder))
+            for target in targets:
+                check_target(target, overwrite=overwrite)
+            temporary = stack.enter_context(staged_files(folder, overwrite=overwrite))
+        except OSError as problem:  # such as on Windows, which does not say before what is not allowed
+            reason = problem.strerror or problem
+            raise PlateError(f"{folder}: cannot be written to ({reason}); choose another folder") from problem
+        yield tuple(temporary / target.name for target in targets)

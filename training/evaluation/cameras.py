@@ -105,7 +105,7 @@ def of_another_stack(setting: Setting, stacks: Sequence[Stack]) -> tuple[Errors,
 
 
 def disagreements(settings: Sequence[Setting], camera_of: Callable[[Setting, Stack | None], Camera | None]) -> Errors:
-    """Return the share of photographs that disagree with their own camera, and with those of other bodies.
+    """Return the fraction of photographs that disagree with their own camera, and with those of other bodies.
 
     Parameters
     ----------
@@ -190,8 +190,8 @@ def report(settings: Sequence[Setting], data: Path) -> str:
     parts.append(rows_of(["camera", "measured on another stack", "estimate of a photograph"], table))
 
     kinds = {"measured": measured_camera, "photographs of other stacks": photographed_camera}
-    shares = {name: disagreements(settings, camera_of) for name, camera_of in kinds.items()}
-    cells = ([name, *(f"{100 * share:.0f} %" for share in both)] for name, both in shares.items())
+    fractions = {name: disagreements(settings, camera_of) for name, camera_of in kinds.items()}
+    cells = ([name, *(f"{100 * fraction:.0f} %" for fraction in both)] for name, both in fractions.items())
     parts.append(rows_of(["camera by", "disagree with their own", "disagree with another body"], cells))
     return "\n".join(parts)
 

@@ -57,9 +57,9 @@ def test_good_and_usable_are_accepted():
     verdicts = [(log, Verdict.GOOD), (agx, Verdict.DO_NOT_TRUST), (log, Verdict.USABLE), (log, Verdict.DO_NOT_TRUST)]
     by_kind = accepted_by_kind(verdicts)
     assert by_kind == {log: Accepted(3, 2), agx: Accepted(1, 0)}
-    assert by_kind[log].share == pytest.approx(2 / 3)
+    assert by_kind[log].fraction == pytest.approx(2 / 3)
     assert accepted_overall(by_kind) == Accepted(4, 2)
-    assert accepted_overall({}).share == 0
+    assert accepted_overall({}).fraction == 0
 
 
 def test_p6_asks_once_as_of_files_that_name_no_camera_and_again_without_what_programs_write(

@@ -37,8 +37,8 @@ def accuracy(report: Report, model: str) -> dict[str, dict[str, float]]:
         overall, stripped = report.p6[model].overall, report.p6[model].stripped
         figures["P6"] = {
             "photographs": overall.photographs,
-            "accepted": overall.share,
-            "accepted without metadata": stripped.share,
+            "accepted": overall.fraction,
+            "accepted without metadata": stripped.fraction,
         }
     return figures
 

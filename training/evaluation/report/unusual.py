@@ -35,7 +35,7 @@ class Accepted:
     accepted: int
 
     @property
-    def share(self) -> float:
+    def fraction(self) -> float:
         """The part that is accepted, in [0, 1]; 0 if there are no pictures."""
         return self.accepted / self.photographs if self.photographs else 0.0
 
@@ -87,5 +87,5 @@ def _refused(report: RealReport, models: Sequence[str]) -> str:
 
 
 def _cell(counts: Accepted) -> str:
-    """Return a share in percent, and the counts."""
-    return f"{100 * counts.share:.0f} % ({counts.accepted} of {counts.photographs})"
+    """Return a fraction in percent, and the counts."""
+    return f"{100 * counts.fraction:.0f} % ({counts.accepted} of {counts.photographs})"
