@@ -77,12 +77,12 @@ def check_range(exposures: Exposures) -> None:
     """
     if exposures.range < LEAST_RANGE:
         raise CalibrationError(
-            f"the exposures span {exposures.range:.1f} stops, by EXIF or --times; a stack needs {LEAST_RANGE:g} or"
+            f"the exposures span {exposures.range:.2f} stops, by EXIF or --times; a stack needs {LEAST_RANGE:g} or"
             " more, from nearly nothing white to nearly everything white"
         )
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP:
         raise CalibrationError(
-            f"two neighbouring exposures are {step:.1f} stops apart, by EXIF or --times; check the times, or take"
+            f"two neighbouring exposures are {step:.2f} stops apart, by EXIF or --times; check the times, or take"
             " frames one or two stops apart"
         )
 
@@ -140,13 +140,13 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
     _check_offsets(found, used)
     if residual > MOST_RESIDUAL:
         raise CalibrationError(
-            f"no single curve explains the frames: they are off by {residual:.1f} codes (RMS), at most"
+            f"no single curve explains the frames: they are off by {residual:.2f} codes (RMS), at most"
             f" {MOST_RESIDUAL:g} are usual; each was rendered or edited on its own (automatic tones, local tone"
             " mapping, HDR): switch that off, and give the camera's own files"
         )
     if (distance := nearest_known(found.curve)) > MOST_UNKNOWN and found.anchor.is_seen:
         raise CalibrationError(
-            f"the curve that explains the frames is far from every known response (E_est {distance:.1f}, at most"
+            f"the curve that explains the frames is far from every known response (E_est {distance:.2f}, at most"
             f" {MOST_UNKNOWN:g}); the exposure times are probably wrong, so check them, or the files were edited"
         )
 
