@@ -12,32 +12,12 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from crfnet_core.types import Float32Array, Uint8Array
+from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, Table
+from crfnet_core.types import Float32Array, Float64Array, Uint8Array
 from training.synthesis.sensor import Planes
 
 #: Weights of red, green and blue in the luma of JPEG (ITU-R BT.601).
 LUMA = (0.299, 0.587, 0.114)
-
-#: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
-STANDARD_TABLES = (
-    (
-        (16, 11, 10, 16, 24, 40, 51, 61),
-        (12, 12, 14, 19, 26, 58, 60, 55),
-        (14, 13, 16, 24, 40, 57, 69, 56),
-        (14, 17, 22, 29, 51, 87, 80, 62),
-        (18, 22, 37, 56, 68, 109, 103, 77),
-        (24, 35, 55, 64, 81, 104, 113, 92),
-        (49, 64, 78, 87, 103, 121, 120, 101),
-        (72, 92, 95, 98, 112, 100, 103, 99),
-    ),
-    (
-        (17, 18, 24, 47, 99, 99, 99, 99),
-        (18, 21, 26, 66, 99, 99, 99, 99),
-        (24, 26, 56, 99, 99, 99, 99, 99),
-        (47, 66, 99, 99, 99, 99, 99, 99),
-        *((99,) * 8,) * 4,
-    ),
-)
 
 
 @dataclass(frozen=True)
@@ -61,7 +41,7 @@ class Jpeg:
     @property
     def tables(self) -> list[list[int]]:
         """The two tables of quantisation, 64 integers each, row by row."""
-        standard = [np.array(table, dtype=np.float64).ravel() for table in STANDARD_TABLES]
+        standard = [in_rows(table) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA)]
         bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in standard]
         return [np.clip(np.rint(table * self.scale), 1, 255).astype(int).tolist() for table in bent]
 
@@ -74,6 +54,14 @@ class Jpeg:
             Image.fromarray(frame).save(file, "JPEG", qtables=tables, subsampling=self.subsampling)
             pictures.append(np.asarray(Image.open(file)))
         return np.stack(pictures)
+
+
+def in_rows(table: Table) -> Float64Array:
+    """Return the 64 divisors of a table row by row: a JPEG file holds them in zigzags between two sides."""
+    zigzag = sorted(np.ndindex(8, 8), key=lambda place: (sum(place), place[0] if sum(place) % 2 else place[1]))
+    rows = np.empty((8, 8))
+    rows[tuple(zip(*zigzag, strict=True))] = table
+    return rows.ravel()
 
 
 @dataclass(frozen=True)
