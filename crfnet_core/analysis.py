@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata import FileOrigin, file_origin
+from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import Evidence
@@ -38,7 +38,7 @@ class AnalyzedPhotograph:
     make : str
         The camera's maker, as the file writes it; empty if metadata is ignored.
     origin : FileOrigin, optional
-        What the file says of its making; None if it has no metadata, or this is ignored.
+        What the file, and who knows its camera, say of its making; None if neither says anything.
     is_gray : bool
         Whether its three channels are equal.
     clipped : float
@@ -66,13 +66,14 @@ def analyze_photographs(
     *,
     network: ResponseNetwork,
     use_metadata: bool = True,
+    device: Device | None = None,
     windows: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
     progress: Progress | None = None,
 ) -> tuple[AnalyzedPhotograph, ...]:
     """Return what the network reads in each photograph; `estimate_response` explains the parameters and the errors."""
-    sources = [_choose_windows(photo, windows, seed, coverage, use_metadata) for photo in _checked(photos)]
+    sources = [_choose_windows(photo, windows, seed, coverage, use_metadata, device) for photo in _checked(photos)]
     if not sources:
         raise PhotoError("there is no photograph to analyse; give at least one")
     total, done = sum(len(source.samples) for source in sources), 0
@@ -104,7 +105,9 @@ def _checked(photos: Photo | Iterable[Photo]) -> Iterator[Photo]:
         yield photo
 
 
-def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_metadata: bool) -> _Source:
+def _choose_windows(
+    photo: Photo, count: int, seed: int, coverage: int, use_metadata: bool, device: Device | None
+) -> _Source:
     """Return the windows of one photograph; an error names its file."""
     metadata = photo.metadata if use_metadata else None
     if use_metadata:
@@ -120,12 +123,19 @@ def _choose_windows(photo: Photo, count: int, seed: int, coverage: int, use_meta
         thumbnail=_thumbnail(photo),
         levels=Levels.of(photo),
         make="" if metadata is None else metadata.make,
-        origin=None if metadata is None else file_origin(metadata),
+        origin=_origin(metadata, device),
         is_gray=photo.is_gray,
         clipped=float(((samples <= 0.5 / 255) | (samples >= 254.5 / 255)).mean()),
         windows=windows,
     )
     return _Source(samples, analyzed)
+
+
+def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin | None:
+    """Return what is known of a photograph's making; None if nothing is."""
+    if device is None:
+        return None if metadata is None else file_origin(metadata)
+    return as_told(file_origin(metadata or FileMetadata()), device)
 
 
 def _thumbnail(pixels: Pixels) -> Float64Array:

@@ -11,7 +11,7 @@ import numpy as np
 
 from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
 from crfnet_core.emor import EmorBasis
-from crfnet_core.metadata import FileOrigin
+from crfnet_core.metadata import Device, FileOrigin
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import (
@@ -42,6 +42,7 @@ def estimate_response(
     prior: Prior | None = None,
     bank: ResponseBank | None = None,
     use_metadata: bool = True,
+    device: Device | None = None,
     windows: int = WINDOWS_PER_PHOTOGRAPH,
     seed: int = 0,
     coverage: int = FULL_COVERAGE,
@@ -67,6 +68,8 @@ def estimate_response(
         The responses to choose from; by default the packaged ones.
     use_metadata : bool
         Whether what the files say of their making counts: see `crfnet_core.metadata`.
+    device : Device, optional
+        The kind of device that took them all, where it is known: it counts as if the files named one.
     windows : int
         Windows of each photograph.
     seed : int
@@ -86,6 +89,7 @@ def estimate_response(
         photos,
         network=network,
         use_metadata=use_metadata,
+        device=device,
         windows=windows,
         seed=seed,
         coverage=coverage,

@@ -15,6 +15,9 @@ WINDOWS = 10
 #: The packaged priors, as in `crfnet_core.posterior`; the first is the default.
 PRIORS = ("camera", "any")
 
+#: Kinds of devices that a person may say took a photograph, as in `crfnet_core.metadata.Device`.
+DEVICES = ("phone", "compact", "camera")
+
 #: Frames of a sequence from which its one response is estimated.
 FRAMES_ANALYZED = 8
 

@@ -26,6 +26,8 @@ class EstimateOptions:
         Which kinds of responses to expect: the name of a packaged prior, or a JSON file.
     use_metadata : bool
         Whether what the files say of their making counts.
+    device : str or None
+        What took them, "phone", "compact" or "camera", as a person knows it; None to go by the files.
     camera : str or None
         The stored camera whose response is the answer; None to estimate it from the photographs.
     """
@@ -36,6 +38,7 @@ class EstimateOptions:
     seed: int = 0
     prior: str | Path = PRIORS[0]
     use_metadata: bool = True
+    device: str | None = None
     camera: str | None = None
 
 

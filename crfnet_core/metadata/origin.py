@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from enum import StrEnum
 from typing import Any
 
@@ -105,6 +105,8 @@ class FileOrigin:
         The program that rendered the picture, which no camera took; empty if none is known.
     is_developed : bool
         Whether a program developed the photograph from a raw file: XMP names the file, or the editor is such a program.
+    is_told : bool
+        Whether a person has told the kind of device: see `as_told`.
     """
 
     device: Device
@@ -118,6 +120,7 @@ class FileOrigin:
     words: tuple[str, ...]
     renderer: str = ""
     is_developed: bool = False
+    is_told: bool = False
 
     @property
     def is_sent_copy(self) -> bool:
@@ -139,8 +142,9 @@ class FileOrigin:
             picture_shape=str(entry["picture_shape"]),
             encoding=Encoding(entry["encoding"]),
             words=tuple(map(str, entry["words"])),
-            renderer=str(entry.get("renderer", "")),  # the first documents have neither this nor the next
+            renderer=str(entry.get("renderer", "")),  # the first documents have neither this nor the next two
             is_developed=bool(entry.get("is_developed", False)),
+            is_told=bool(entry.get("is_told", False)),
         )
 
 
@@ -178,6 +182,12 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
         renderer=metadata.renderer,
         is_developed=is_developed,
     )
+
+
+def as_told(origin: FileOrigin, device: Device) -> FileOrigin:
+    """Return the origin of a file of which a person knows the kind of device, whatever the file says of it."""
+    rest = origin.words if origin.renderer else origin.words[1:]
+    return replace(origin, device=device, is_told=True, words=(f"taken with {_DEVICES[device]}", *rest))
 
 
 def picture_shape(width: int, height: int) -> str:

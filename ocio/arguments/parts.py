@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import NamedTuple, NoReturn, TypeAlias
 
-from ocio.defaults import DEPTHS, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
+from ocio.defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 #: Exit code of refused arguments and refused files.
 BAD_INPUT = 2
@@ -63,6 +63,12 @@ def add_network(parser: argparse.ArgumentParser) -> None:
         help=f"what to expect: today's cameras, any source (film, old video too), or as a JSON file says ({PRIORS[0]})",
     )
     parser.add_argument("--camera", metavar="NAME", help="the response of a stored camera: see crfnet camera list")
+    parser.add_argument(
+        "--taken-with",
+        choices=DEVICES,
+        help="what took it, where you know and the file does not say: a phone, a compact camera, or a camera with"
+        " interchangeable lenses",
+    )
     parser.add_argument(
         "--ignore-metadata",
         action="store_true",

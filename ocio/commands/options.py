@@ -14,6 +14,7 @@ def estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOpti
         threads=arguments.threads,
         prior=arguments.prior,
         use_metadata=not arguments.ignore_metadata,
+        device=arguments.taken_with,
         camera=arguments.camera,
         **more,
     )

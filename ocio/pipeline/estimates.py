@@ -8,6 +8,7 @@ from pathlib import Path
 
 from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
 from crfnet_core.estimate import ResponseEstimate, estimate_response
+from crfnet_core.metadata import Device
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
@@ -239,6 +240,7 @@ def _estimate(
         network=network,
         prior=prior,
         use_metadata=options.use_metadata,
+        device=Device(options.device) if options.device else None,
         windows=options.windows,
         seed=options.seed,
         progress=progress,

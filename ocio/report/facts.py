@@ -116,10 +116,12 @@ def _beside(value: float, *limits: float) -> str:
 
 
 def _metadata_words(estimate: ResponseEstimate) -> str:
-    """Return what the metadata of the photographs says; of several that differ, that of the first."""
+    """Return what the metadata and who knows the camera say of the photographs; of several that differ, the first."""
     first, *others = [", ".join(origin.words) for origin in estimate.origins] or [""]
     if not first:
         return "no file metadata used"
     differing = sum(words != first for words in others)
     more = f" (the first of {1 + len(others)}; {differing} differ)" if differing else ""
+    if estimate.origins[0].is_told:
+        return f"you and the file say: {first}{more}" if len(estimate.origins[0].words) > 1 else f"you say: {first}"
     return f"file metadata used: {first}{more}"

@@ -34,6 +34,9 @@ REMEDIES = {
     Family.UNEXPLAINED: "no camera response explains this picture, so take a photograph as the camera wrote it",
 }
 
+#: What else to do if nothing says what took the picture.
+TELL_DEVICE = ', or say with "Taken With" (--taken-with) which kind of camera took it'
+
 
 def source_line(estimate: ResponseEstimate) -> str:
     """Return from which photographs a response was estimated, or of which stored camera it is."""
@@ -164,7 +167,8 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
         return f"not to be trusted: {estimate.recognition.advice}"
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
     if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
-        return f"not to be trusted: {remedies[0]}"
+        more = "" if any(origin.device for origin in estimate.origins) else TELL_DEVICE
+        return f"not to be trusted: {remedies[0]}{more}"
     return VERDICTS[estimate.verdict]
 
 

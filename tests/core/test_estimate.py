@@ -9,7 +9,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata import Device, FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.network.pooling import inliers, robust_mean
@@ -168,10 +168,10 @@ def test_the_same_photograph_twice_says_no_more_than_once(bank):
     assert twice.families == pytest.approx(once.families)
 
 
-def shares(made, *, use_metadata=True, network=None):
+def shares(made, *, use_metadata=True, device=None, network=None):
     """The families of an estimate in which the photograph says nothing."""
     nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
-    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata).families
+    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata, device=device).families
 
 
 def test_metadata_shifts_the_prior():
@@ -201,6 +201,22 @@ def test_metadata_can_be_ignored():
     bare = asked(photo(), FakeNetwork([evidence_for(CENTRE)]))
     assert (ignored.origins, ignored.warnings) == ((), ())
     assert ignored.families == bare.families
+
+
+@pytest.mark.parametrize("use_metadata", [True, False])
+def test_the_device_may_be_told(use_metadata):
+    made = photo(metadata=FileMetadata(width=600, height=400, file_format="JPEG"))
+    nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
+    told = asked(made, FakeNetwork([nothing]), use_metadata=use_metadata, device=Device.PHONE)
+    (origin,) = told.origins
+    assert (origin.device, origin.is_told) == (Device.PHONE, True)
+    assert origin.is_scaled is (True if use_metadata else None)
+    assert told.families[Family.PHONE] > 0.8 > 0.4 > shares(made)[Family.PHONE]
+
+
+def test_what_is_told_counts_as_if_the_file_named_it():
+    named = replace(CAMERA, make="Apple", model="iPhone 6")
+    assert shares(photo(metadata=CAMERA), device=Device.PHONE) == pytest.approx(shares(photo(metadata=named)))
 
 
 def test_equal_files_shift_the_prior_once():

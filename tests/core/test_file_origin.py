@@ -1,8 +1,10 @@
 """What follows from file metadata: the file's origin, in words too."""
 
+from dataclasses import asdict
+
 import pytest
 
-from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
 from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
 from crfnet_core.metadata.origin import Encoding, picture_shape
 
@@ -174,3 +176,17 @@ def test_encoding_by_profile(profile, file_format, encoding):
 )
 def test_words(fields, words):
     assert origin(**fields).words == words
+
+
+def test_a_told_device_takes_the_place_of_the_files():
+    own = origin(**OWN_CAMERA, software="GIMP 2.8")
+    told = as_told(own, Device.PHONE)
+    assert (told.device, told.camera, told.editor, told.is_told) == (Device.PHONE, own.camera, own.editor, True)
+    assert told.words == ("taken with a phone", *own.words[1:])
+    assert FileOrigin.from_dict(asdict(told)) == told
+
+
+def test_a_rendering_stays_one_whatever_is_told():
+    told = as_told(origin(renderer="Blender"), Device.CAMERA)
+    assert told.words[:2] == ("taken with a camera with interchangeable lenses", "rendered by Blender")
+    assert told.renderer == "Blender"

@@ -5,8 +5,9 @@ import inspect
 import numpy as np
 
 from crfnet_core import estimate_response
+from crfnet_core.metadata import Device
 from crfnet_core.metrics import brightness_percent
-from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Verdict, packaged_priors, verdict
+from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packaged_priors, verdict
 from ocio import defaults, report
 from ocio.plates.exr import SAMPLE_TYPES
 
@@ -35,6 +36,10 @@ def test_every_verdict_has_words():
 def test_the_priors_are_the_packaged_ones():
     assert defaults.PRIORS[0] == DEFAULT_PRIOR
     assert sorted(defaults.PRIORS) == packaged_priors()
+
+
+def test_the_devices_are_those_with_a_family_of_their_own():
+    assert set(defaults.DEVICES) == set(Device) & set(Family)
 
 
 def test_the_usage_states_the_limits_of_the_verdicts(root):

@@ -9,7 +9,7 @@ import pytest
 from crfnet_core.estimate import estimate_response
 from crfnet_core.files import json_text
 from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata import Device, FileMetadata, as_told, file_origin
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ModelConfig, ResponseNetwork
 from crfnet_core.posterior import Family, Verdict
@@ -135,6 +135,24 @@ def test_several_photographs_are_told_by_the_first(estimate):
     camera, scan = file_origin(CANON), file_origin(dataclasses.replace(CANON, make="", model=""))
     assert report.basis(estimate(origins=(camera, camera))) == report.basis(estimate())
     assert report.basis(estimate(origins=(camera, scan, camera))).endswith("lenses (the first of 3; 1 differ)")
+
+
+def test_who_says_what_took_the_photograph(estimate):
+    told = as_told(file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400)), Device.PHONE)
+    assert report.basis(estimate(origins=(told,))) == (
+        "prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it: it has"
+        " 600 x 400 pixels"
+    )
+    bare = as_told(file_origin(FileMetadata()), Device.COMPACT)
+    assert report.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
+
+
+def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
+    fields = {"verdict": Verdict.DO_NOT_TRUST, "families": {Family.UNEXPLAINED: 1.0}}
+    asked = "(--taken-with) which kind of camera took it."
+    assert report.verdict_lines(estimate(**fields, origins=()))[0].endswith(asked)
+    assert report.verdict_lines(estimate(**fields, origins=(file_origin(FileMetadata()),)))[0].endswith(asked)
+    assert not report.verdict_lines(estimate(**fields))[0].endswith(asked)
 
 
 def test_ignored_metadata_is_told(estimate):

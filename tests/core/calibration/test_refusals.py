@@ -47,7 +47,9 @@ def test_as_many_times_as_frames_are_needed(stack):
 
 
 def test_equal_exposures_are_refused(stack):
-    with pytest.raises(CalibrationError, match=r"the exposures span 0.00 stops, by EXIF or --times; a stack needs 2 or"):
+    with pytest.raises(
+        CalibrationError, match=r"the exposures span 0.00 stops, by EXIF or --times; a stack needs 2 or"
+    ):
         calibrate_stack(stack(), seconds=[1.0] * 8)
 
 

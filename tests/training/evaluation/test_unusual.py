@@ -102,7 +102,7 @@ def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
     )
     report = {"m": unusual_report([File(scene, "a"), File(scene, "b")], file, (kind,))}
     summary = BodySummary(3, 8, {}, ())
-    accepted = {"m": 8, "m, EXIF lost": 4, "m, metadata ignored": 6}
+    accepted = {"m": 8, "m, EXIF lost": 4, "m, EXIF lost, kind told": 7, "m, metadata ignored": 6}
     trusted = {name: TrustedWrongly(count, 0, 0, 0) for name, count in accepted.items()}
     empty = ("kinds", "origins", "origins_of_everything", "weights", "weights_of_everything", "pooled")
     parts = {name: {} for name in empty}
@@ -121,5 +121,6 @@ def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
     assert "| all kinds, without metadata | 100 % (2 of 2) |" in text
     assert "| m | 0 % (0 of 8) | 0 % (0 of 8) |" in text
     assert "| m, EXIF lost | 50 % (4 of 8) | 50 % (4 of 8) |" in text
+    assert "| m, EXIF lost, kind told | 12 % (1 of 8) | 12 % (1 of 8) |" in text
     assert "| m, metadata ignored | 25 % (2 of 8) | 25 % (2 of 8) |" in text
     assert "refused" not in "\n".join(unusual_section(report, None))

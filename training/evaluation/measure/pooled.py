@@ -71,7 +71,7 @@ def measure_pooled(
     for group in tqdm(groups, desc=title, unit="body", disable=not groups):
         photos, bank = [read_real_photo(photograph) for photograph in group], bank_without_fold(group[0], data)
         for name, file in files.items():
-            answers = estimates(photos, networks[name], bank)
+            answers = estimates(photos, group[0].kind, networks[name], bank)
             for photograph, photo in zip(group, photos, strict=True):
                 true, counts = photograph.truth(), code_counts(photo)
                 file.rows[photograph.name] = {

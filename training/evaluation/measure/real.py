@@ -4,14 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import replace
-from functools import cache
+from functools import cache, partial
 from pathlib import Path
 
 from tqdm import tqdm
 
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata import Device, FileMetadata
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
 from crfnet_core.posterior import ResponseBank
@@ -80,7 +80,7 @@ def measure_real(
                 curves = constants | _of_real_cameras(others, true, known)
                 file.rows[photograph.name] = all_baselines(true, counts, curves)
             else:
-                answers = estimates([photo], networks[name], bank_without_fold(photograph, data))
+                answers = estimates([photo], photograph.kind, networks[name], bank_without_fold(photograph, data))
                 file.rows[photograph.name] = {
                     way: model_figures(true, answer, counts, is_drawn=True)
                     for way, answer in zip(ways_of(name), answers, strict=True)
@@ -94,10 +94,13 @@ def read_real_photo(photograph: RealPhotograph) -> Photo:
     return replace(photo, metadata=photograph.metadata or photo.metadata)
 
 
-def estimates(photos: Sequence[Photo], network: ResponseNetwork, bank: ResponseBank) -> list[ResponseEstimate]:
-    """Return the estimates from photographs of one body, in the order of `ways_of`."""
-    asked = ((photos, True), ([without_exif(photo) for photo in photos], True), (photos, False))
-    return [estimate_response(given, network=network, bank=bank, use_metadata=used) for given, used in asked]
+def estimates(
+    photos: Sequence[Photo], kind: str, network: ResponseNetwork, bank: ResponseBank
+) -> list[ResponseEstimate]:
+    """Return the estimates from photographs of one body of a `RealPhotograph.kind`, in the order of `ways_of`."""
+    device, lost = (Device(kind) if kind in set(Device) else None), [without_exif(photo) for photo in photos]
+    estimate = partial(estimate_response, network=network, bank=bank)
+    return [estimate(photos), estimate(lost), estimate(lost, device=device), estimate(photos, use_metadata=False)]
 
 
 def without_exif(photo: Photo) -> Photo:

@@ -19,8 +19,12 @@ POOLED = {"4 photographs": 4, "2 to 4 photographs": 2}
 
 
 def ways_of(model: str) -> list[str]:
-    """Return the names of the ways in which P4 asks a model: with the file's metadata, after its loss, without any."""
-    return [model, f"{model}, EXIF lost", f"{model}, metadata ignored"]
+    """Return the names of the ways in which P4 asks a model.
+
+    They are: with the file's metadata; after its loss; after its loss by someone who knows the kind of camera; without
+    any metadata.
+    """
+    return [model, f"{model}, EXIF lost", f"{model}, EXIF lost, kind told", f"{model}, metadata ignored"]
 
 
 def pooled_name(way: str) -> str:

@@ -35,8 +35,9 @@ once; bodies are resampled. Photographs that need caution are shown apart and le
 table says that it counts them. A measured response knows its shape well and its scale, where white is reached, much
 worse: so the shape error says more than E_est. The paper's Fig. 6 has 8 real photographs, E_est {low} to {high}.
 
-- Each model is asked three times: as users ask it, with the metadata of the file as evidence; with "EXIF lost", as web
-  sites send pictures, so that the file says nothing but their size; and with "metadata ignored".
+- Each model is asked four times: as users ask it, with the metadata of the file as evidence; with "EXIF lost", as web
+  sites send pictures, so that the file says nothing but their size; "kind told" by users who then say whether a phone,
+  a compact or another camera took it, where that is known; and with "metadata ignored".
 - The bank of responses that answers are chosen from knows nothing of the bodies of the photograph's fold.
 - "{others}" is what someone estimates who knows cameras and does not look at the photograph: the
   mean response, in log irradiance, of the bodies of the same folder that are not in the same fold (in data/real each
