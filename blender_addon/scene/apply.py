@@ -67,6 +67,7 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
     settings.depth = job.output.depth
     options = job.estimation.options
     settings.camera = options.camera or ""
+    settings.device = options.device or "file"
     settings.ignore_metadata = not options.use_metadata
     settings.prior = "file" if isinstance(options.prior, Path) else options.prior
     if settings.prior == "file" and Path(bpy.path.abspath(settings.prior_file)) != options.prior:

@@ -18,7 +18,7 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, has_own_file
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, has_own_file, is_painted
 
 #: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -34,12 +34,12 @@ def code_values(plate: Datablock) -> Datablock:
         copy = earlier
         copy.colorspace_settings.name = data_space()  # by this, Blender reads the files again, too
     else:
-        copy = _painted_copy(plate) if _is_painted(plate) else _file_copy(plate)
+        copy = _painted_copy(plate) if is_painted(plate) else _file_copy(plate)
         if earlier is not None:
             earlier.user_remap(copy)
             _collection(plate).remove(earlier)
         copy[CODE_VALUES_OF] = plate
-    copy.name = f"{plate.name} code values"
+    copy.name = _name_behind(plate.name)
     copy[_READ] = file_state(plate)
     return copy
 
@@ -68,18 +68,20 @@ def _is_decoded_to_floats(movie: Datablock) -> bool:
     return is_float
 
 
-def outdated(plate: Datablock) -> str:
+def outdated(plate: Datablock, state: str) -> str:
     """Return that the nodes of a plate show it as it was earlier, and what to do; empty if they do not.
 
-    A file that is not found is told first; of a sequence, one frame may well be missing. Of an image that was painted
-    in Blender and has no file nobody knows: see `is_painted_copy_shown`.
+    The state is that of the plate's file, see `plates.file_state`. A file that is not found is told first; of a
+    sequence, one frame may well be missing. Of an image that was painted in Blender and has no file nobody knows: see
+    `is_painted_copy_shown`. So only one of the two looks for the copies of a plate.
     """
+    if is_painted(plate):
+        return ""
     copies = [copy for copy in _copies(plate) if copy.users]
-    if not copies or _is_painted(plate):
+    if not copies:
         return ""
     if getattr(plate, "is_dirty", False):
         return "Its nodes lack the unsaved changes: save or pack it, and apply it as Nodes."
-    state = file_state(plate)
     if not state and has_own_file(plate):
         return "" if plate.source == "SEQUENCE" else "Its file is not found: find it with File, External Data."
     if all(_is_alike(copy, plate) and copy.get(_READ, state) == state for copy in copies):
@@ -92,7 +94,7 @@ def is_painted_copy_shown(plate: Datablock) -> bool:
 
     Blender does not tell when it is painted on, and comparing all pixels takes too long for a panel.
     """
-    return _is_painted(plate) and any(copy.users for copy in _copies(plate))
+    return is_painted(plate) and any(copy.users for copy in _copies(plate))
 
 
 def pack_with_plates() -> None:
@@ -110,8 +112,26 @@ def note_files_as_read() -> None:
 
 
 def _copies(plate: Datablock) -> Iterator[Datablock]:
-    """Yield the copies of a plate, of which there is at most one unless the user has duplicated it."""
-    yield from (copy for copy in _collection(plate) if copy.get(CODE_VALUES_OF) == plate)
+    """Yield the copies of a plate, of which there is at most one unless the user has duplicated it.
+
+    A plate that was linked and made local may have one in the other file still, which cannot be changed.
+    """
+    for copy in _collection(plate):
+        if copy.get(CODE_VALUES_OF) == plate and copy.library == plate.library:
+            yield copy
+
+
+def _name_behind(name: str) -> str:
+    """Return the name of a plate's copy, which begins with that of the plate and comes behind it.
+
+    A long name is cut, so that the end fits. The wide tilde then stands where the plate's name goes on, and comes
+    behind the letters of all languages.
+    """
+    most, end = bpy.types.ID.bl_rna.properties["name"].length_max - 1, " code values"  # bytes
+    if len(name.encode() + end.encode()) > most:
+        end = f"\N{FULLWIDTH TILDE}{end}"
+        name = name.encode()[: most - len(end.encode())].decode(errors="ignore")
+    return name + end
 
 
 def _is_alike(copy: Datablock, plate: Datablock) -> bool:
@@ -142,11 +162,6 @@ def _painted_copy(image: bpy.types.Image) -> bpy.types.Image:
     copy.pack()
     copy.reload()  # as stored: the compositor multiplies pixels by alpha that come from no file
     return copy
-
-
-def _is_painted(plate: Datablock) -> bool:
-    """Return whether a plate is an image that was painted in Blender and has no file, not even a packed one."""
-    return isinstance(plate, bpy.types.Image) and plate.source == "GENERATED" and not plate.packed_file
 
 
 def _collection(plate: Datablock) -> bpy.types.bpy_prop_collection:

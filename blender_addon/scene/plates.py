@@ -80,9 +80,8 @@ def plate_itself(datablock: Datablock | None) -> Datablock | None:
 
 def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
     """Return the image or clip that an Image or Movie Clip node shows itself; None for any other node."""
-    if node is None:
-        return None
-    return {"IMAGE": getattr(node, "image", None), "MOVIECLIP": getattr(node, "clip", None)}.get(node.type)
+    attribute = {"IMAGE": "image", "MOVIECLIP": "clip"}.get(getattr(node, "type", ""))
+    return None if attribute is None else getattr(node, attribute, None)
 
 
 def _plate_behind(node: bpy.types.Node | None) -> Datablock | None:
@@ -244,10 +243,18 @@ def file_state(datablock: Datablock) -> str:
 def alpha_mode(datablock: Datablock) -> str:
     """Return how Blender takes the alpha of an image; empty for movies, clips and what it does not show.
 
-    For these, it has no such setting, or does not heed it.
+    For these, it has no such setting, or does not heed it. It divides by alpha only where it reads a file: what was
+    painted is never multiplied by it.
     """
     is_heeded = isinstance(datablock, bpy.types.Image) and datablock.source != "MOVIE" and is_shown(datablock)
-    return datablock.alpha_mode if is_heeded else ""
+    if not is_heeded:
+        return ""
+    return "STRAIGHT" if datablock.alpha_mode == "PREMUL" and is_painted(datablock) else datablock.alpha_mode
+
+
+def is_painted(datablock: Datablock) -> bool:
+    """Return whether an image was generated or painted in Blender and has no file, not even a packed one."""
+    return isinstance(datablock, bpy.types.Image) and datablock.source == "GENERATED" and not datablock.packed_file
 
 
 def has_own_file(datablock: Datablock) -> bool:

@@ -51,7 +51,7 @@ def gather_job(
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
     if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
         raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
-    _check_is_shown(datablock, ApplyMode(chosen["apply"]))
+    _check_mode(datablock, ApplyMode(chosen["apply"]))
     if chosen["apply"] == ApplyMode.NODES:
         node_group.check_config()
     plate = plates.plate_of(datablock)
@@ -63,6 +63,7 @@ def gather_job(
                 threads=preferences().threads,
                 prior=_prior(chosen, is_needed=not is_estimated),
                 use_metadata=not chosen["ignore_metadata"],
+                device=None if chosen["device"] == "file" else chosen["device"],
                 camera=chosen["camera"].strip() or None,
             ),
             is_forced=chosen["force"],
@@ -79,12 +80,17 @@ def gather_job(
     )
 
 
-def _check_is_shown(datablock: plates.Datablock, mode: ApplyMode) -> None:
-    """Raise an AddonError if Blender would have to show a plate that it cannot read."""
+def _check_mode(datablock: plates.Datablock, mode: ApplyMode) -> None:
+    """Raise an AddonError if Blender would have to show a plate that it cannot read, or would lose what was painted."""
     if mode in (ApplyMode.NODES, ApplyMode.COLORSPACE) and not plates.is_shown(datablock):
         raise AddonError(
             f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
             " photograph as JPEG or PNG"
+        )
+    if mode is ApplyMode.COLORSPACE and plates.is_painted(datablock):
+        raise AddonError(
+            f"{datablock.name}: pack or save it first in the Image menu, as Blender drops what was painted when the"
+            " color space changes"
         )
 
 
@@ -106,7 +112,11 @@ def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:
 def _photographs(datablock: plates.Datablock) -> tuple[Plate, ...]:
     """Return the further photographs of the plate's camera, each once; places without an image are left out."""
     images = [item.image for item in datablock.camera_response_settings.photographs if item.image is not None]
-    return tuple(plates.plate_of(image) for image in dict.fromkeys(images) if image != datablock)
+    chosen = [image for image in dict.fromkeys(images) if image != datablock]
+    for image in chosen:
+        if problem := plates.obstacle(image):
+            raise AddonError(f"{image.name}, under More Photos: {problem}")
+    return tuple(map(plates.plate_of, chosen))
 
 
 def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:

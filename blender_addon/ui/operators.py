@@ -134,7 +134,7 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether there is a plate and no other run, and tell why if not; a script names its plate."""
-        if _is_busy(cls):
+        if running.is_busy(cls):
             return False
         if not plates.is_in_editor(context):
             return True
@@ -155,15 +155,17 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has an estimate and there is no run; a script names its plate."""
-        if _is_busy(cls):
+        """Return whether the plate has an estimate and there is no other run, and tell why if not."""
+        if running.is_busy(cls):
             return False
         if not plates.is_in_editor(context):
             return True
-        if stored_estimate.is_stored(plates.active_datablock(context)):
-            return True
-        cls.poll_message_set("Estimate the camera response of a plate first")
-        return False
+        datablock, why = plates.active_datablock(context), "Estimate the camera response of a plate first"
+        if stored_estimate.is_stored(datablock):
+            why = plates.obstacle(datablock)
+        if why:
+            cls.poll_message_set(why)
+        return not why
 
 
 class CRF_OT_cancel_run(bpy.types.Operator):
@@ -183,14 +185,6 @@ class CRF_OT_cancel_run(bpy.types.Operator):
         if run := running.current():
             run.cancel()
         return {"FINISHED"}
-
-
-def _is_busy(operator: type[bpy.types.Operator]) -> bool:
-    """Return whether a run is under way, and tell so."""
-    run = running.current()
-    if run is not None:
-        operator.poll_message_set(f"The camera response of {run.name} is running: wait for its end, or cancel it")
-    return run is not None
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

@@ -101,13 +101,16 @@ def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
 
 def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw what no longer fits the estimate: another file, nodes that show the earlier one, linearise twice or not."""
-    warnings = []
-    if stored_estimate.is_file_changed(datablock, plates.file_state(datablock)):
-        warnings.append("The file has changed since the estimate: estimate again.")
-    told = (code_values.outdated, node_links.linearized_twice, node_links.without_group)
-    warnings += filter(None, (tell(datablock) for tell in told))
-    if warnings:
-        draw_paragraphs(layout, warnings, letters_of(context), icon="ERROR")
+    state = plates.file_state(datablock)
+    is_changed = stored_estimate.is_file_changed(datablock, state)
+    warnings = (
+        "The file has changed since the estimate: estimate again." if is_changed else "",
+        code_values.outdated(datablock, state),
+        node_links.linearized_twice(datablock),
+        node_links.without_group(datablock),
+    )
+    if told := [warning for warning in warnings if warning]:
+        draw_paragraphs(layout, told, letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):
         draw_text(layout, "Its nodes do not follow your painting: apply it again.", letters_of(context), icon="INFO")
 
@@ -160,7 +163,7 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
 
 
 def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw what few plates need, closed at first: a stored camera, what to expect, metadata, log or linear plates."""
+    """Draw what few plates need, closed at first: the camera, what to expect, metadata, log or linear plates."""
     header, body = layout.panel("CRF_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
@@ -170,6 +173,7 @@ def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup
     column.prop(settings, "prior")
     if settings.prior == "file":
         column.prop(settings, "prior_file")
+    column.prop(settings, "device")
     column.prop(settings, "ignore_metadata")
     column.prop(settings, "force")
 

@@ -30,6 +30,14 @@ PRIORS = (
     ("file", "File", "As a JSON file says"),
 )
 
+#: What took the plate: as its file says, or one of `ocio.defaults.DEVICES`.
+DEVICES = (
+    ("file", "As the File Says", "Frames and pictures from web pages mostly say nothing: then choose, if you know"),
+    ("phone", "Phone", "A phone or a tablet"),
+    ("compact", "Compact Camera", "A camera whose lens cannot be changed, but no drone or action camera"),
+    ("camera", "Camera", "A reflex or mirrorless camera with interchangeable lenses, but no cinema camera"),
+)
+
 #: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a
 #: wheel, and the add-on has to start without it.
 MAX_EXPOSURE = 15
@@ -108,6 +116,9 @@ class PlateChoices:
         description="JSON file with the share of each kind of response",
         subtype="FILE_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
+    )
+    device: bpy.props.EnumProperty(
+        name="Taken With", description="What took the plate, where you know it and its file does not say", items=DEVICES
     )
     ignore_metadata: bpy.props.BoolProperty(
         name="Ignore Metadata",

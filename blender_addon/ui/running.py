@@ -98,6 +98,13 @@ def current() -> Run | None:
     return _current
 
 
+def is_busy(operator: type[bpy.types.Operator]) -> bool:
+    """Return whether a run is under way, and tell so in the tooltip of an operator that has to wait."""
+    if _current is not None:
+        operator.poll_message_set(f"The camera response of {_current.name} is running: wait for its end, or cancel it")
+    return _current is not None
+
+
 def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *, doing: str = "Estimating") -> Run:
     """Return a run that has just been started; there must be no other."""
     global _current

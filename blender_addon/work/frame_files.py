@@ -46,7 +46,7 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
     """Return the encoded samples of a frame as `ocio.plates.frame_files.read_frame` does, but for its alpha.
 
     It is taken as by Blender, which does not heed the file: as coverage by which the samples are multiplied (PREMUL) or
-    not (STRAIGHT); or, NONE and CHANNEL_PACKED, as no coverage, so that the frame has none.
+    not (STRAIGHT); as data (CHANNEL_PACKED); or not at all (NONE), so that the frame has none.
 
     Raises
     ------
@@ -55,7 +55,8 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
     """
     is_associated = None if alpha_mode == "" else alpha_mode == "PREMUL"
     frame = read_frame(path, is_encoded=is_encoded, is_associated=is_associated)
-    return replace(frame, alpha=None) if alpha_mode in ("NONE", "CHANNEL_PACKED") else frame
+    alpha = None if alpha_mode == "NONE" else frame.alpha
+    return replace(frame, alpha=alpha, is_coverage=alpha_mode != "CHANNEL_PACKED")
 
 
 def frames_of(plate: Plate) -> FrameSequence:

@@ -9,21 +9,14 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-import numpy as np
-import OpenImageIO as oiio
-
-from crfnet_core.errors import PlateError
-from crfnet_core.files import atomic_write
 from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Float32Array, Progress, counted_from, show_progress
+from crfnet_core.types import Progress, counted_from, show_progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
 from ocio.options import PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import all_or_none, export_luts
-from ocio.plates.exr import write_exr
-from ocio.plates.frame_files import read_frame
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linear_targets, linearize_plates
 
@@ -142,29 +135,7 @@ def _linearize(
 ) -> None:
     """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
-    if alpha_mode != "CHANNEL_PACKED":
-        linearize_plates(frames, targets, lut, options, progress=progress)
-        return
-    count, total = len(targets), 2 * len(targets)
-    linearize_plates(frames, targets, lut, options, progress=counted_from(progress, 0, total))
-    for done, (path, target) in enumerate(zip(sequence.paths, targets, strict=True), count + 1):
-        _add_channel(target, read_frame(path, is_encoded=options.is_encoded).alpha)
-        show_progress(progress, done, total)
-
-
-def _add_channel(target: Path, alpha: Float32Array | None) -> None:
-    """Add alpha to a linear EXR file as a channel of its own, by which the colours are not multiplied."""
-    if alpha is None:
-        return
-    source = oiio.ImageBuf(str(target))
-    header, colors = source.nativespec(), source.get_pixels("float")
-    if colors is None or source.has_error:
-        raise PlateError(f"{target}: was changed by another program meanwhile; bake again")
-    header.nchannels, header.channelnames, header.alpha_channel = 4, ("R", "G", "B", "A"), 3
-    if not header.getattribute("DateTime"):
-        header.attribute("DateTime", "")  # else OpenImageIO writes the present time; see `linear_header`
-    with atomic_write(target, overwrite=True, error=PlateError) as temporary:
-        write_exr(temporary, header, np.dstack([colors, alpha]), name=target)
+    linearize_plates(frames, targets, lut, options, progress=progress)
 
 
 def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:

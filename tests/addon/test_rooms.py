@@ -142,13 +142,22 @@ def test_the_map_of_a_room_names_its_modules(addon_folder, room):
     assert {line.split()[0] for line in text.split("\n\n")[1].splitlines()} == modules
 
 
-def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(root):
+def repeated(module, name):
+    """Return a constant of a module of the add-on, which is not imported: it would need Blender."""
+    tree = ast.parse(module.read_text(encoding="utf-8"))
+    assigned = [node for node in tree.body if isinstance(node, ast.Assign)]
+    (value,) = (node.value for node in assigned if ast.unparse(node.targets[0]) == name)
+    return ast.literal_eval(value)
+
+
+def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(addon_folder):
     from crfnet_core.image_io import HEIF_SUFFIXES
 
-    plates = ast.parse((root / "blender_addon" / "scene" / "plates.py").read_text(encoding="utf-8"))
-    values = {
-        node.targets[0].id: node.value
-        for node in plates.body
-        if isinstance(node, ast.Assign) and isinstance(node.targets[0], ast.Name)
-    }
-    assert ast.literal_eval(values["HEIF_SUFFIXES"]) == HEIF_SUFFIXES
+    assert repeated(addon_folder / "scene" / "plates.py", "HEIF_SUFFIXES") == HEIF_SUFFIXES
+
+
+def test_the_panel_knows_the_color_spaces_of_plates_by_the_name_that_they_are_given(addon_folder):
+    from ocio.output_files import OutputFiles
+
+    prefix = repeated(addon_folder / "ui" / "plate_settings.py", "COLOR_SPACE_PREFIX")
+    assert OutputFiles.named(Path(), [Path("plate.jpg")]).color_space == f"{prefix}plate"

@@ -89,7 +89,12 @@ def with_alpha(job, alpha_mode):
 
 @pytest.mark.parametrize(
     ("alpha_mode", "color", "alpha"),
-    [("STRAIGHT", (0.3, 0.2), (0, 0.5)), ("PREMUL", (0, 0.4), (0, 0.5)), ("NONE", (0.3, 0.2), None)],
+    [
+        ("STRAIGHT", (0.3, 0.2), (0, 0.5)),
+        ("PREMUL", (0, 0.4), (0, 0.5)),
+        ("CHANNEL_PACKED", (0.3, 0.2), (0, 0.5)),
+        ("NONE", (0.3, 0.2), None),
+    ],
 )
 @pytest.mark.parametrize("suffix", [".exr", ".png"])
 def test_alpha_is_taken_as_by_blender(tmp_path, alpha_mode, color, alpha, suffix):
@@ -100,19 +105,21 @@ def test_alpha_is_taken_as_by_blender(tmp_path, alpha_mode, color, alpha, suffix
     frame = read_plate_frame(write_image(tmp_path / f"a{suffix}", samples, **tags[suffix]), alpha_mode)
     np.testing.assert_allclose(frame.samples[0, :, 0] / frame.largest, color, atol=1e-4)
     assert (frame.alpha is None) == (alpha is None)
+    assert frame.is_coverage == (alpha_mode != "CHANNEL_PACKED")
     if alpha is not None:
         np.testing.assert_allclose(frame.alpha[0], alpha, atol=1e-4)
 
 
-def test_a_bake_that_adds_alpha_as_a_channel_can_be_cancelled(make_job, tmp_path, codes):
-    path = write_image(tmp_path / "a.png", np.dstack([codes, codes[..., :1]]))
+def test_alpha_that_is_no_coverage_is_written_in_the_same_pass(make_job, tmp_path, codes):
+    path = write_image(tmp_path / "a.png", np.dstack([codes, codes[..., :1]]), oiio__UnassociatedAlpha=1)
     job, calls = with_alpha(make_job(path), "CHANNEL_PACKED"), []
     (target,) = write(job, lambda *call: calls.append(call)).files
-    assert calls[-1] == (2, 2)
-    assert read_image(target).shape[2] == 4
+    assert calls[-1] == (1, 1)
+    assert np.abs(read_image(target)[..., :3] - CURVE.inverse(codes / 255)).max() < 1e-5
+    np.testing.assert_array_equal(read_image(target)[..., 3], codes[..., 0] / np.float32(255))
     target.unlink()
     with pytest.raises(CancelledError):
-        write(job, cancelled_after(2))
+        write(job, cancelled_after(1))
     assert not target.exists()
 
 

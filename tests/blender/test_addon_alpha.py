@@ -135,14 +135,47 @@ def test_in_movies_it_is_straight(addon, codes, tmp_path, composited, monkeypatc
     assert np.abs(read_image(tmp_path / "alpha_linear.0001.exr") - should).max() < limit
 
 
-def test_of_an_image_that_was_painted(addon, codes, alpha, composited):
+@pytest.mark.parametrize("mode", ["STRAIGHT", "PREMUL"])
+def test_what_was_painted_is_not_multiplied_by_alpha_whatever_the_setting(
+    addon, codes, alpha, mode, composited, in_editor, tmp_path
+):
+    """Blender divides by alpha where it reads a file; its compositor takes what is in memory for straight."""
     from blender_addon.scene.compositor import compositor_tree
 
-    image = bpy.data.images.new("painted", 256, 256, alpha=True)
-    image.pixels.foreach_set((np.dstack([codes, alpha])[::-1] / 255).astype(np.float32).ravel())
+    image = bpy.data.images.new("painted", 256, 256)
+    image.alpha_mode = mode
+    pixels = np.concatenate([codes, alpha], axis=2)[::-1] / 255
+    image.pixels.foreach_set(pixels.astype(np.float32).ravel())
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
-    (group,) = (node for node in compositor_tree(bpy.context.scene).nodes if node.type == "GROUP")
-    assert np.abs(composited(group.outputs[0]) - expected(image, codes, alpha, "STRAIGHT")).max() < 1e-6
+    tree = compositor_tree(bpy.context.scene)
+    (group,) = (node for node in tree.nodes if node.type == "GROUP")
+    should = expected(image, codes, alpha, "STRAIGHT")
+    assert np.abs(composited(group.outputs[0]) - should).max() < NEAREST
+    bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float", folder=str(tmp_path))
+    assert np.abs(read_image(tmp_path / "painted_linear.exr") - should).max() < 1e-6
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = image
+        show(after=True)
+        found = pixels_of(space.image)
+        show(after=False)
+    assert np.abs(found - should).max() < 1e-4
+    as_it_is = tree.nodes.new("CompositorNodeImage")
+    as_it_is.image = image
+    color = codes[40, 100] / 255
+    light = np.where(color > 0.04045, ((color + 0.055) / 1.055) ** 2.4, color / 12.92) * (alpha[40, 100] / 255)
+    assert np.abs(composited(as_it_is.outputs["Image"])[40, 100, :3] - light).max() < 0.01  # of 8 bits
+
+
+def test_a_color_space_takes_nothing_from_what_was_painted(addon, codes, tmp_path):
+    """Blender makes a generated image anew when its color space is set, so it has to be packed before."""
+    image = bpy.data.images.new("painted", 256, 256)
+    image.pixels.foreach_set(np.dstack([codes / 255, np.ones((256, 256))])[::-1].astype(np.float32).ravel())
+    painted = image.pixels[:1000]
+    with pytest.raises(RuntimeError, match="painted: pack or save it first"):
+        bpy.ops.crf.estimate_response(image=image.name, apply="COLORSPACE", folder=str(tmp_path))
+    assert image.pixels[:1000] == painted
+    image.pack()
+    assert bpy.ops.crf.estimate_response(image=image.name, apply="COLORSPACE", folder=str(tmp_path)) == {"FINISHED"}
 
 
 def test_a_changed_setting_waits_to_be_applied(addon, plate_file):

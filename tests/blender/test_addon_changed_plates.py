@@ -135,30 +135,6 @@ class TestAnotherFile:
         other.filepath = image.filepath
         assert told(other) == []
 
-
-class TestOpenedAgain:
-    """Blender hands out the image that has the file already, the first in the order of names."""
-
-    def test_the_plate_is_found_and_not_its_code_values(self, image, plate_file):
-        apply_nodes(image)
-        assert bpy.data.images.load(str(plate_file), check_existing=True) == image
-
-    def test_an_editor_that_shows_the_code_values_has_the_panel_of_the_plate(self, image, in_editor):
-        from blender_addon.scene import plates
-
-        apply_nodes(image)
-        with in_editor("IMAGE_EDITOR") as space:
-            space.image = bpy.data.images["plate.png code values"]
-            assert plates.active_datablock(bpy.context) == image
-            assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
-            assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
-            assert space.image == image
-
-    def test_the_code_values_are_no_plate_of_their_own(self, image):
-        apply_nodes(image)
-        with pytest.raises(RuntimeError, match="open the photograph itself"):
-            bpy.ops.crf.estimate_response(image="plate.png code values", apply="ESTIMATE")
-
     def test_a_file_that_is_read_anew_by_the_plate_alone_is_told(self, image, told, plate_file, codes):
         apply_nodes(image)
         write_image(plate_file, (255 - codes)[:-10])
@@ -199,6 +175,13 @@ def group_of(tree):
     return node
 
 
+def painted(codes):
+    image = bpy.data.images.new("painted", 256, 256)
+    pixels = np.concatenate([codes / 255, np.ones((256, 256, 1))], axis=2)
+    image.pixels.foreach_set(pixels[::-1].astype(np.float32).ravel())
+    return image
+
+
 class TestPainted:
     @pytest.mark.parametrize("is_packed", [False, True])
     def test_unsaved_changes_are_told_until_they_are_in_the_nodes(self, image, told, plate_file, is_packed):
@@ -214,9 +197,7 @@ class TestPainted:
             apply_nodes(image)
 
     def test_of_an_image_without_a_file_it_is_always_told(self, addon, codes, told):
-        image = bpy.data.images.new("painted", 256, 256)
-        pixels = np.concatenate([codes / 255, np.ones((256, 256, 1))], axis=2)
-        image.pixels.foreach_set(pixels[::-1].astype(np.float32).ravel())
+        image = painted(codes)
         bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
         assert told(image) == []
         apply_nodes(image)
@@ -224,6 +205,19 @@ class TestPainted:
         image.pack()
         apply_nodes(image)
         assert told(image) == []
+
+    @pytest.mark.parametrize("kind", ["file", "packed", "painted"])
+    def test_the_panel_looks_for_the_copies_once(self, image, told, codes, monkeypatch, kind):
+        from blender_addon.scene import code_values
+
+        plate = painted(codes) if kind == "painted" else image
+        if kind == "packed":
+            image.pack()
+        bpy.ops.crf.estimate_response(image=plate.name, apply="NODES")
+        asked, copies = [], code_values._copies
+        monkeypatch.setattr(code_values, "_copies", lambda plate: asked.append(plate) or copies(plate))
+        assert told(plate) == ([PAINTED] if kind == "painted" else [])
+        assert asked == [plate]
 
     def test_nothing_is_told_of_nodes_that_are_gone(self, image, told, tree, tmp_path, codes):
         apply_nodes(image)

@@ -96,6 +96,9 @@ def test_from_the_editors(image, plate_file, in_editor, editor):
         assert not bpy.ops.crf.apply_response.poll()
         assert bpy.ops.crf.estimate_response("INVOKE_DEFAULT", apply="NODES") == {"FINISHED"}  # no interface: execute
         assert bpy.ops.crf.apply_response.poll()
+        if editor == "IMAGE_EDITOR":
+            image.pixels[0] = 0.5  # unsaved changes
+            assert not bpy.ops.crf.apply_response.poll()
     assert "camera_response" in datablock
 
 

@@ -120,6 +120,12 @@ def test_changed_settings_are_known_until_they_are_applied(image):
     assert not is_to_be_applied(image)
 
 
+def test_a_photograph_that_is_none_is_told_by_its_name(image):
+    image.camera_response_settings.photographs.add().image = bpy.data.images.new("blank", 8, 8)
+    with pytest.raises(RuntimeError, match="blank, under More Photos: Blank images and test grids have no camera"):
+        bpy.ops.crf.estimate_response(image=image.name)
+
+
 def test_photographs_of_the_same_camera_are_estimated_together(image, plate_file, codes, tmp_path, estimate, in_editor):
     from blender_addon.scene.stored_estimate import restored
 

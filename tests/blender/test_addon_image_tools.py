@@ -65,6 +65,30 @@ def test_16_bits_and_alpha(addon, tmp_path, estimate, in_editor, is_packed):
     assert np.abs(found - np.concatenate([expected * alpha, alpha], axis=2)).max() < 1e-5
 
 
+def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):
+    """Not the one that Blender has read last, for another editor or a node; a frame that is missing is told."""
+    from blender_addon.scene import stored_estimate
+
+    for number in (1, 2, 4):
+        write_image(tmp_path / f"shot.{number:04d}.png", np.roll(codes, number, axis=0))
+    image = bpy.data.images.load(str(tmp_path / "shot.0001.png"))
+    image.source = "SEQUENCE"
+    bpy.ops.crf.estimate_response(image=image.name)
+    curve = stored_estimate.restored(image).curve
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image, space.image_user.frame_duration = image, 4
+        for number in (2, 4, 1):
+            bpy.context.scene.frame_set(number)
+            show(after=True)
+            expected = curve.inverse(np.roll(codes, number, axis=0) / 255)
+            assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
+            show(after=False)
+        bpy.context.scene.frame_set(3)
+        with pytest.raises(RuntimeError, match=r"shot\.0003\.png"):
+            show(after=True)
+        assert space.image == image
+
+
 @pytest.mark.parametrize("occasion", ["save", "undo", "disable"])
 def test_it_never_reaches_the_file(image, in_editor, tmp_path, occasion):
     import addon_utils
@@ -139,7 +163,8 @@ def picker(addon):
     from blender_addon.ui.image_editor.image_tools import CRF_OT_pick_gray
 
     class Driven:
-        invoke, modal, cancel, _pick = (vars(CRF_OT_pick_gray)[name] for name in ("invoke", "modal", "cancel", "_pick"))
+        names = ("invoke", "modal", "cancel", "poll", "_pick")
+        invoke, modal, cancel, poll, _pick = (vars(CRF_OT_pick_gray)[name] for name in names)
 
         def __init__(self):
             self.reports = []
@@ -160,6 +185,16 @@ def test_a_click_picks_gray(picker, image, codes):
     column, row = 64, 255 - 192  # three quarters from the bottom
     assert settings.gray == pytest.approx(codes[row - 2 : row + 3, column - 2 : column + 3].mean() / 255, abs=1e-6)
     assert settings.anchor == "GRAY"
+    assert context.calls[-2:] == [("cursor_modal_restore",), ("status_text_set", None)]
+
+
+@pytest.mark.parametrize("shown", [SimpleNamespace(type="IMAGE_EDITOR", image=None), SimpleNamespace(type="VIEW_3D")])
+def test_nothing_is_picked_in_an_editor_that_shows_no_plate_any_more(picker, image, shown):
+    context = Picking(image)
+    picker.invoke(context, None)
+    context.space_data = shown
+    click = SimpleNamespace(type="LEFTMOUSE", value="PRESS", mouse_x=65, mouse_y=95)
+    assert picker.modal(context, click) == {"CANCELLED"}
     assert context.calls[-2:] == [("cursor_modal_restore",), ("status_text_set", None)]
 
 

@@ -243,6 +243,7 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["depth"].enum_items.keys() == list(defaults.DEPTHS)
     assert settings["prior"].enum_items.keys() == [*defaults.PRIORS, "file"]
     assert settings["prior"].default == defaults.PRIORS[0]
+    assert settings["device"].enum_items.keys() == ["file", *defaults.DEVICES]
     assert (settings["exposure"].hard_min, settings["exposure"].hard_max) == (
         -defaults.MAX_EXPOSURE,
         defaults.MAX_EXPOSURE,

@@ -38,6 +38,16 @@ def test_the_prior_and_the_metadata_follow_the_settings(image, plate_file, estim
     assert (settings.prior, settings.prior_file, settings.ignore_metadata) == ("file", str(own), False)
 
 
+def test_what_took_the_plate_may_be_told(image, plate_file, estimate):
+    from crfnet_core.metadata import Device
+
+    bpy.ops.crf.estimate_response(image=image.name, device="phone")
+    assert_equal(stored(image), estimate(plate_file, device=Device.PHONE))
+    assert image.camera_response_settings.device == "phone"
+    bpy.ops.crf.estimate_response(image=image.name, device="file")
+    assert_equal(stored(image), estimate(plate_file))
+
+
 def test_a_prior_without_its_file_is_told(image):
     with pytest.raises(RuntimeError, match="choose a Prior File"):
         bpy.ops.crf.estimate_response(image=image.name, prior="file")

@@ -92,7 +92,8 @@ def test_where_drawing_is_slow_the_progress_is_drawn_more_seldom(waiting, interf
 
 
 def test_one_run_at_a_time(waiting, image):
-    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+    for name in ("estimate_response", "apply_response", "copy_response", "load_lut"):
+        operator = getattr(bpy.ops.crf, name)
         assert not operator.poll()
         with pytest.raises(RuntimeError, match="plate is running"):
             operator(image=image.name)

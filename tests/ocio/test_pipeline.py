@@ -1,6 +1,7 @@
 """The steps that command and add-on share: estimates, exposure, and files that are written together or not at all."""
 
 import dataclasses
+import errno
 import json
 import shutil
 
@@ -191,6 +192,16 @@ class TestAllOrNone:
         targets = linear_targets(tmp_path / "new" / "lin.%04d.exr", sequence)
         with pytest.raises(PlateError, match="1 of 12 frames failed"):
             bake(sequence, targets, LUT, PlateOptions())
+        assert not (tmp_path / "new").exists()
+
+    @pytest.mark.parametrize("refused", ["pathlib.Path.mkdir", "tempfile.mkdtemp"])
+    def test_a_folder_that_cannot_be_made_or_written_to_is_one_sentence(self, tmp_path, monkeypatch, refused):
+        def refuse(*_arguments, **_options):
+            raise OSError(errno.ENOSPC, "No space left on device")
+
+        monkeypatch.setattr(refused, refuse)
+        with pytest.raises(PlateError, match=r"new: cannot be written to \(No space left on device\); choose"):
+            bake(FrameSequence(()), [tmp_path / "new" / "lin.exr"], LUT, PlateOptions())
         assert not (tmp_path / "new").exists()
 
     def test_a_folder_in_which_opencolorio_finds_no_lut_is_fine_for_linear_plates(self, plate, tmp_path):

@@ -96,7 +96,8 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
         If its file cannot be read, or does not hold encoded values.
     """
     width, height = image.size
-    if is_heif(image):  # where Blender has a decoder, its codes are others by a few
+    # Where Blender decodes HEIC, its codes are others by a few; of a sequence, it has the frame that it read last.
+    if is_heif(image) or image.source == "SEQUENCE":
         return _codes_of_file(image, user)
     if not width * height:
         raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
@@ -105,8 +106,8 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
             f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
         )
     alpha = alpha_mode(image)
-    is_divided = alpha == "PREMUL" and image.source != "GENERATED"  # and rounded, by Blender
-    if image.is_float or is_divided:  # the pixels of floats are linear light by the color space, not code values
+    # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
+    if image.is_float or alpha == "PREMUL":
         return _codes_of_file(image, user)
     flat = np.empty(len(image.pixels), np.float32)
     image.pixels.foreach_get(flat)
@@ -128,7 +129,7 @@ def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32
         (path,) = read(frame_files.FrameSequence((shown,)), None).paths
         frame = frame_files.read_plate_frame(path, plate.alpha_mode, is_encoded=is_encoded)
     channels = [frame.samples / np.float32(frame.largest)]
-    if frame.alpha is not None:
+    if frame.alpha is not None and frame.is_coverage:
         channels.append(frame.alpha[..., None])
     return np.clip(np.concatenate(channels, axis=2, dtype=np.float32), 0, 1)[::-1]
 

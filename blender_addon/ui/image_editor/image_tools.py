@@ -83,7 +83,8 @@ class CRF_OT_pick_gray(bpy.types.Operator):
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
         """Pick the pixels under the mouse at the click; let the mouse wheel and the middle button move the view."""
-        if event.type in ("ESC", "RIGHTMOUSE") and event.value == "PRESS":
+        is_ended = event.type in ("ESC", "RIGHTMOUSE") and event.value == "PRESS"
+        if is_ended or not self.poll(context):  # the editor may show something else meanwhile
             self.cancel(context)
             return {"CANCELLED"}
         if event.type != "LEFTMOUSE" or event.value != "PRESS":

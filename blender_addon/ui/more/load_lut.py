@@ -39,13 +39,14 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate and no run; a script names its plate."""
-        if running.current() is not None:
+        """Return whether there is a plate and no run, and tell why if not; a script names its plate."""
+        if running.is_busy(cls):
             return False
         if not plates.is_in_editor(context):
             return True
-        datablock = plates.active_datablock(context)
-        return datablock is not None and not plates.obstacle(datablock)
+        if why := plates.obstacle_in(context):
+            cls.poll_message_set(why)
+        return not why
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose the file."""

@@ -47,12 +47,15 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has a response and there is no run; a script names its plate."""
-        if running.current() is not None:
+        """Return whether the plate has a response and there is no run, and tell why if not."""
+        if running.is_busy(cls):
             return False
         if not plates.is_in_editor(context):
             return True
-        return stored_estimate.is_stored(plates.active_datablock(context))
+        if stored_estimate.is_stored(plates.active_datablock(context)):
+            return True
+        cls.poll_message_set("Estimate the camera response of a plate first")
+        return False
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose among all other plates of the file."""
