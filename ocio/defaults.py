@@ -15,8 +15,8 @@ WINDOWS = 10
 #: The packaged priors, as in `crfnet_core.posterior`; the first is the default.
 PRIORS = ("camera", "any")
 
-#: Kinds of devices that a person may say took a photograph, as in `crfnet_core.metadata.Device`.
-DEVICES = ("phone", "compact", "camera")
+#: What a person may say took a photograph: kinds as in `crfnet_core.metadata.Device`, or a camera of another kind.
+DEVICES = ("phone", "compact", "camera", "other")
 
 #: Frames of a sequence from which its one response is estimated.
 FRAMES_ANALYZED = 8

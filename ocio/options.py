@@ -27,7 +27,7 @@ class EstimateOptions:
     use_metadata : bool
         Whether what the files say of their making counts.
     device : str or None
-        What took them, "phone", "compact" or "camera", as a person knows it; None to go by the files.
+        What took them, one of `ocio.defaults.DEVICES`, as a person knows it; None to go by the files.
     camera : str or None
         The stored camera whose response is the answer; None to estimate it from the photographs.
     """

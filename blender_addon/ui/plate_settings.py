@@ -34,8 +34,9 @@ PRIORS = (
 DEVICES = (
     ("file", "As the File Says", "Frames and pictures from web pages mostly say nothing: then choose, if you know"),
     ("phone", "Phone", "A phone or a tablet"),
-    ("compact", "Compact Camera", "A camera whose lens cannot be changed, but no drone or action camera"),
-    ("camera", "Camera", "A reflex or mirrorless camera with interchangeable lenses, but no cinema camera"),
+    ("compact", "Compact Camera", "A camera whose lens cannot be changed"),
+    ("camera", "Camera", "A reflex or mirrorless camera with interchangeable lenses"),
+    ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 
 #: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a

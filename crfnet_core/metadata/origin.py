@@ -106,7 +106,7 @@ class FileOrigin:
     is_developed : bool
         Whether a program developed the photograph from a raw file: XMP names the file, or the editor is such a program.
     is_told : bool
-        Whether a person has told the kind of device: see `as_told`.
+        Whether a person has told what took the photograph: see `as_told`.
     """
 
     device: Device
@@ -185,9 +185,13 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def as_told(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return the origin of a file of which a person knows the kind of device, whatever the file says of it."""
+    """Return the origin of a file of which a person knows what took it, whatever the file says.
+
+    UNKNOWN stands for a camera of another kind, or of one that nobody knows.
+    """
     rest = origin.words if origin.renderer else origin.words[1:]
-    return replace(origin, device=device, is_told=True, words=(f"taken with {_DEVICES[device]}", *rest))
+    words = (f"taken with {_DEVICES.get(device, 'a camera')}", *rest)
+    return replace(origin, device=device, is_told=True, words=words)
 
 
 def picture_shape(width: int, height: int) -> str:

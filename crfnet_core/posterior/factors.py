@@ -84,7 +84,7 @@ def findings(origin: FileOrigin) -> list[str]:
     is_still = origin.encoding != Encoding.MOVIE  # most movies are 16:9, and few name their camera
     rows = {
         origin.device: origin.device != Device.UNKNOWN,
-        "no camera": is_still and not origin.camera and origin.device == Device.UNKNOWN,
+        "no camera": is_still and not origin.camera and not origin.is_told,
         origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
         "developed": origin.is_developed,
         "editor": bool(origin.editor) and not origin.is_developed,

@@ -240,12 +240,17 @@ def _estimate(
         network=network,
         prior=prior,
         use_metadata=options.use_metadata,
-        device=Device(options.device) if options.device else None,
+        device=_device(options.device),
         windows=options.windows,
         seed=options.seed,
         progress=progress,
     )
     return with_camera(estimate, camera, prior=prior) if camera else estimate
+
+
+def _device(told: str | None) -> Device | None:
+    """Return what a person says took photographs."""
+    return None if told is None else Device.UNKNOWN if told == "other" else Device(told)
 
 
 def _stride(facts: PhotoFacts) -> int:

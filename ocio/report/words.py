@@ -167,7 +167,7 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
         return f"not to be trusted: {estimate.recognition.advice}"
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
     if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
-        more = "" if any(origin.device for origin in estimate.origins) else TELL_DEVICE
+        more = "" if any(origin.device or origin.is_told for origin in estimate.origins) else TELL_DEVICE
         return f"not to be trusted: {remedies[0]}{more}"
     return VERDICTS[estimate.verdict]
 

@@ -219,6 +219,14 @@ def test_what_is_told_counts_as_if_the_file_named_it():
     assert shares(photo(metadata=CAMERA), device=Device.PHONE) == pytest.approx(shares(photo(metadata=named)))
 
 
+def test_a_camera_of_another_kind_is_one_all_the_same():
+    made = photo(metadata=FileMetadata(width=600, height=400, file_format="JPEG"))
+    told, untold = shares(made, device=Device.UNKNOWN), shares(made)
+    phones, cameras = (told[family] / untold[family] for family in (Family.PHONE, Family.CAMERA))
+    assert phones == pytest.approx(cameras)
+    assert phones > 1
+
+
 def test_equal_files_shift_the_prior_once():
     one, two = (shares([photo(metadata=CAMERA)] * count) for count in (1, 2))
     assert two == pytest.approx(one)

@@ -184,6 +184,7 @@ def test_a_told_device_takes_the_place_of_the_files():
     assert (told.device, told.camera, told.editor, told.is_told) == (Device.PHONE, own.camera, own.editor, True)
     assert told.words == ("taken with a phone", *own.words[1:])
     assert FileOrigin.from_dict(asdict(told)) == told
+    assert as_told(own, Device.UNKNOWN).words == ("taken with a camera", *own.words[1:])
 
 
 def test_a_rendering_stays_one_whatever_is_told():
