@@ -25,6 +25,14 @@ def brightness_percent(error: float) -> float:
     return float(100 * error / np.sqrt(SAMPLES))
 
 
+def beside_limits(value: float, *limits: float) -> str:
+    """Return a number in words with two decimals, or more where two would hide on which side of a limit it lies."""
+    decimals = 2
+    while decimals < 6 and any(_sides(value, limit) != _sides(round(value, decimals), limit) for limit in limits):
+        decimals += 1
+    return f"{value:.{decimals}f}"
+
+
 def linearization_error(
     brightness: ArrayLike, true: ResponseCurve, estimated: ResponseCurve, *, counts: ArrayLike | None = None
 ) -> float:
@@ -76,3 +84,8 @@ def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 def peak_signal_to_noise(error: float) -> float:
     """Return the PSNR in decibels of a linearisation error above 0 (peak of the true linear image = 1)."""
     return float(-20 * np.log10(error))
+
+
+def _sides(value: float, limit: float) -> tuple[bool, bool]:
+    """Return whether a number is above a limit, and whether it is below."""
+    return value > limit, value < limit

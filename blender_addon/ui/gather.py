@@ -51,10 +51,10 @@ def gather_job(
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
     if is_estimated and chosen["apply"] == ApplyMode.ESTIMATE:
         raise AddonError("Apply As is set to Estimate Only: choose what to make of the response")
+    plate = plates.plate_of(datablock)
     _check_mode(datablock, ApplyMode(chosen["apply"]))
     if chosen["apply"] == ApplyMode.NODES:
         node_group.check_config()
-    plate = plates.plate_of(datablock)
     return Job(
         plate=plate,
         estimation=Estimation(

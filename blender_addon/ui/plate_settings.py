@@ -35,7 +35,7 @@ DEVICES = (
     ("file", "As the File Says", "Frames and pictures from web pages mostly say nothing: then choose, if you know"),
     ("phone", "Phone", "A phone or a tablet"),
     ("compact", "Compact Camera", "A camera whose lens cannot be changed"),
-    ("camera", "Camera", "A reflex or mirrorless camera with interchangeable lenses"),
+    ("camera", "Reflex or Mirrorless", "A camera with interchangeable lenses"),
     ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 

@@ -27,6 +27,7 @@ _BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
 _IN_BLENDER = {
     "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
     "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
+    "with --taken-with which": "with Taken With under Advanced which",
     ", or say with --primaries which all have": "",
     "crfnet camera list shows them": "choose another Camera under Advanced, or none",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",

@@ -13,7 +13,7 @@ from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measurement import Measurement
 from crfnet_core.errors import CalibrationError
 from crfnet_core.metadata import file_origin
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, beside_limits
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
@@ -77,13 +77,13 @@ def check_range(exposures: Exposures) -> None:
     """
     if exposures.range < LEAST_RANGE:
         raise CalibrationError(
-            f"the exposures span {exposures.range:.2f} stops, by EXIF or --times; a stack needs {LEAST_RANGE:g} or"
-            " more, from nearly nothing white to nearly everything white"
+            f"the exposures span {beside_limits(exposures.range, LEAST_RANGE)} stops, by EXIF or --times; a stack needs"
+            f" {LEAST_RANGE:g} or more, from nearly nothing white to nearly everything white"
         )
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP:
         raise CalibrationError(
-            f"two neighbouring exposures are {step:.2f} stops apart, by EXIF or --times; check the times, or take"
-            " frames one or two stops apart"
+            f"two neighbouring exposures are {beside_limits(step, LARGEST_STEP)} stops apart, by EXIF or --times; check"
+            " the times, or take frames one or two stops apart"
         )
 
 
@@ -140,14 +140,16 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
     _check_offsets(found, used)
     if residual > MOST_RESIDUAL:
         raise CalibrationError(
-            f"no single curve explains the frames: they are off by {residual:.2f} codes (RMS), at most"
-            f" {MOST_RESIDUAL:g} are usual; each was rendered or edited on its own (automatic tones, local tone"
+            "no single curve explains the frames: they are off by"
+            f" {beside_limits(residual, MOST_RESIDUAL)} codes (RMS), at most {MOST_RESIDUAL:g} are usual;"
+            " each was rendered or edited on its own (automatic tones, local tone"
             " mapping, HDR): switch that off, and give the camera's own files"
         )
     if (distance := nearest_known(found.curve)) > MOST_UNKNOWN and found.anchor.is_seen:
         raise CalibrationError(
-            f"the curve that explains the frames is far from every known response (E_est {distance:.2f}, at most"
-            f" {MOST_UNKNOWN:g}); the exposure times are probably wrong, so check them, or the files were edited"
+            "the curve that explains the frames is far from every known response (E_est"
+            f" {beside_limits(distance, MOST_UNKNOWN)}, at most {MOST_UNKNOWN:g}); the"
+            " exposure times are probably wrong, so check them, or the files were edited"
         )
 
 

@@ -124,9 +124,9 @@ class FileOrigin:
 
     @property
     def is_sent_copy(self) -> bool:
-        """Whether messengers and web sites send such files: no camera named, scaled, and strongly compressed."""
+        """Whether messengers and web sites send such files: no camera known, scaled, and strongly compressed."""
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
-        return is_compressed and self.is_scaled is True and not self.camera
+        return is_compressed and self.is_scaled is True and not self.camera and not self.is_told
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
@@ -185,13 +185,19 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
 
 
 def as_told(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return the origin of a file of which a person knows what took it, whatever the file says.
+    """Return the origin of a file of which a person knows what took it, whatever camera the file names.
 
-    UNKNOWN stands for a camera of another kind, or of one that nobody knows.
+    UNKNOWN stands for a camera of another kind, or of one that nobody knows. A rendering stays one.
+
+    Raises
+    ------
+    ValueError
+        If it is no device.
     """
-    rest = origin.words if origin.renderer else origin.words[1:]
-    words = (f"taken with {_DEVICES.get(device, 'a camera')}", *rest)
-    return replace(origin, device=device, is_told=True, words=words)
+    if origin.renderer:
+        return origin
+    words = (f"taken with {_DEVICES.get(Device(device), 'a camera')}", *origin.words[1:])
+    return replace(origin, device=Device(device), is_told=True, words=words)
 
 
 def picture_shape(width: int, height: int) -> str:

@@ -27,6 +27,12 @@ FACTORS: dict[str, tuple[float, ...]] = {
     Device.CAMERA: (0.03, 0.1, 1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
     Device.SCANNER: (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    # People know what took a picture whatever became of it: log footage, raw files and graded pictures are taken with
+    # cameras, too. Nobody says so of screenshots and renderings.
+    "told phone": (1, 0.03, 0.03, 0.3, 1, 0.05, 1, 1, 0.5),
+    "told compact": (0.03, 1, 0.15, 0.3, 1, 0.05, 1, 1, 0.5),
+    "told camera": (0.03, 0.1, 1, 1, 1, 0.05, 1, 1, 0.5),
+    "told other": (1, 1, 1, 1, 1, 0.3, 1, 1, 0.5),
     # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
     # data, renderings and screenshots never had it.
     "no camera": (0.2, 0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),
@@ -83,7 +89,8 @@ def findings(origin: FileOrigin) -> list[str]:
     """Return the rows of `FACTORS` that hold of a file."""
     is_still = origin.encoding != Encoding.MOVIE  # most movies are 16:9, and few name their camera
     rows = {
-        origin.device: origin.device != Device.UNKNOWN,
+        f"told {origin.device or 'other'}": origin.is_told,
+        origin.device: not origin.is_told and origin.device != Device.UNKNOWN,
         "no camera": is_still and not origin.camera and not origin.is_told,
         origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,
         "developed": origin.is_developed,

@@ -66,8 +66,8 @@ def add_network(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--taken-with",
         choices=DEVICES,
-        help="what took it, where you know and the file does not say: a phone, a compact camera, a camera with"
-        " interchangeable lenses, or a camera of another kind or of one that you do not know",
+        help="what took the photograph, if you know and its file does not say: a phone, a compact camera, a camera with"
+        " interchangeable lenses, or any other, such as a drone or one that you do not know",
     )
     parser.add_argument(
         "--ignore-metadata",

@@ -18,6 +18,9 @@ from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line
 
+#: Settings that are called otherwise than in `ocio.options` -> what people call them.
+SETTINGS = {"device": "--taken-with", "use_metadata": "use of metadata", "is_encoded": "--encoded"}
+
 
 @dataclass(frozen=True, kw_only=True)
 class PhotographRecord:
@@ -160,9 +163,10 @@ class Manifest:
         except (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError) as problem:
             raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
         if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
+            name, value = differing[0], settings.get(differing[0])
             raise PlateError(
-                f"{self.path}: was begun with another {differing[0].replace('_', ' ')} ({settings.get(differing[0])});"
-                " give the same, choose another folder, or add --overwrite"
+                f"{self.path}: was begun with another {SETTINGS.get(name, name.replace('_', ' '))}"
+                f" ({'none' if value is None else value}); give the same, choose another folder, or add --overwrite"
             )
         self.records = {record.photograph: record for record in records}
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.metrics import brightness_percent
+from crfnet_core.metrics import beside_limits, brightness_percent
 from crfnet_core.photo import Photo
 from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response_estimate import CameraAnswer
@@ -51,7 +51,7 @@ class PhotoFacts:
 def curve_error_words(estimate: ResponseEstimate) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    return f"{percent:.1f} % of the brightness range (E_est {_beside(estimate.uncertainty, GOOD_ERROR)})"
+    return f"{percent:.1f} % of the brightness range (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})"
 
 
 def shape_error_words(estimate: ResponseEstimate) -> str:
@@ -60,7 +60,7 @@ def shape_error_words(estimate: ResponseEstimate) -> str:
     It is not known of estimates that an earlier version of the add-on stored: there it is NaN.
     """
     shape = estimate.shape_uncertainty
-    return f"{_beside(shape, GOOD_STOPS, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
+    return f"{beside_limits(shape, GOOD_STOPS, USABLE_STOPS)} stop" if np.isfinite(shape) else ""
 
 
 def expected_errors(estimate: ResponseEstimate) -> str:
@@ -107,21 +107,14 @@ def provenance(estimate: ResponseEstimate) -> tuple[str, ...]:
     return tuple(filter(None, lines))
 
 
-def _beside(value: float, *limits: float) -> str:
-    """Return a number with two decimals, or more where two would hide on which side of a verdict's limit it lies."""
-    decimals = 2
-    while decimals < 6 and any((value > limit) != (round(value, decimals) > limit) for limit in limits):
-        decimals += 1
-    return f"{value:.{decimals}f}"
-
-
 def _metadata_words(estimate: ResponseEstimate) -> str:
     """Return what the metadata and who knows the camera say of the photographs; of several that differ, the first."""
     first, *others = [", ".join(origin.words) for origin in estimate.origins] or [""]
     if not first:
         return "no file metadata used"
     differing = sum(words != first for words in others)
-    more = f" (the first of {1 + len(others)}; {differing} differ)" if differing else ""
+    more = f" (the first of {1 + len(others)}; {differing} differ{'s' * (differing == 1)})" if differing else ""
     if estimate.origins[0].is_told:
-        return f"you and the file say: {first}{more}" if len(estimate.origins[0].words) > 1 else f"you say: {first}"
+        who = "you and the file say" if len(estimate.origins[0].words) > 1 else "you say"
+        return f"{who}: {first}{more}"
     return f"file metadata used: {first}{more}"

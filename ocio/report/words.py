@@ -35,7 +35,7 @@ REMEDIES = {
 }
 
 #: What else to do if nothing says what took the picture.
-TELL_DEVICE = ', or say with "Taken With" (--taken-with) which kind of camera took it'
+TELL_DEVICE = ", or say with --taken-with which kind of camera took it, if it is a photograph"
 
 
 def source_line(estimate: ResponseEstimate) -> str:
@@ -167,7 +167,8 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
         return f"not to be trusted: {estimate.recognition.advice}"
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
     if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
-        more = "" if any(origin.device or origin.is_told for origin in estimate.origins) else TELL_DEVICE
+        is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
+        more = "" if is_known or not estimate.windows else TELL_DEVICE
         return f"not to be trusted: {remedies[0]}{more}"
     return VERDICTS[estimate.verdict]
 

@@ -211,12 +211,8 @@ def test_the_device_may_be_told(use_metadata):
     (origin,) = told.origins
     assert (origin.device, origin.is_told) == (Device.PHONE, True)
     assert origin.is_scaled is (True if use_metadata else None)
-    assert told.families[Family.PHONE] > 0.8 > 0.4 > shares(made)[Family.PHONE]
-
-
-def test_what_is_told_counts_as_if_the_file_named_it():
-    named = replace(CAMERA, make="Apple", model="iPhone 6")
-    assert shares(photo(metadata=CAMERA), device=Device.PHONE) == pytest.approx(shares(photo(metadata=named)))
+    assert told.families[Family.PHONE] > 1.5 * shares(made)[Family.PHONE]
+    assert told.families[Family.CAMERA] < 0.1 * shares(made)[Family.CAMERA]
 
 
 def test_a_camera_of_another_kind_is_one_all_the_same():

@@ -188,6 +188,16 @@ def test_a_told_device_takes_the_place_of_the_files():
 
 
 def test_a_rendering_stays_one_whatever_is_told():
-    told = as_told(origin(renderer="Blender"), Device.CAMERA)
-    assert told.words[:2] == ("taken with a camera with interchangeable lenses", "rendered by Blender")
-    assert told.renderer == "Blender"
+    rendering = origin(renderer="Blender")
+    assert as_told(rendering, Device.CAMERA) == rendering
+
+
+def test_a_copy_of_what_is_known_is_not_refused():
+    sent = origin(width=1280, height=960, luma_table=scaled_table(ANNEX_K_LUMA, 75))
+    assert sent.is_sent_copy
+    assert not as_told(sent, Device.PHONE).is_sent_copy
+
+
+def test_what_is_no_device_is_refused():
+    with pytest.raises(ValueError, match="other"):
+        as_told(origin(), "other")

@@ -70,12 +70,12 @@ def test_the_lines_of_an_estimate(estimate):
     ("fields", "words"),
     [
         ({"shape_uncertainty": 0.3002}, "0.3002 stop"),
-        ({"shape_uncertainty": 0.2998}, "0.30 stop"),
+        ({"shape_uncertainty": 0.2998}, "0.2998 stop"),
         ({"shape_uncertainty": 0.3}, "0.30 stop"),
         ({"shape_uncertainty": 0.1101}, "0.1101 stop"),
         ({"shape_uncertainty": 0.114}, "0.114 stop"),
         ({"uncertainty": 1.504}, "(E_est 1.504)"),
-        ({"uncertainty": 1.496}, "(E_est 1.50)"),
+        ({"uncertainty": 1.496}, "(E_est 1.496)"),
         ({"uncertainty": 2.504}, "(E_est 2.50)"),
     ],
 )
@@ -134,7 +134,7 @@ def test_of_a_cameras_photograph_another_may_help(estimate):
 def test_several_photographs_are_told_by_the_first(estimate):
     camera, scan = file_origin(CANON), file_origin(dataclasses.replace(CANON, make="", model=""))
     assert report.basis(estimate(origins=(camera, camera))) == report.basis(estimate())
-    assert report.basis(estimate(origins=(camera, scan, camera))).endswith("lenses (the first of 3; 1 differ)")
+    assert report.basis(estimate(origins=(camera, scan, camera))).endswith("lenses (the first of 3; 1 differs)")
 
 
 def test_who_says_what_took_the_photograph(estimate):
@@ -149,10 +149,13 @@ def test_who_says_what_took_the_photograph(estimate):
 
 def test_an_unexplained_picture_of_no_known_device_asks_for_it(estimate):
     fields = {"verdict": Verdict.DO_NOT_TRUST, "families": {Family.UNEXPLAINED: 1.0}}
-    asked = "(--taken-with) which kind of camera took it."
+    asked = "with --taken-with which kind of camera took it, if it is a photograph."
     assert report.verdict_lines(estimate(**fields, origins=()))[0].endswith(asked)
     assert report.verdict_lines(estimate(**fields, origins=(file_origin(FileMetadata()),)))[0].endswith(asked)
     assert not report.verdict_lines(estimate(**fields))[0].endswith(asked)
+    drone = file_origin(dataclasses.replace(CANON, make="DJI", model="FC3170"))
+    assert not report.verdict_lines(estimate(**fields, origins=(drone,)))[0].endswith(asked)
+    assert not report.verdict_lines(estimate(**fields, origins=(), windows=()))[0].endswith(asked)
 
 
 def test_ignored_metadata_is_told(estimate):

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.metadata import FileMetadata, file_origin
+from crfnet_core.metadata import Device, FileMetadata, as_told, file_origin
 from crfnet_core.posterior import Family
 from crfnet_core.posterior.factors import FACTORS, LEAST_FACTOR, family_factors
 
@@ -72,3 +72,19 @@ def test_a_camera_file_as_written_is_hardly_edited():
 def test_a_profile_decides_for_linear_and_log():
     assert largest(profile="Linear Rec.709", file_format="TIFF") == "linear"
     assert largest(profile="S-Log3", file_format="TIFF") == "log"
+
+
+@pytest.mark.parametrize("device", [Device.PHONE, Device.COMPACT, Device.CAMERA, Device.UNKNOWN])
+def test_what_a_person_tells_says_nothing_of_log_and_linear_pictures(device):
+    """They are taken with cameras, too; of screenshots and renderings nobody says so."""
+    factors = FACTORS[f"told {device or 'other'}"]
+    told = dict(zip(Family, factors, strict=True))
+    own = [Family.PHONE, Family.COMPACT, Family.CAMERA] if device is Device.UNKNOWN else [Family(device)]
+    assert {told[family] for family in (*own, Family.LINEAR, Family.LOG, Family.EDITED)} == {1}
+    assert told[Family.UNEXPLAINED] < 1
+
+
+def test_what_a_person_tells_overrules_the_file():
+    assert largest(**OWN_CAMERA) == "camera"
+    factors = family_factors(as_told(origin(**OWN_CAMERA), Device.PHONE))
+    assert factors["phone"] > 10 * factors["camera"]

@@ -9,7 +9,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.unusual import (
     WRITTEN,
@@ -76,15 +76,19 @@ def test_p6_asks_once_as_of_files_that_name_no_camera_and_again_without_what_pro
     file = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     measure_unusual(scenes, {"m": fixed_model}, {"m": file}, kinds=kinds)
     stripped = FileMetadata(file_format="PNG")
-    assert asked == [(stripped, {}), (WRITTEN[UnusualKind.MESSENGER], {}), (stripped, {})] * 2
+    untold, told = {"device": None}, {"device": Device.CAMERA}
+    solarized = [(stripped, untold), (stripped, told)]
+    messenger = [(WRITTEN[UnusualKind.MESSENGER], untold), (stripped, untold), (stripped, told)]
+    assert asked == [*solarized, *messenger] * 2
     again = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
     assert again.verdicts == file.verdicts
-    ways = ("solarised or inverted", "messenger", "messenger, stripped")
+    ways = ("solarised or inverted", "solarised or inverted, camera told")
+    ways += ("messenger", "messenger, stripped", "messenger, camera told")
     assert list(again.verdicts) == [f"{name}, {way}" for name in "ab" for way in ways]
     measure_unusual(scenes, {"m": fixed_model}, {"m": again}, kinds=kinds)
-    assert len(asked) == 6
+    assert len(asked) == 10
     report = unusual_report(scenes, again, kinds)
-    assert report.overall == report.stripped == Accepted(4, 2)
+    assert report.overall == report.stripped == report.told == Accepted(4, 2)
     assert VerdictFile.opened(tmp_path / "p6.json", {"seed": 2}).verdicts == {}
 
 
@@ -98,6 +102,8 @@ def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
             "b, rendering, AgX": Verdict.DO_NOT_TRUST,
             "a, rendering, AgX, stripped": Verdict.GOOD,
             "b, rendering, AgX, stripped": Verdict.GOOD,
+            "a, rendering, AgX, camera told": Verdict.GOOD,
+            "b, rendering, AgX, camera told": Verdict.USABLE,
         },
     )
     report = {"m": unusual_report([File(scene, "a"), File(scene, "b")], file, (kind,))}
@@ -119,6 +125,7 @@ def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
     assert "| rendering, AgX | 50 % (1 of 2) |" in text
     assert "| **all kinds** | 50 % (1 of 2) |" in text
     assert "| all kinds, without metadata | 100 % (2 of 2) |" in text
+    assert "| all kinds, without metadata, a camera told | 100 % (2 of 2) |" in text
     assert "| m | 0 % (0 of 8) | 0 % (0 of 8) |" in text
     assert "| m, EXIF lost | 50 % (4 of 8) | 50 % (4 of 8) |" in text
     assert "| m, EXIF lost, kind told | 12 % (1 of 8) | 12 % (1 of 8) |" in text

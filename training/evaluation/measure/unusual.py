@@ -11,7 +11,7 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate import estimate_response
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.metadata import Device, FileMetadata
 from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photo import Photo
@@ -40,6 +40,9 @@ WRITTEN = {
     ),
 }
 
+#: Ways of asking about a picture, as the labels end: see `ways_of_picture`.
+AS_WRITTEN, STRIPPED, TOLD = "", "stripped", "camera told"
+
 #: Seed of the pictures. Each has a generator of its own, so a kind that is added last changes no other picture.
 SEED = 2017
 
@@ -51,7 +54,7 @@ def measure_unusual(
     *,
     kinds: Sequence[UnusualKind] = tuple(UnusualKind),
 ) -> None:
-    """Add to the verdict files what they lack, with the prior "camera", as their programs write files and without that.
+    """Add to the verdict files what they lack, with the prior "camera", asked in all `ways_of_picture`.
 
     Parameters
     ----------
@@ -65,39 +68,51 @@ def measure_unusual(
         The kinds.
     """
     listed = [(scene, kind) for scene in scenes for kind in kinds]
-    labels = {label(*one, is_stripped=way) for one in listed for way in (False, True)}
+    labels = {label(scene, kind, way) for scene, kind in listed for way in ways_of_picture(kind)}
     if all(labels <= file.verdicts.keys() for file in files.values()):
         return
     networks = {name: ResponseNetwork.load(folder) for name, folder in models.items()}
     pictures = tqdm(unusual_photographs(scenes, kinds), desc="P6", total=len(listed), unit="photograph")
     for (scene, kind), (_, photo) in zip(listed, pictures, strict=True):
-        written, stripped = label(scene, kind), label(scene, kind, is_stripped=True)
-        files_of_picture = {written: WRITTEN.get(kind, NO_CAMERA), stripped: NO_CAMERA}
         for name, file in files.items():
-            for one, metadata in files_of_picture.items():
-                if one not in file.verdicts:
-                    estimate = estimate_response(replace(photo, metadata=metadata), network=networks[name])
-                    file.verdicts[one] = estimate.verdict
+            for way, (metadata, device) in ways_of_picture(kind).items():
+                if (one := label(scene, kind, way)) not in file.verdicts:
+                    asked = replace(photo, metadata=metadata)
+                    file.verdicts[one] = estimate_response(asked, network=networks[name], device=device).verdict
                     file.save()
 
 
-def label(scene: SceneFile, kind: UnusualKind, *, is_stripped: bool = False) -> str:
-    """Return the label of a picture in the file that its program writes, or in one that was stripped of metadata."""
-    return f"{scene.name}, {kind}" + (", stripped" if is_stripped and kind in WRITTEN else "")
+def ways_of_picture(kind: UnusualKind) -> dict[str, tuple[FileMetadata, Device | None]]:
+    """Return way of asking about a picture -> the metadata of its file, and what the user says took it.
+
+    They are: as its program writes it; without any metadata; and the same by a user who says that a camera took it.
+    """
+    return {
+        AS_WRITTEN: (WRITTEN.get(kind, NO_CAMERA), None),
+        **({STRIPPED: (NO_CAMERA, None)} if kind in WRITTEN else {}),
+        TOLD: (NO_CAMERA, Device.CAMERA),
+    }
+
+
+def label(scene: SceneFile, kind: UnusualKind, way: str) -> str:
+    """Return the label of a picture that is asked about in a way; see `ways_of_picture`."""
+    return f"{scene.name}, {kind}" + (f", {way}" if way else "")
 
 
 def unusual_report(
     scenes: Sequence[SceneFile], file: VerdictFile, kinds: Sequence[UnusualKind] = tuple(UnusualKind)
 ) -> UnusualReport:
     """Return how many pictures a model accepts, from its complete verdicts."""
-    written, stripped = (
+    written, stripped, told = (
         accepted_by_kind(
-            (kind, file.verdicts[label(scene, kind, is_stripped=way)]) for kind in kinds for scene in scenes
+            (kind, file.verdicts[label(scene, kind, way if way in ways_of_picture(kind) else AS_WRITTEN)])
+            for kind in kinds
+            for scene in scenes
         )
-        for way in (False, True)
+        for way in (AS_WRITTEN, STRIPPED, TOLD)
     )
     by_kind = {kind.value: counts for kind, counts in written.items()}
-    return UnusualReport(by_kind, accepted_overall(written), accepted_overall(stripped))
+    return UnusualReport(by_kind, *map(accepted_overall, (written, stripped, told)))
 
 
 def unusual_photographs(

@@ -10,8 +10,9 @@ from training.evaluation.report.real.content import RealReport, ways_of
 
 INTRODUCTION = """\
 Every kind of picture of every test scene, as a file that names no camera, with the prior "camera". Blender's renders
-and messengers' copies have the metadata that these programs write; the last row is without. "Accepted" are those that
-the model calls "good" or "usable": the fewer the better.
+and messengers' copies have the metadata that these programs write; the last row but one is without, and so is the last
+row, asked by a user who says, rightly or wrongly, that a camera took them. "Accepted" are those that the model calls
+"good" or "usable": the fewer the better.
 """
 
 REFUSED_TEXT = """\
@@ -52,11 +53,14 @@ class UnusualReport:
         Of all kinds together.
     stripped : Accepted
         The same without any metadata.
+    told : Accepted
+        Without any metadata, asked by a user who says that a camera took them.
     """
 
     kinds: dict[str, Accepted]
     overall: Accepted
     stripped: Accepted
+    told: Accepted
 
 
 def unusual_section(reports: dict[str, UnusualReport], real: dict[str, RealReport] | None) -> list[str]:
@@ -66,6 +70,7 @@ def unusual_section(reports: dict[str, UnusualReport], real: dict[str, RealRepor
     rows = [[kind, *(_cell(reports[name].kinds[kind]) for name in models)] for kind in kinds]
     rows.append(["**all kinds**", *(_cell(reports[name].overall) for name in models)])
     rows.append(["all kinds, without metadata", *(_cell(reports[name].stripped) for name in models)])
+    rows.append(["all kinds, without metadata, a camera told", *(_cell(reports[name].told) for name in models)])
     parts = ["## P6: pictures that no response explains\n", INTRODUCTION]
     parts.append(rows_of(["kind", *(f"{name}: accepted" for name in models)], rows))
     if real:
