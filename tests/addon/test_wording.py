@@ -6,6 +6,7 @@ import pytest
 
 from blender_addon.work.wording import american, capitalized, panel_line, report_line
 from crfnet_core.posterior import Verdict
+from ocio.report.words import TELL_DEVICE
 
 
 @pytest.mark.parametrize(
@@ -25,6 +26,11 @@ def test_messages_are_american_and_paths_stay(british, expected):
 def test_the_panel_leaves_the_figure_of_the_papers_out():
     line = "Expect the curve to be off by 1.9 % of the brightness range (E_est 0.60); gamma 2.2 is off by 10 %."
     assert panel_line(line) == "Expect the curve to be off by 1.9 % of the brightness range; gamma 2.2 is off by 10 %."
+
+
+def test_the_panel_names_its_own_settings():
+    line = panel_line(f"The estimate is not to be trusted{TELL_DEVICE}.")
+    assert line.endswith(", or say with Taken With under Advanced which kind of camera took it, if it is a photograph.")
 
 
 def test_a_report_names_the_verdict_and_the_warning(estimate, plate_file):
