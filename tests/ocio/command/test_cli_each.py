@@ -112,6 +112,8 @@ def test_other_settings_are_refused(estimate, photographs, tmp_path):
     done = estimate(photographs, *QUICK, "--prior", "any")
     assert done.code == BAD_INPUT
     assert "was begun with another prior (camera)" in done.err
+    done = estimate(photographs, *QUICK, "--taken-with", "phone")
+    assert "was begun with another --taken-with (none)" in done.err
     assert tree(tmp_path / "out") == before
     assert estimate(photographs, *QUICK, "--prior", "any", "--overwrite").code == 0
     assert manifest_lines(tmp_path)[0]["prior"] == "any"
