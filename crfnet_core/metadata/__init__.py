@@ -10,6 +10,7 @@ exif            what OpenImageIO leaves out of EXIF
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name
+encodings       what the file says of its code values
 origin          what follows: device, editor, scaled or not, saved again or not, and this in words
 
 Nothing here opens a file: `image_io` hands over the header and the segments. Damaged metadata is never an error.

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from enum import StrEnum
 from typing import Any
 
 from crfnet_core.metadata.devices import Device, camera_name, device_of
 from crfnet_core.metadata.editors import editor_name, is_developer
+from crfnet_core.metadata.encodings import FOOTAGE, Encoding, encoding_of, encoding_words
 from crfnet_core.metadata.file_metadata import FileMetadata
 from crfnet_core.metadata.jpeg import ijg_quality
 
@@ -49,32 +48,6 @@ _DEVICES = {
     Device.CAMERA: "a camera with interchangeable lenses",
     Device.SCANNER: "a scanner of film or paper",
 }
-
-
-class Encoding(StrEnum):
-    """What the file says of its code values, if it says anything but a picture for a display."""
-
-    LINEAR = "scene-linear"
-    LOG = "log"
-    FOOTAGE = "film or video"
-    MOVIE = "movie"
-    UNKNOWN = ""
-
-
-#: Formats of files that hold no still photographs -> what their values are.
-FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
-
-#: Transfer characteristics of DPX that say nothing of the values.
-_UNSPECIFIC_TRANSFERS = ("", "Undefined", "User defined")
-
-#: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
-_ENCODINGS = (
-    (Encoding.LINEAR, r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|g10\b|gamma ?1\.0\b"),
-    (
-        Encoding.LOG,
-        r"\bs-?log|\bv-?log|\bc-?log|\bn-?log|\bf-?log|\blog ?c|log3g|\blogarithmic|\bcineon|\bprinting density",
-    ),
-)
 
 
 @dataclass(frozen=True)
@@ -163,7 +136,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
     is_resaved = True if editor or is_scaled else encoded_by
-    encoding = _encoding(metadata)
+    encoding = encoding_of(metadata)
     return FileOrigin(
         device=device,
         camera=camera,
@@ -177,7 +150,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
             f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
             *_saved_words(editor, is_developed, is_scaled, is_resaved, quality),
             *_scaled_words(metadata, is_scaled),
-            *_encoding_words(metadata, encoding),
+            *encoding_words(metadata, encoding),
         ),
         renderer=metadata.renderer,
         is_developed=is_developed,
@@ -259,13 +232,6 @@ def _is_native(shorter: int, longer: int) -> bool:
     return blocks and shorter * longer >= NATIVE_PIXELS and picture_shape(longer, shorter) != "other"
 
 
-def _encoding(metadata: FileMetadata) -> Encoding:
-    """Return what the profile, or DPX's transfer characteristic, says of the code values."""
-    profile = metadata.profile.casefold()
-    found = (encoding for encoding, words in _ENCODINGS if re.search(words, profile))
-    return next(found, FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN))
-
-
 def _taken_words(camera: str, device: Device) -> str:
     """Return which camera took the photograph."""
     if not camera:
@@ -298,13 +264,3 @@ def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
     if exif_size and sorted(exif_size) != sorted((metadata.width, metadata.height)):
         return [f"scaled from {exif_size[0]} x {exif_size[1]} to {now} pixels after the camera wrote it"]
     return [f"probably scaled after the camera wrote it: it has {now} pixels"]
-
-
-def _encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
-    """Return what the file says of its code values, if it says anything."""
-    if encoding == Encoding.MOVIE:
-        return ["a frame of a movie"]
-    if encoding == Encoding.FOOTAGE and metadata.profile in _UNSPECIFIC_TRANSFERS:
-        return [f"{metadata.file_format} files hold {encoding}"]
-    name = "transfer tag" if metadata.file_format in FOOTAGE else "profile"
-    return [f'its values are {encoding}: so says its {name} "{metadata.profile}"'] if encoding else []

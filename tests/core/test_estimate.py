@@ -9,7 +9,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import estimate_response
 from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import Device, FileMetadata, file_origin
+from crfnet_core.metadata import FileMetadata, file_origin
 from crfnet_core.metrics import estimation_error
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.network.pooling import inliers, robust_mean
@@ -168,10 +168,10 @@ def test_the_same_photograph_twice_says_no_more_than_once(bank):
     assert twice.families == pytest.approx(once.families)
 
 
-def shares(made, *, use_metadata=True, device=None, network=None):
+def shares(made, *, use_metadata=True, network=None):
     """The families of an estimate in which the photograph says nothing."""
     nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
-    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata, device=device).families
+    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata).families
 
 
 def test_metadata_shifts_the_prior():
@@ -201,26 +201,6 @@ def test_metadata_can_be_ignored():
     bare = asked(photo(), FakeNetwork([evidence_for(CENTRE)]))
     assert (ignored.origins, ignored.warnings) == ((), ())
     assert ignored.families == bare.families
-
-
-@pytest.mark.parametrize("use_metadata", [True, False])
-def test_the_device_may_be_told(use_metadata):
-    made = photo(metadata=FileMetadata(width=600, height=400, file_format="JPEG"))
-    nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
-    told = asked(made, FakeNetwork([nothing]), use_metadata=use_metadata, device=Device.PHONE)
-    (origin,) = told.origins
-    assert (origin.device, origin.is_told) == (Device.PHONE, True)
-    assert origin.is_scaled is (True if use_metadata else None)
-    assert told.families[Family.PHONE] > 1.5 * shares(made)[Family.PHONE]
-    assert told.families[Family.CAMERA] < 0.1 * shares(made)[Family.CAMERA]
-
-
-def test_a_camera_of_another_kind_is_one_all_the_same():
-    made = photo(metadata=FileMetadata(width=600, height=400, file_format="JPEG"))
-    told, untold = shares(made, device=Device.UNKNOWN), shares(made)
-    phones, cameras = (told[family] / untold[family] for family in (Family.PHONE, Family.CAMERA))
-    assert phones == pytest.approx(cameras)
-    assert phones > 1
 
 
 def test_equal_files_shift_the_prior_once():

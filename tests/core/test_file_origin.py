@@ -5,8 +5,9 @@ from dataclasses import asdict
 import pytest
 
 from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
+from crfnet_core.metadata.encodings import Encoding
 from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
-from crfnet_core.metadata.origin import Encoding, picture_shape
+from crfnet_core.metadata.origin import picture_shape
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}

@@ -12,7 +12,8 @@ from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, re
 from crfnet_core.files import json_text
 from crfnet_core.metadata import FileOrigin
 from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.origin import SHAPES, Encoding
+from crfnet_core.metadata.encodings import Encoding
+from crfnet_core.metadata.origin import SHAPES
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response_estimate import SCHEMA_VERSION
 from tests.helpers.cameras import photograph

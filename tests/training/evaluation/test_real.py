@@ -31,12 +31,7 @@ UNIFORM = np.linspace(0, 1, 1024)
 POWERS = {"two": 1.8, "three": 1.4, "four": 2.6}
 
 #: The ways in which P4 asks the fixed model.
-WAYS = (
-    "fixed_model",
-    "fixed_model, EXIF lost",
-    "fixed_model, EXIF lost, kind told",
-    "fixed_model, metadata ignored",
-)
+WAYS = tuple(f"fixed_model{way}" for way in ("", ", EXIF lost", ", EXIF lost, kind told", ", metadata ignored"))
 
 #: Columns of the list of data/real_bodies that say where a file comes from, and the name of an editor.
 EXIF, EDITOR = ("exif_make", "exif_model", "exif_software", "original_size"), "Adobe Photoshop 23.1 (Macintosh)"

@@ -1,0 +1,51 @@
+"""What a file says of its code values: linear, log, film or video, or nothing."""
+
+from __future__ import annotations
+
+import re
+from enum import StrEnum
+
+from crfnet_core.metadata.file_metadata import FileMetadata
+
+
+class Encoding(StrEnum):
+    """What the file says of its code values, if it says anything but a picture for a display."""
+
+    LINEAR = "scene-linear"
+    LOG = "log"
+    FOOTAGE = "film or video"
+    MOVIE = "movie"
+    UNKNOWN = ""
+
+
+#: Formats of files that hold no still photographs -> what their values are.
+FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
+
+#: Transfer characteristics of DPX that say nothing of the values.
+_UNSPECIFIC_TRANSFERS = ("", "Undefined", "User defined")
+
+#: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
+_ENCODINGS = (
+    (Encoding.LINEAR, r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|g10\b|gamma ?1\.0\b"),
+    (
+        Encoding.LOG,
+        r"\bs-?log|\bv-?log|\bc-?log|\bn-?log|\bf-?log|\blog ?c|log3g|\blogarithmic|\bcineon|\bprinting density",
+    ),
+)
+
+
+def encoding_of(metadata: FileMetadata) -> Encoding:
+    """Return what the profile, or DPX's transfer characteristic, says of the code values."""
+    profile = metadata.profile.casefold()
+    found = (encoding for encoding, words in _ENCODINGS if re.search(words, profile))
+    return next(found, FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN))
+
+
+def encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:
+    """Return the same in words, if the file says anything."""
+    if encoding == Encoding.MOVIE:
+        return ["a frame of a movie"]
+    if encoding == Encoding.FOOTAGE and metadata.profile in _UNSPECIFIC_TRANSFERS:
+        return [f"{metadata.file_format} files hold {encoding}"]
+    name = "transfer tag" if metadata.file_format in FOOTAGE else "profile"
+    return [f'its values are {encoding}: so says its {name} "{metadata.profile}"'] if encoding else []
