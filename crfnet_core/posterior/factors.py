@@ -28,11 +28,12 @@ FACTORS: dict[str, tuple[float, ...]] = {
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
     Device.SCANNER: (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
     # People know what took a picture whatever became of it: log footage, raw files and graded pictures are taken with
-    # cameras, too. Nobody says so of screenshots and renderings.
+    # cameras, too. Nobody says so of screenshots and renderings. What a scanner gives is the same, whoever says so.
     "told phone": (1, 0.03, 0.03, 0.3, 1, 0.05, 1, 1, 0.5),
     "told compact": (0.03, 1, 0.15, 0.3, 1, 0.05, 1, 1, 0.5),
     "told camera": (0.03, 0.1, 1, 1, 1, 0.05, 1, 1, 0.5),
     "told other": (1, 1, 1, 1, 1, 0.3, 1, 1, 0.5),
+    "told scanner": (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
     # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
     # data, renderings and screenshots never had it.
     "no camera": (0.2, 0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),

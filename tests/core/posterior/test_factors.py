@@ -88,3 +88,9 @@ def test_what_a_person_tells_overrules_the_file():
     assert largest(**OWN_CAMERA) == "camera"
     factors = family_factors(as_told(origin(**OWN_CAMERA), Device.PHONE))
     assert factors["phone"] > 10 * factors["camera"]
+
+
+def test_what_a_scanner_gives_is_the_same_whoever_says_so():
+    assert FACTORS["told scanner"] == FACTORS[Device.SCANNER]
+    factors = family_factors(as_told(origin(), Device.SCANNER))
+    assert max(factors, key=factors.__getitem__) == "film"
