@@ -1,15 +1,22 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What operators share: the plate that a script names, and how they report a problem."""
 
+from collections.abc import Callable
+from typing import TYPE_CHECKING, ClassVar
+
 import bpy
 
 from ..scene import plates, stored_estimate
 from ..work.errors import AddonError, CancelledError
 from ..work.wording import american
+from . import running
+
+#: Why nothing can be done with the response of a plate that has none.
+NO_ESTIMATE = "Estimate the camera response of a plate first"
 
 
 class ChosenPlate:
-    """The arguments of an operator that name its plate; the panel leaves them empty, for the active one."""
+    """An operator on one plate, and the arguments that name it; the panel leaves them empty, for the active one."""
 
     image: bpy.props.StringProperty(
         name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
@@ -19,6 +26,22 @@ class ChosenPlate:
         description="Name of the movie clip; empty for the active plate",
         options={"HIDDEN", "SKIP_SAVE"},
     )
+
+    if TYPE_CHECKING:  # of bpy.types.Operator
+        poll_message_set: ClassVar[Callable[[str], None]]
+
+    @classmethod
+    def poll(cls, context: bpy.types.Context) -> bool:
+        """Return whether it can run on the editor's plate now, and tell why if not; a script names its plate."""
+        why = running.why_busy() or (cls.why_not(context) if plates.is_in_editor(context) else "")
+        if why:
+            cls.poll_message_set(why)
+        return not why
+
+    @classmethod
+    def why_not(cls, context: bpy.types.Context) -> str:
+        """Return why the operator cannot run on the plate of an editor, or an empty text."""
+        return plates.obstacle_in(context)
 
     def chosen_plate(self, context: bpy.types.Context) -> plates.Datablock:
         """Return the image or clip; an AddonError if there is none."""

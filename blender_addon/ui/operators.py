@@ -15,7 +15,7 @@ from ..work.errors import AddonError, expected_errors
 from ..work.wording import report_line
 from . import running
 from .image_editor import comparison
-from .operator_base import ChosenPlate, failed
+from .operator_base import NO_ESTIMATE, ChosenPlate, failed
 from .plate_settings import CHOICES, PlateChoices, remember_applied
 from .preferences import APPLY_MODES
 
@@ -131,17 +131,6 @@ class CRF_OT_estimate_response(PlateOperator, bpy.types.Operator):
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate and no other run, and tell why if not; a script names its plate."""
-        if running.is_busy(cls):
-            return False
-        if not plates.is_in_editor(context):
-            return True
-        if why := plates.obstacle_in(context):
-            cls.poll_message_set(why)
-        return not why
-
 
 class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
     """Apply the response that was estimated for the active plate, with the present settings."""
@@ -154,18 +143,10 @@ class CRF_OT_apply_response(PlateOperator, bpy.types.Operator):
     is_estimated = True
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has an estimate and there is no other run, and tell why if not."""
-        if running.is_busy(cls):
-            return False
-        if not plates.is_in_editor(context):
-            return True
-        datablock, why = plates.active_datablock(context), "Estimate the camera response of a plate first"
-        if stored_estimate.is_stored(datablock):
-            why = plates.obstacle(datablock)
-        if why:
-            cls.poll_message_set(why)
-        return not why
+    def why_not(cls, context: bpy.types.Context) -> str:
+        """Return that the plate has no estimate, or why this cannot be applied."""
+        datablock = plates.active_datablock(context)
+        return plates.obstacle(datablock) if stored_estimate.is_stored(datablock) else NO_ESTIMATE
 
 
 class CRF_OT_cancel_run(bpy.types.Operator):

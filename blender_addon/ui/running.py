@@ -98,11 +98,11 @@ def current() -> Run | None:
     return _current
 
 
-def is_busy(operator: type[bpy.types.Operator]) -> bool:
-    """Return whether a run is under way, and tell so in the tooltip of an operator that has to wait."""
-    if _current is not None:
-        operator.poll_message_set(f"The camera response of {_current.name} is running: wait for its end, or cancel it")
-    return _current is not None
+def why_busy() -> str:
+    """Return that a run is under way, for the tooltip of an operator that has to wait; empty if there is none."""
+    if _current is None:
+        return ""
+    return f"The camera response of {_current.name} is running: wait for its end, or cancel it"
 
 
 def start(context: bpy.types.Context, name: str, function: Callable[..., Any], *, doing: str = "Estimating") -> Run:

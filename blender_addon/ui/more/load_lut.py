@@ -37,17 +37,6 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
     )
     filter_glob: bpy.props.StringProperty(default="*.spi1d;*.cube;*.clf", options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate and no run, and tell why if not; a script names its plate."""
-        if running.is_busy(cls):
-            return False
-        if not plates.is_in_editor(context):
-            return True
-        if why := plates.obstacle_in(context):
-            cls.poll_message_set(why)
-        return not why
-
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose the file."""
         context.window_manager.fileselect_add(self)

@@ -12,7 +12,7 @@ from ...scene import plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
 from .. import running
 from ..image_editor import comparison
-from ..operator_base import ChosenPlate, failed
+from ..operator_base import NO_ESTIMATE, ChosenPlate, failed
 from ..plate_settings import CHOICES, remember_applied
 
 if TYPE_CHECKING:
@@ -46,16 +46,9 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
     targets: bpy.props.CollectionProperty(type=CRF_OtherPlate, options={"HIDDEN", "SKIP_SAVE"})
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate has a response and there is no run, and tell why if not."""
-        if running.is_busy(cls):
-            return False
-        if not plates.is_in_editor(context):
-            return True
-        if stored_estimate.is_stored(plates.active_datablock(context)):
-            return True
-        cls.poll_message_set("Estimate the camera response of a plate first")
-        return False
+    def why_not(cls, context: bpy.types.Context) -> str:
+        """Return that the plate has no response."""
+        return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose among all other plates of the file."""
