@@ -69,7 +69,7 @@ def estimate_response(
     use_metadata : bool
         Whether what the files say of their making counts: see `crfnet_core.metadata`.
     device : Device, optional
-        What took them all, where it is known: it counts as if the files named it. UNKNOWN is a camera of another kind.
+        What took them all, where somebody knows, in place of what the files say; UNKNOWN is a camera of another kind.
     windows : int
         Windows of each photograph.
     seed : int

@@ -141,15 +141,15 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
     if residual > MOST_RESIDUAL:
         raise CalibrationError(
             "no single curve explains the frames: they are off by"
-            f" {beside_limits(residual, MOST_RESIDUAL)} codes (RMS), at most {MOST_RESIDUAL:g} are usual;"
-            " each was rendered or edited on its own (automatic tones, local tone"
-            " mapping, HDR): switch that off, and give the camera's own files"
+            f" {beside_limits(residual, MOST_RESIDUAL)} codes (RMS), at most {MOST_RESIDUAL:g} are usual; each was"
+            " rendered or edited on its own (automatic tones, local tone mapping, HDR): switch that off, and give the"
+            " camera's own files"
         )
     if (distance := nearest_known(found.curve)) > MOST_UNKNOWN and found.anchor.is_seen:
         raise CalibrationError(
             "the curve that explains the frames is far from every known response (E_est"
-            f" {beside_limits(distance, MOST_UNKNOWN)}, at most {MOST_UNKNOWN:g}); the"
-            " exposure times are probably wrong, so check them, or the files were edited"
+            f" {beside_limits(distance, MOST_UNKNOWN)}, at most {MOST_UNKNOWN:g}); the exposure times are probably"
+            " wrong, so check them, or the files were edited"
         )
 
 

@@ -169,8 +169,9 @@ def as_told(origin: FileOrigin, device: Device) -> FileOrigin:
     """
     if origin.renderer:
         return origin
-    words = (f"taken with {_DEVICES.get(Device(device), 'a camera')}", *origin.words[1:])
-    return replace(origin, device=Device(device), is_told=True, words=words)
+    device = Device(device)
+    words = (f"taken with {_DEVICES.get(device, 'a camera')}", *origin.words[1:])
+    return replace(origin, device=device, is_told=True, words=words)
 
 
 def picture_shape(width: int, height: int) -> str:

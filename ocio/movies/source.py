@@ -1,4 +1,4 @@
-"""What plates come from, a movie or image files: the one place that tells them apart."""
+"""What plates come from: the frames of a movie, or image files."""
 
 from __future__ import annotations
 

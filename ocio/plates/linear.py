@@ -226,7 +226,7 @@ class _Conversion:
                 values = values @ matrix.T.astype(np.float32)
             if frame.alpha is not None:
                 alpha = frame.alpha[rows, :, None]
-                values = values * alpha if frame.is_coverage else values
+                values = values * alpha if is_multiplied else values
                 linear[rows, :, 3:] = alpha
             linear[rows, :, :3] = values
         return linear

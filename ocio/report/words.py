@@ -168,7 +168,8 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
     if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
         is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
-        more = "" if is_known or not estimate.windows else TELL_DEVICE
+        is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
+        more = "" if is_known or is_stored else TELL_DEVICE
         return f"not to be trusted: {remedies[0]}{more}"
     return VERDICTS[estimate.verdict]
 

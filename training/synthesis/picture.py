@@ -20,6 +20,18 @@ from training.synthesis.sensor import Planes
 LUMA = (0.299, 0.587, 0.114)
 
 
+def _in_rows(table: Table) -> Float64Array:
+    """Return the 64 divisors of a table row by row: a JPEG file holds them in zigzags between two sides."""
+    zigzag = sorted(np.ndindex(8, 8), key=lambda place: (sum(place), place[0] if sum(place) % 2 else place[1]))
+    rows = np.empty((8, 8))
+    rows[tuple(zip(*zigzag, strict=True))] = table
+    return rows.ravel()
+
+
+#: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
+STANDARD_TABLES = tuple(_in_rows(table) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA))
+
+
 @dataclass(frozen=True)
 class Jpeg:
     """A JPEG compression.
@@ -41,8 +53,7 @@ class Jpeg:
     @property
     def tables(self) -> list[list[int]]:
         """The two tables of quantisation, 64 integers each, row by row."""
-        standard = [in_rows(table) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA)]
-        bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in standard]
+        bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in STANDARD_TABLES]
         return [np.clip(np.rint(table * self.scale), 1, 255).astype(int).tolist() for table in bent]
 
     def compressed(self, codes: Uint8Array) -> Uint8Array:
@@ -54,14 +65,6 @@ class Jpeg:
             Image.fromarray(frame).save(file, "JPEG", qtables=tables, subsampling=self.subsampling)
             pictures.append(np.asarray(Image.open(file)))
         return np.stack(pictures)
-
-
-def in_rows(table: Table) -> Float64Array:
-    """Return the 64 divisors of a table row by row: a JPEG file holds them in zigzags between two sides."""
-    zigzag = sorted(np.ndindex(8, 8), key=lambda place: (sum(place), place[0] if sum(place) % 2 else place[1]))
-    rows = np.empty((8, 8))
-    rows[tuple(zip(*zigzag, strict=True))] = table
-    return rows.ravel()
 
 
 @dataclass(frozen=True)
