@@ -18,11 +18,14 @@ def nodes_behind(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
     """Yield every node that the outputs of a node lead to, nearest first.
 
     Where the links enter a node group, the nodes in it follow; where they leave the tree of the node, the nodes behind
-    every node that holds this tree.
+    every node that holds this tree. A tree that was entered is not left so, as other nodes that hold it, such as those
+    of another scene, are not behind this one.
     """
     seen, waiting = {_key(node)}, [node]
+    entered: set[bpy.types.NodeTree] = set()
+    left: set[bpy.types.NodeTree] = set()
     while waiting:
-        for follower in _followers(waiting.pop(0)):
+        for follower in _followers(waiting.pop(0), entered, left):
             if _key(follower) not in seen:
                 seen.add(_key(follower))
                 waiting.append(follower)
@@ -85,14 +88,21 @@ def _title(node: bpy.types.Node) -> str:
     return node.label or node.name
 
 
-def _followers(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
-    """Yield the nodes that a node is linked to, and those where its links enter or leave a node group."""
+def _followers(
+    node: bpy.types.Node, entered: set[bpy.types.NodeTree], left: set[bpy.types.NodeTree]
+) -> Iterator[bpy.types.Node]:
+    """Yield the nodes that a node is linked to, and those where its links enter or leave a node group.
+
+    A tree that was left is not entered, and the other way round; the trees are added to the two sets.
+    """
     for output in node.outputs:
         for link in output.links:
             yield link.to_node
-    if node.type == "GROUP" and node.node_tree is not None:
+    if node.type == "GROUP" and node.node_tree is not None and node.node_tree not in left:
+        entered.add(node.node_tree)
         yield from (inner for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
-    if node.type == "GROUP_OUTPUT":
+    if node.type == "GROUP_OUTPUT" and node.id_data not in entered:
+        left.add(node.id_data)
         for tree in compositor_trees():
             yield from (outer for outer in tree.nodes if getattr(outer, "node_tree", None) == node.id_data)
 

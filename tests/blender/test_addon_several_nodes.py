@@ -1,0 +1,70 @@
+"""A plate in several places: nodes of one tree and of two scenes, each with the node group once."""
+
+import pytest
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+
+@pytest.fixture
+def tree(addon):
+    from blender_addon.scene.compositor import compositor_tree
+
+    return compositor_tree(bpy.context.scene)
+
+
+def twice(image):
+    from blender_addon.scene.node_links import linearized_twice
+
+    return linearized_twice(image)
+
+
+def apply_nodes(image):
+    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}
+
+
+def groups(tree):
+    return [node for node in tree.nodes if node.type == "GROUP"]
+
+
+def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
+    """Both hold the same node group, but neither is behind the other."""
+    for _ in range(2):
+        tree.nodes.new("CompositorNodeImage").image = image
+    apply_nodes(image)
+    first, second = groups(tree)
+    assert first.node_tree == second.node_tree
+    assert twice(image) == ""
+    tree.links.new(first.outputs[0], second.inputs["Image"])
+    assert "two node groups follow" in twice(image)
+
+
+def test_two_scenes_are_linearized_once_each(image, tree):
+    from blender_addon.scene.compositor import compositor_tree
+
+    apply_nodes(image)
+    other = bpy.data.scenes.new("Other")
+    with bpy.context.temp_override(scene=other):
+        apply_nodes(image)
+    assert [len(groups(found)) for found in (tree, compositor_tree(other))] == [1, 1]
+    assert twice(image) == ""
+
+
+def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):
+    """Nor are the nodes behind them; those that are linked inside and outside are."""
+    from blender_addon.scene.node_links import nodes_behind
+
+    mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        mine.interface.new_socket("Image", in_out=in_out, socket_type="NodeSocketColor")
+    start, blur, end = (mine.nodes.new(kind) for kind in ("NodeGroupInput", "CompositorNodeBlur", "NodeGroupOutput"))
+    mine.links.new(start.outputs[0], blur.inputs["Image"])
+    mine.links.new(blur.outputs[0], end.inputs[0])
+    source = tree.nodes.new("CompositorNodeImage")
+    holders = [tree.nodes.new("CompositorNodeGroup") for _ in range(2)]
+    viewers = [tree.nodes.new("CompositorNodeViewer") for _ in range(2)]
+    for holder, viewer in zip(holders, viewers, strict=True):
+        holder.node_tree = mine
+        tree.links.new(holder.outputs[0], viewer.inputs["Image"])
+    tree.links.new(source.outputs["Image"], holders[0].inputs[0])
+    assert set(nodes_behind(source)) == {holders[0], viewers[0], start, blur, end}
+    assert set(nodes_behind(blur)) == {end, *holders, *viewers}  # from inside, it is every holder
