@@ -275,3 +275,22 @@ def test_a_movie_of_ten_bits_is_not_compared_but_says_why(movie, in_editor):
         with pytest.raises(RuntimeError, match=r"deep.mkv: movies of more than 8 bits .* choose Nodes or Bake"):
             bpy.ops.crf.compare(is_after=True)
         assert space.image == image
+
+
+def test_of_a_movie_it_is_the_frame_that_the_editor_shows(movie, codes, in_editor):
+    """Not the one that Blender has read last, here the first."""
+    from .test_addon_image_tools import pixels_of
+
+    image = load("image", movie("rgb.mkv"))
+    bpy.ops.crf.estimate_response(image=image.name)
+    before = list(bpy.data.images)
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image, space.image_user.frame_duration = image, FRAMES
+        for number in (7, 2, 12, 1):
+            bpy.context.scene.frame_set(number)
+            assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
+            expected = stored_curve(image).inverse(frame_codes(codes, number) / 255)
+            assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
+            bpy.ops.crf.compare(is_after=False)
+    assert list(bpy.data.images) == before
+    assert not image.is_dirty

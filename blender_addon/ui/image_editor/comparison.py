@@ -100,7 +100,7 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     if is_heif(image) or image.source == "SEQUENCE":
         return _codes_of_file(image, user)
     if not width * height:
-        raise AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
+        raise _unreadable(image)
     if image.is_float and image.source == "MOVIE":
         raise AddonError(
             f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
@@ -109,12 +109,37 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
     # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
     if image.is_float or alpha == "PREMUL":
         return _codes_of_file(image, user)
-    flat = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(flat)
-    pixels = flat.reshape(height, width, image.channels)
+    pixels = _pixels_of_movie(image, user.frame_current) if image.source == "MOVIE" else _pixels(image)
     if image.channels < 3:
         return pixels[..., :1].repeat(3, axis=2)
     return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
+
+
+def _pixels(image: bpy.types.Image) -> Float32Array:
+    """Return the pixels that Blender has of an image, shape (H, W, C)."""
+    flat = np.empty(len(image.pixels), np.float32)
+    image.pixels.foreach_get(flat)
+    return flat.reshape(image.size[1], image.size[0], image.channels)
+
+
+def _pixels_of_movie(image: bpy.types.Image, frame: int) -> Float32Array:
+    """Return the pixels of a frame of a movie; Blender has those of the frame that it read last, for whatever editor.
+
+    Blender can be asked for a frame only where it scales one. So it scales a copy, which is discarded, to its own size.
+    """
+    copy = image.copy()
+    try:
+        copy.scale(*image.size, frame=frame)
+        return _pixels(copy)
+    except RuntimeError:
+        raise _unreadable(image) from None
+    finally:
+        bpy.data.images.remove(copy)
+
+
+def _unreadable(image: bpy.types.Image) -> AddonError:
+    """Return the error that Blender cannot read an image."""
+    return AddonError(f"{image.name}: cannot be read; find its file with File, External Data")
 
 
 def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
