@@ -48,6 +48,15 @@ class FrameTiming:
         """Return the timing that shows every file on the frame of its number."""
         return cls(frames[-1] - frames[0] + 1, frames[0], frames[0] - 1)
 
+    @classmethod
+    def from_scene_start(cls, frames: Sequence[int]) -> FrameTiming:
+        """Return the timing that shows the first file on frame 1 of the scene, as where Blender opens a sequence."""
+        return cls(frames[-1] - frames[0] + 1, 1, frames[0] - 1)
+
+    def shows_any(self, frames: Sequence[int]) -> bool:
+        """Return whether it shows one of the files of these numbers; that of a new editor, files 1 to 100, may not."""
+        return any(self.offset < frame <= self.offset + self.duration for frame in frames)
+
     def set_on(self, user: ImageUser) -> None:
         """Give it to an editor or a node."""
         user.frame_duration, user.frame_start, user.frame_offset = self.duration, self.start, self.offset
@@ -85,7 +94,7 @@ class PlateNodes:
 def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int]) -> FrameTiming | None:
     """Return the timing of a plate where it is shown already, in the active editor, another one or a node.
 
-    Where it is shown nowhere, every file is shown on the frame of its number.
+    Where it is shown nowhere, or with a timing that nobody has set, every file is shown on the frame of its number.
 
     Parameters
     ----------
@@ -98,8 +107,9 @@ def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int
     """
     if not frames or not isinstance(plate, bpy.types.Image):
         return None
-    user = next((user for user in _users(context, plate) if user.frame_duration > 1), None)  # 1: nobody has set it
-    return FrameTiming.by_number(frames) if user is None else FrameTiming.of_user(user)
+    timings = map(FrameTiming.of_user, _users(context, plate))
+    set_by_user = (timing for timing in timings if timing.duration > 1 and timing.shows_any(frames))
+    return next(set_by_user, FrameTiming.by_number(frames))
 
 
 def compositor_tree(scene: bpy.types.Scene) -> bpy.types.NodeTree:

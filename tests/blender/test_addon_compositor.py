@@ -152,6 +152,18 @@ def test_a_new_node_has_the_timing_of_the_editor(tree, sequence, in_editor):
     assert timing(node) == (3, 1, 1000)
 
 
+@pytest.mark.parametrize("mode", ["NODES", "BAKE"])
+def test_a_timing_that_shows_none_of_the_files_was_set_by_nobody(tree, sequence, in_editor, mode):
+    """An editor begins with the frames 1 to 100; in it, Blender shows no frame of this sequence."""
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = sequence
+        user = space.image_user
+        user.frame_duration, user.frame_start, user.frame_offset = 100, 1, 0
+        assert bpy.ops.crf.estimate_response(apply=mode) == {"FINISHED"}
+        shown = space.image_user if mode == "BAKE" else of_kind(tree, "IMAGE")[0]
+        assert timing(shown) == (3, 1001, 1000)
+
+
 def test_a_node_keeps_its_timing(tree, sequence):
     node = tree.nodes.new("CompositorNodeImage")
     node.image = sequence
