@@ -2,7 +2,7 @@
 """What the add-on reads from Blender's data and changes in it; in Blender's own thread only.
 
 plates            which image or clip is meant, and where its code values lie on disk
-packed_images     the packed file or the code values of an image that has no file of its own
+packed_images     which images have no file of their own, and the packed file or the code values of these
 decode_frames     a script for another Blender: frames of movies and images as PNG files
 stored_estimate   the estimate as a custom property of its image or clip
 apply             what a completed job changes

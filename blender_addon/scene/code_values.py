@@ -18,7 +18,8 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, has_own_file, is_painted
+from .packed_images import has_own_file, is_painted
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state
 
 #: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -98,9 +99,13 @@ def is_painted_copy_shown(plate: Datablock) -> bool:
 
 
 def pack_with_plates() -> None:
-    """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again."""
+    """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again.
+
+    Those of another file, which are linked, are left to the one who saves that.
+    """
     for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None}:
-        if plate.packed_file and not all(_is_alike(copy, plate) for copy in _copies(plate)):
+        is_kept_packed = plate.packed_file and plate.library is None and not is_painted(plate)
+        if is_kept_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
 
 

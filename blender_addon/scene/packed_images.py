@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The packed file, or the code values, of an image that has no file of its own."""
+"""Which images have no file of their own, and the packed file or the code values of these."""
 
 from __future__ import annotations
 
@@ -15,14 +15,28 @@ if TYPE_CHECKING:
     from crfnet_core.types import Uint8Array
 
 
-def name_and_content(image: bpy.types.Image) -> tuple[Path, bytes | Uint8Array]:
-    """Return a file name for a packed or painted image, and what the file has to hold.
+def is_painted(datablock: bpy.types.ID) -> bool:
+    """Return whether an image shows what was generated or painted in Blender; a packed file does not count then."""
+    return isinstance(datablock, bpy.types.Image) and datablock.source == "GENERATED"
+
+
+def has_own_file(datablock: bpy.types.ID) -> bool:
+    """Return whether the code values of an image or clip lie in files on disk, not in the .blend file or in memory."""
+    return not isinstance(datablock, bpy.types.Image) or not (datablock.packed_file or is_painted(datablock))
+
+
+def file_name(image: bpy.types.Image) -> Path:
+    """Return the name of the packed file of an image; without one, the name of the image with the suffix .png."""
+    packed = "" if is_painted(image) else Path(image.filepath.replace("\\", "/")).name
+    return Path(packed or f"{Path(bpy.path.clean_name(image.name)).stem}.png")
+
+
+def content_of(image: bpy.types.Image) -> bytes | Uint8Array:
+    """Return what the file of a packed or painted image has to hold.
 
     Returns
     -------
-    name : Path
-        The name of the packed file, or that of the image with the suffix .png.
-    content : bytes or ndarray, uint8, shape (H, W, 3 or 4)
+    bytes or ndarray, uint8, shape (H, W, 3 or 4)
         The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
         whatever its colour space.
 
@@ -31,10 +45,7 @@ def name_and_content(image: bpy.types.Image) -> tuple[Path, bytes | Uint8Array]:
     AddonError
         If the image has no pixels.
     """
-    name = Path(f"{Path(bpy.path.clean_name(image.name)).stem}.png")
-    if image.packed_file:
-        return Path(Path(image.filepath.replace("\\", "/")).name or name), image.packed_file.data
-    return name, _code_values(image)
+    return _code_values(image) if is_painted(image) else image.packed_file.data
 
 
 def _code_values(image: bpy.types.Image) -> Uint8Array:

@@ -12,7 +12,7 @@ import bpy
 from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import BlenderDecoder, Plate
-from .packed_images import name_and_content
+from .packed_images import content_of, file_name, has_own_file, is_painted
 
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
@@ -153,10 +153,8 @@ def is_tiled(datablock: Datablock | None) -> bool:
 
 def obstacle(datablock: Datablock) -> str:
     """Return why no response can be estimated from an image or clip, or an empty text; reads no file."""
-    if problem := lazy_import.missing():
+    if problem := lazy_import.missing() or why_unchangeable(datablock):
         return problem
-    if datablock.library is not None:
-        return f"{datablock.name} is linked from another file: make it local first"
     if CODE_VALUES_OF in datablock:
         return "These are the code values of a plate, not the plate: open the photograph itself"
     if datablock.filepath.lower().endswith(".gif"):
@@ -164,6 +162,11 @@ def obstacle(datablock: Datablock) -> str:
             "GIF files hold at most 256 colors, too few for an estimate: open the photograph or movie it was made from"
         )
     return _OBSTACLES.get(datablock.source, "") or _obstacle_in_blender(datablock) or _obstacle_unsaved(datablock)
+
+
+def why_unchangeable(datablock: Datablock) -> str:
+    """Return why nothing that is changed on an image or clip would be saved, or an empty text."""
+    return "" if datablock.library is None else f"{datablock.name} is linked from another file: make it local first"
 
 
 def is_shown(datablock: Datablock) -> bool:
@@ -189,15 +192,16 @@ def _obstacle_in_blender(datablock: Datablock) -> str:
         return ""
     if datablock.is_float:
         return "Float images made in Blender hold linear values, which have no camera response: open a photograph"
-    if not datablock.packed_file and not datablock.is_dirty:
-        return "Blank images and test grids have no camera response: open a photograph"
-    return ""
+    if datablock.is_dirty:
+        return ""
+    if datablock.packed_file:
+        return f"{datablock.name} shows what Blender generates, not its packed file: set Source to Single Image"
+    return "Blank images and test grids have no camera response: open a photograph"
 
 
 def _obstacle_unsaved(datablock: Datablock) -> str:
     """Return that an image was painted on since its file was read or packed; an empty text for any other."""
-    is_kept = datablock.source != "GENERATED" or datablock.packed_file
-    if is_kept and getattr(datablock, "is_dirty", False):
+    if not is_painted(datablock) and getattr(datablock, "is_dirty", False):
         return f"{datablock.name} has unsaved changes: save, pack or reload it in the Image menu first"
     return ""
 
@@ -213,7 +217,7 @@ def plate_of(datablock: Datablock) -> Plate:
     if problem := obstacle(datablock):
         raise AddonError(problem)
     if not has_own_file(datablock):
-        name, content = name_and_content(datablock)
+        name, content = file_name(datablock), content_of(datablock)
         return _plate(datablock, name, folder=None, has_metadata=isinstance(content, bytes), content=content)
     path = _path(datablock)
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
@@ -222,6 +226,12 @@ def plate_of(datablock: Datablock) -> Plate:
         )
     decoder = _decoder(datablock)
     return _plate(datablock, path, folder=path.parent, has_metadata=decoder is None, decoder=decoder)
+
+
+def name_of(datablock: Datablock) -> str:
+    """Return the name of a plate, whose file need not be found: that of the file without suffix and frame number."""
+    path = _path(datablock) if has_own_file(datablock) else file_name(datablock)
+    return _plate(datablock, path, folder=None).name
 
 
 def file_state(datablock: Datablock) -> str:
@@ -250,16 +260,6 @@ def alpha_mode(datablock: Datablock) -> str:
     if not is_heeded:
         return ""
     return "STRAIGHT" if datablock.alpha_mode == "PREMUL" and is_painted(datablock) else datablock.alpha_mode
-
-
-def is_painted(datablock: Datablock) -> bool:
-    """Return whether an image was generated or painted in Blender and has no file, not even a packed one."""
-    return isinstance(datablock, bpy.types.Image) and datablock.source == "GENERATED" and not datablock.packed_file
-
-
-def has_own_file(datablock: Datablock) -> bool:
-    """Return whether the code values of an image or clip lie in files on disk, not in the .blend file or in memory."""
-    return not isinstance(datablock, bpy.types.Image) or not (datablock.packed_file or datablock.source == "GENERATED")
 
 
 def _path(datablock: Datablock) -> Path:

@@ -2,7 +2,7 @@
 """What the user sees of the add-on, and the job that is gathered from it.
 
 operators         "Estimate Camera Response", "Apply Camera Response", "Cancel"
-operator_base     what operators share: the plate that a script names, and how they report a problem
+operator_base     what operators share: when they can run, the plate that a script names, how they report a problem
 running           the one run that is under way, and how its progress is shown
 panel             the sidebar panel and the menu entries of three editors
 estimate_box      what the panel shows of an estimate

@@ -12,7 +12,7 @@ import bpy
 from crfnet_core.metadata.color_tags import Primaries
 from ocio.options import EstimateOptions
 
-from ..scene import color_management, node_group, plates, stored_estimate
+from ..scene import color_management, node_group, packed_images, plates, stored_estimate
 from ..work.errors import AddonError
 from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
 from .plate_settings import CHOICES
@@ -87,7 +87,7 @@ def _check_mode(datablock: plates.Datablock, mode: ApplyMode) -> None:
             f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
             " photograph as JPEG or PNG"
         )
-    if mode is ApplyMode.COLORSPACE and plates.is_painted(datablock):
+    if mode is ApplyMode.COLORSPACE and packed_images.is_painted(datablock):
         raise AddonError(
             f"{datablock.name}: pack or save it first in the Image menu, as Blender drops what was painted when the"
             " color space changes"
@@ -112,11 +112,14 @@ def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:
 def _photographs(datablock: plates.Datablock) -> tuple[Plate, ...]:
     """Return the further photographs of the plate's camera, each once; places without an image are left out."""
     images = [item.image for item in datablock.camera_response_settings.photographs if item.image is not None]
-    chosen = [image for image in dict.fromkeys(images) if image != datablock]
-    for image in chosen:
-        if problem := plates.obstacle(image):
-            raise AddonError(f"{image.name}, under More Photos: {problem}")
-    return tuple(map(plates.plate_of, chosen))
+    found = []
+    for image in dict.fromkeys(images):
+        if image != datablock:
+            try:
+                found.append(plates.plate_of(image))
+            except AddonError as problem:
+                raise AddonError(f"{image.name}, under More Photos: {problem}") from None
+    return tuple(found)
 
 
 def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators share: the plate that a script names, and how they report a problem."""
+"""What operators share: when they can run, the plate that a script names, and how they report a problem."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
@@ -33,10 +33,7 @@ class ChosenPlate:
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
         """Return whether it can run on the editor's plate now, and tell why if not; a script names its plate."""
-        why = running.why_busy() or (cls.why_not(context) if plates.is_in_editor(context) else "")
-        if why:
-            cls.poll_message_set(why)
-        return not why
+        return is_allowed(cls, running.why_busy() or (cls.why_not(context) if plates.is_in_editor(context) else ""))
 
     @classmethod
     def why_not(cls, context: bpy.types.Context) -> str:
@@ -53,6 +50,35 @@ class ChosenPlate:
         if not stored_estimate.is_stored(datablock):
             raise AddonError(f"{datablock.name}: has no estimate yet; estimate its response first")
         return datablock
+
+
+class ChosenSettings(ChosenPlate):
+    """An operator that changes the settings of one plate, whether or not its response can be estimated."""
+
+    @classmethod
+    def why_not(cls, context: bpy.types.Context) -> str:
+        """Return that there is no plate, or that its settings would not be saved."""
+        return why_unchangeable(context)
+
+    def changeable_plate(self, context: bpy.types.Context) -> plates.Datablock:
+        """Return the image or clip; an AddonError if there is none, or its settings would not be saved."""
+        datablock = self.chosen_plate(context)
+        if problem := plates.why_unchangeable(datablock):
+            raise AddonError(problem)
+        return datablock
+
+
+def is_allowed(operator: type[bpy.types.Operator] | type[ChosenPlate], why_not: str) -> bool:
+    """Return whether there is no reason why an operator cannot run; its tooltip tells the reason."""
+    if why_not:
+        operator.poll_message_set(why_not)
+    return not why_not
+
+
+def why_unchangeable(context: bpy.types.Context) -> str:
+    """Return why no settings of an editor's plate can be changed, or an empty text."""
+    datablock = plates.active_datablock(context)
+    return plates.OPEN_A_PLATE[context.space_data.type] if datablock is None else plates.why_unchangeable(datablock)
 
 
 def failed(operator: bpy.types.Operator, problem: Exception) -> set[str]:

@@ -9,9 +9,11 @@ from typing import ClassVar
 import bpy
 
 from ..scene import plates
+from ..work.errors import expected_errors
+from .operator_base import ChosenSettings, failed
 
 
-class CRF_OT_add_photographs(bpy.types.Operator):
+class CRF_OT_add_photographs(ChosenSettings, bpy.types.Operator):
     """Choose files of further photographs of the plate's camera."""
 
     bl_idname = "crf.add_photographs"
@@ -30,19 +32,18 @@ class CRF_OT_add_photographs(bpy.types.Operator):
     filter_image: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
     filter_folder: bpy.props.BoolProperty(default=True, options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate."""
-        return plates.active_datablock(context) is not None
-
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose files."""
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Open the files and add them to the list, each once."""
-        photographs = plates.chosen_datablock(context).camera_response_settings.photographs
+        """Open the files and add them to the list, each once, and not the plate itself."""
+        try:
+            plate = self.changeable_plate(context)
+        except expected_errors() as problem:
+            return failed(self, problem)
+        photographs = plate.camera_response_settings.photographs
         for file in self.files:
             try:
                 loaded = bpy.data.images.load(str(Path(self.directory, file.name)), check_existing=True)
@@ -50,12 +51,12 @@ class CRF_OT_add_photographs(bpy.types.Operator):
                 self.report({"ERROR"}, f"{file.name}: cannot be opened as an image")
                 return {"CANCELLED"}
             image = plates.plate_itself(loaded)
-            if image not in [item.image for item in photographs]:
+            if image not in (plate, *(item.image for item in photographs)):
                 photographs.add().image = image
         return {"FINISHED"}
 
 
-class CRF_OT_remove_photograph(bpy.types.Operator):
+class CRF_OT_remove_photograph(ChosenSettings, bpy.types.Operator):
     """Take a photograph from the list; it stays in the file."""
 
     bl_idname = "crf.remove_photograph"
@@ -65,14 +66,12 @@ class CRF_OT_remove_photograph(bpy.types.Operator):
 
     index: bpy.props.IntProperty(name="Index", min=0, options={"HIDDEN", "SKIP_SAVE"})
 
-    @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether there is a plate."""
-        return plates.active_datablock(context) is not None
-
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it."""
-        plates.chosen_datablock(context).camera_response_settings.photographs.remove(self.index)
+        try:
+            self.changeable_plate(context).camera_response_settings.photographs.remove(self.index)
+        except expected_errors() as problem:
+            return failed(self, problem)
         return {"FINISHED"}
 
 

@@ -91,8 +91,8 @@ def preferences() -> CRF_AddonPreferences:
     return bpy.context.preferences.addons[ADDON].preferences
 
 
-def absolute(folder: str) -> Path | None:
-    """Return the path of a folder chosen in the interface, or None for an empty choice.
+def absolute(path: str) -> Path | None:
+    """Return the path of a file or folder chosen in the interface, or None for an empty choice.
 
     Blender writes ``//`` for the folder of the .blend file.
 
@@ -101,9 +101,9 @@ def absolute(folder: str) -> Path | None:
     AddonError
         If there is no .blend file yet.
     """
-    if folder.startswith("//") and not bpy.data.filepath:
-        raise AddonError(f"{folder} is relative to the .blend file: save that first, or choose another path")
-    return Path(bpy.path.abspath(folder)) if folder else None
+    if path.startswith("//") and not bpy.data.filepath:
+        raise AddonError(f"{path} is relative to the .blend file: save that first, or choose another path")
+    return Path(bpy.path.abspath(path)) if path else None
 
 
 register, unregister = bpy.utils.register_classes_factory((CRF_AddonPreferences,))

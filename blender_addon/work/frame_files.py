@@ -70,7 +70,9 @@ def frames_of(plate: Plate) -> FrameSequence:
     if plate.content is not None:
         return FrameSequence((plate.file,))
     if plate.numbered is not None:
-        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=plate.file)
+        before, digits, after = plate.numbered
+        name = plate.file.with_name(f"{before}{'#' * digits}{after}")  # for messages, as Blender writes it
+        return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=name)
     if plate.decoder is None:
         return find_frames(plate.file)
     numbers = tuple(range(1, plate.decoder.frame_count + 1))

@@ -4,12 +4,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
+from pathlib import Path
 
 from crfnet_core import ResponseEstimate
 from crfnet_core.cameras import CameraSettings, offered_cameras
 from crfnet_core.errors import CRFNetError
+from crfnet_core.image_io.file_kinds import file_kind
 from crfnet_core.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress, show_progress
@@ -29,7 +32,7 @@ from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
 from .errors import AddonError, CancelledError
 from .frame_files import frames_of, primaries_of, sampled_files
-from .job import Anchor, ApplyMode, Job
+from .job import Anchor, ApplyMode, Job, Plate
 from .target_check import check_targets
 from .wording import is_loaded, loaded_line, panel_line
 
@@ -198,7 +201,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     with sampled_files(list(zip(plates, sequences, strict=True)), decoding) as files:
         if not job.estimation.is_forced:
             for plate, frames in zip(plates, files, strict=True):
-                check_is_encoded(plate, frames.paths[0], job.config.path)
+                _check_is_encoded(plate, frames.paths[0], job.config.path)
         paths = [path for frames in files for path in frames.paths]
         prior, network = load_prior(options), _load_network(options)
         has_metadata = options.use_metadata and all(plate.has_metadata for plate in plates)
@@ -207,6 +210,13 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         if len(plates) == 1:
             return estimate_frames(files[0], network, prior, options, progress=estimating)
         return estimate_photographs(paths, network, prior, options, progress=estimating).estimate
+
+
+def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
+    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its colour space."""
+    with suppress(OSError):  # told where the file is read
+        file_kind(file)
+    check_is_encoded(plate, file, config)
 
 
 def _part(progress: Progress | None, part: int) -> Progress | None:

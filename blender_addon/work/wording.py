@@ -28,7 +28,14 @@ _IN_BLENDER = {
     "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
     "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
     "with --taken-with which": "with Taken With under Advanced which",
-    ", or say with --primaries which all have": "",
+    "there is no such file; check the name, or give a sequence such as plate.%04d.png or plate.####.png": "there is no"
+    " such file; find it with File, External Data",
+    "are too far apart; say which frames to use": "are too far apart to be one sequence; move those away that do not"
+    " belong to it",
+    "give any, camera or a JSON file": "choose another Prior File, or expect Camera",
+    "there is no frame of this name; check the name and the frames": "none of its frames is found; find them with File,"
+    " External Data",
+    ", or give the primaries of all with --primaries": "",
     "crfnet camera list shows them": "choose another Camera under Advanced, or none",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
     "pip install 'av', or save it": "save it",

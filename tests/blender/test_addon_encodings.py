@@ -59,11 +59,13 @@ def test_a_dpx_that_is_neither(addon, tmp_path, codes, estimate):
     assert restored(image).weights.tolist() == expected.weights.tolist()
 
 
-def test_linear_files_are_refused(addon, tmp_path):
+def test_linear_files_are_refused_and_no_choice_is_offered_that_is_no_help(addon, tmp_path):
     path = write_image(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32))
     image = bpy.data.images.load(str(path))
-    with pytest.raises(RuntimeError, match="linear"):
-        bpy.ops.crf.estimate_response(image=image.name)
+    for force in (False, True):
+        with pytest.raises(RuntimeError, match="OpenEXR holds scene-linear values") as problem:
+            bpy.ops.crf.estimate_response(image=image.name, force=force)
+        assert "Estimate Anyway" not in str(problem.value)
 
 
 def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, tmp_path, in_editor):

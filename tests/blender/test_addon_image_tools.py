@@ -172,6 +172,10 @@ def picker(addon):
         def report(self, kind, text):
             self.reports.append((*kind, text))
 
+        @staticmethod
+        def poll_message_set(why):
+            """The tooltip is Blender's own matter."""
+
     return Driven()
 
 

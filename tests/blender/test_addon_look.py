@@ -155,6 +155,29 @@ def test_it_needs_a_response(addon, plate_file):
         bpy.ops.crf.add_look(image=image.name)
 
 
+def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
+    """Only the response counts, and the name."""
+    plate_file.unlink()
+    assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
+    assert "Camera Look plate" in bpy.data.node_groups
+
+
+@pytest.mark.parametrize(
+    ("editor", "why"), [("IMAGE_EDITOR", "added in the compositor"), ("NODE_EDITOR", "Estimate the camera response")]
+)
+def test_it_says_why_it_cannot_be_added(image, in_editor, editor, why):
+    with in_editor(editor), pytest.raises(RuntimeError, match=why):
+        bpy.ops.crf.add_look()
+
+
+def test_it_waits_for_the_end_of_a_run(image, in_editor, monkeypatch):
+    from blender_addon.ui import running
+
+    monkeypatch.setattr(running, "why_busy", lambda: "The camera response of shot is running")
+    with in_editor("NODE_EDITOR"), pytest.raises(RuntimeError, match="shot is running"):
+        bpy.ops.crf.add_look(image=image.name)
+
+
 def test_it_is_in_the_panel_of_the_compositor_only(look, plate_file, in_editor):
     from blender_addon.ui.panel import ResponsePanel
     from tests.blender.test_addon_panel import Panel, operators

@@ -1,5 +1,7 @@
 """Which image or clip is meant, and which are refused, with what to do instead."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -85,6 +87,8 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
         assert ("crf.read_as_sequence", "SEQUENCE") in operators(drawn_in(image, in_editor))
         assert bpy.ops.crf.read_as_sequence() == {"FINISHED"}
         assert not bpy.ops.crf.read_as_sequence.poll()
+        bpy.context.scene.frame_set(1)
+        assert Path(image.filepath_from_user(image_user=space.image_user)).name == "shot.1001.png"
     assert image.source == "SEQUENCE"
     assert obstacle(image) == ""
     assert frames_of(plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
@@ -100,3 +104,56 @@ def test_what_blender_generates_is_refused_until_it_is_painted(addon, codes, kin
     pixels[..., :3] = codes / 255
     image.pixels.foreach_set(pixels.ravel())
     assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
+
+
+def test_a_packed_image_that_blender_generates_is_not_taken_from_its_packed_file(addon, tmp_path, codes):
+    """Blender shows a test grid, until Source is set back."""
+    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    image.pack()
+    bpy.ops.crf.estimate_response(image=image.name)
+    image.source = "GENERATED"
+    for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
+        with pytest.raises(RuntimeError, match="not its packed file: set Source to Single Image"):
+            operator(image=image.name, apply="BAKE", folder=str(tmp_path / "out"))
+    assert not (tmp_path / "out").exists()
+    image.source = "FILE"
+    assert bpy.ops.crf.apply_response(image=image.name, apply="BAKE", folder=str(tmp_path / "out")) == {"FINISHED"}
+
+
+def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon, tmp_path, codes):
+    from blender_addon.scene.plates import plate_of
+
+    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    image.pack()
+    image.source = "GENERATED"
+    image.generated_width = image.generated_height = 256
+    pixels = np.ones((256, 256, 4), np.float32)
+    pixels[..., :3] = codes / 255  # the bottom row first
+    image.pixels.foreach_set(pixels.ravel())
+    np.testing.assert_array_equal(plate_of(image).content, codes[::-1])
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [
+        ("shot.0001.png", r"shot\.####\.png: none of its frames is found; find them with File, External Data\s*$"),
+        ("still.png", r"still\.png: there is no such file; find it with File, External Data\s*$"),
+    ],
+)
+def test_frames_that_are_gone_are_told_in_the_words_of_blender(addon, tmp_path, codes, name, words):
+    """Without a placeholder such as %04d, which the command has; a still is a sequence as a movie clip."""
+    frame = write_image(tmp_path / name, codes)
+    clip = bpy.data.movieclips.load(str(frame))
+    frame.unlink()
+    assert clip.source == "SEQUENCE"
+    with pytest.raises(RuntimeError, match=words):
+        bpy.ops.crf.estimate_response(clip=clip.name)
+
+
+def test_frames_that_are_no_sequence_are_told(addon, tmp_path, codes):
+    for number in ("0001", "20260101"):
+        write_image(tmp_path / f"IMG_{number}.png", codes)
+    image = bpy.data.images.load(str(tmp_path / "IMG_0001.png"))
+    image.source = "SEQUENCE"
+    with pytest.raises(RuntimeError, match=r"IMG_####\.png: .* too far apart to be one sequence; move those away"):
+        bpy.ops.crf.estimate_response(image=image.name)

@@ -51,6 +51,8 @@ def test_what_took_the_plate_may_be_told(image, plate_file, estimate):
 def test_a_prior_without_its_file_is_told(image):
     with pytest.raises(RuntimeError, match="choose a Prior File"):
         bpy.ops.crf.estimate_response(image=image.name, prior="file")
+    with pytest.raises(RuntimeError, match=r"none\.json: .*; choose another Prior File, or expect Camera"):
+        bpy.ops.crf.estimate_response(image=image.name, prior="file", prior_file="/nowhere/none.json")
     assert "camera_response" not in image
 
 

@@ -3,15 +3,16 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from typing import TYPE_CHECKING, ClassVar
 
 import bpy
 
 from ... import lazy_import
-from ...scene import plates, stored_estimate
+from ...scene import compositor, plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
-from ..operator_base import failed
-from ..running import set_status
+from .. import running
+from ..operator_base import failed, is_allowed, why_unchangeable
 from . import comparison
 
 if TYPE_CHECKING:
@@ -69,15 +70,15 @@ class CRF_OT_pick_gray(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether an Image Editor shows a plate."""
-        return _is_image_editor(context) and plates.active_datablock(context) is not None
+        """Return whether an Image Editor shows a plate that may be changed, and tell why if not."""
+        return _is_image_editor(context) and is_allowed(cls, running.why_busy() or why_unchangeable(context))
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Wait for the click, with the plate as it is in the editor."""
         comparison.end(context.space_data)
         self._workspace = context.workspace
         context.window.cursor_modal_set("EYEDROPPER")
-        set_status(self._workspace, PICK_HINT)
+        running.set_status(self._workspace, PICK_HINT)
         context.window_manager.modal_handler_add(self)
         return {"RUNNING_MODAL"}
 
@@ -102,7 +103,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
     def cancel(self, context: bpy.types.Context) -> None:
         """Give the mouse pointer and the status bar back."""
         context.window.cursor_modal_restore()
-        set_status(self._workspace, None)
+        running.set_status(self._workspace, None)
 
     def _pick(self, space: bpy.types.SpaceImageEditor, place: tuple[float, float]) -> float:
         """Set the anchor of the plate to the brightness at a place, from (0, 0) bottom left to (1, 1); return it."""
@@ -114,7 +115,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
 
 
 class CRF_OT_read_as_sequence(bpy.types.Operator):
-    """Make an image sequence of frames that Blender took for UDIM tiles."""
+    """Make an image sequence of frames that Blender took for UDIM tiles, and show its first frame on frame 1."""
 
     bl_idname = "crf.read_as_sequence"
     bl_label = "Set to Image Sequence"
@@ -123,13 +124,18 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate is made of tiles and may be changed."""
-        datablock = plates.active_datablock(context)
-        return datablock is not None and plates.is_tiled(datablock) and datablock.library is None
+        """Return whether the plate is made of tiles and may be changed, and tell why if not."""
+        return plates.is_tiled(plates.active_datablock(context)) and is_allowed(cls, why_unchangeable(context))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
-        """Change the source of the image."""
-        plates.chosen_datablock(context).source = "SEQUENCE"
+        """Change the source of the image, and the timing where it is shown: at first, that would show no frame."""
+        image, space = plates.chosen_datablock(context), context.space_data
+        image.source = "SEQUENCE"
+        user = space.image_user if space.type == "IMAGE_EDITOR" else space.edit_tree.nodes.active
+        if hasattr(user, "frame_duration"):  # not the plate's node group
+            with suppress(*expected_errors()):  # told where a response is estimated
+                frames = lazy_import.load(".work.frame_files").frames_of(plates.plate_of(image)).numbers
+                compositor.FrameTiming.from_scene_start(frames).set_on(user)
         return {"FINISHED"}
 
 

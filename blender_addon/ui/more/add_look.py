@@ -8,7 +8,7 @@ import bpy
 from ... import lazy_import
 from ...scene import plates, stored_estimate
 from ...work.errors import expected_errors
-from ..operator_base import ChosenPlate, failed
+from ..operator_base import NO_ESTIMATE, ChosenPlate, failed
 
 
 class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
@@ -24,17 +24,11 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
     @classmethod
-    def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate of the compositor has a response, and tell why if not; a script names its plate."""
-        if not plates.is_in_editor(context):
-            return True
+    def why_not(cls, context: bpy.types.Context) -> str:
+        """Return that this is not the compositor, or that its plate has no response."""
         if context.area.type != "NODE_EDITOR":
-            cls.poll_message_set("The look is added in the compositor")
-            return False
-        if stored_estimate.is_stored(plates.active_datablock(context)):
-            return True
-        cls.poll_message_set("Select a plate that has a response")
-        return False
+            return "The look is added in the compositor"
+        return "" if stored_estimate.is_stored(plates.active_datablock(context)) else NO_ESTIMATE
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Add the node, or bring the one that is there up to date."""
@@ -42,8 +36,7 @@ class CRF_OT_add_look(ChosenPlate, bpy.types.Operator):
             plate = self.estimated_plate(context)
             tree = lazy_import.load(".scene.apply").shown_tree(context)
             curve, stops = stored_estimate.restored(plate).curve, stored_estimate.exposure(plate)
-            name = plates.plate_of(plate).name
-            lazy_import.load(".scene.look_group").add_look(tree, plate, name, curve, stops)
+            lazy_import.load(".scene.look_group").add_look(tree, plate, plates.name_of(plate), curve, stops)
         except expected_errors() as problem:
             return failed(self, problem)
         self.report({"INFO"}, f"{plate.name}: its look is before the output; set View Transform to Standard")

@@ -13,6 +13,7 @@ from ...work.wording import LOADED, loaded_line
 from .. import running
 from ..image_editor import comparison
 from ..operator_base import ChosenPlate, failed
+from ..preferences import absolute
 
 if TYPE_CHECKING:
     from crfnet_core.metadata.color_tags import Primaries
@@ -47,9 +48,9 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         try:
             plate = self.chosen_plate(context)
             primaries = self._primaries(plate)
-            if not Path(self.filepath).name:
+            path = absolute(self.filepath)
+            if path is None or not Path(self.filepath).name:
                 raise AddonError("No LUT file is chosen: choose a .spi1d, .cube or .clf file")
-            path = Path(bpy.path.abspath(self.filepath))
             lut = lazy_import.load("ocio.luts.files").read_lut(path)
             curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)
             model = f"{LOADED}{path.name}"

@@ -1,0 +1,105 @@
+"""Plates that are linked from another file: nothing is changed on them, because it would not be saved."""
+
+import shutil
+
+import numpy as np
+import pytest
+
+from .test_addon_panel import drawn_in, labels
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+WHY = "plate.png is linked from another file: make it local first"
+
+
+def link(blend):
+    """Open an empty file, and link all images of another one; returns the plate."""
+    bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+    with bpy.data.libraries.load(str(blend), link=True) as (source, linked):
+        linked.images = list(source.images)
+    return bpy.data.images["plate.png"]
+
+
+@pytest.fixture
+def linked(image, tmp_path):
+    image.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    return link(tmp_path / "other.blend")
+
+
+def state(plate):
+    settings = plate.camera_response_settings
+    return settings.gray, settings.anchor, [item.image for item in settings.photographs]
+
+
+def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked, in_editor):
+    before = state(linked)
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = linked
+        for operator, arguments in (
+            (bpy.ops.crf.pick_gray, {}),
+            (bpy.ops.crf.add_photographs, {"files": [{"name": "second.png"}]}),
+            (bpy.ops.crf.remove_photograph, {"index": 0}),
+        ):
+            assert not operator.poll()
+            with pytest.raises(RuntimeError, match=WHY):
+                operator("INVOKE_DEFAULT", **arguments)
+    assert state(linked) == before
+    assert WHY in " ".join(labels(drawn_in(linked, in_editor)))
+
+
+def test_a_script_is_told_the_same(linked):
+    for operator in (bpy.ops.crf.add_photographs, bpy.ops.crf.remove_photograph):
+        with pytest.raises(RuntimeError, match=WHY):
+            operator(image=linked.name)
+
+
+@pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
+def test_without_a_plate_they_say_so(addon, in_editor, editor):
+    from blender_addon.scene.plates import OPEN_A_PLATE
+
+    with in_editor(editor), pytest.raises(RuntimeError, match=OPEN_A_PLATE[editor]):
+        bpy.ops.crf.add_photographs()
+
+
+def test_its_look_may_be_added_because_that_changes_only_the_comp(linked):
+    assert bpy.ops.crf.add_look(image=linked.name) == {"FINISHED"}
+    assert bpy.data.node_groups["Camera Look plate"]["camera_response_look_of"] == linked
+
+
+def test_its_linear_plate_may_be_looked_at(linked, in_editor, codes, estimate, plate_file):
+    from .test_addon_image_tools import pixels_of
+
+    with in_editor("IMAGE_EDITOR") as space:
+        space.image = linked
+        assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
+        expected = estimate(plate_file).curve.inverse(codes / 255)
+        assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
+        bpy.ops.crf.compare(is_after=False)
+
+
+def test_saving_leaves_the_code_values_of_the_other_file_alone(image, tmp_path):
+    """The plate was packed after its nodes had read the file, so its code values are not packed yet."""
+    from blender_addon.ui import handlers
+
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
+    image.pack()
+    bpy.app.handlers.save_pre.remove(handlers.pack_code_values)  # as by a Blender without the add-on
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    bpy.app.handlers.save_pre.append(handlers.pack_code_values)
+    bpy.context.scene["kept"] = plate = link(tmp_path / "other.blend")
+    before = {(found.name, found.library) for found in bpy.data.images}
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    assert {(found.name, found.library) for found in bpy.data.images} == before
+    assert plate.library is not None
+
+
+def test_a_further_photograph_that_is_linked_is_told_by_its_name(image, plate_file, tmp_path):
+    shutil.copy(plate_file, tmp_path / "second.png")
+    image.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
+    plate = link(tmp_path / "other.blend")
+    local = bpy.data.images.load(str(tmp_path / "second.png"))
+    local.camera_response_settings.photographs.add().image = plate
+    with pytest.raises(RuntimeError, match=f"plate.png, under More Photos: {WHY}"):
+        bpy.ops.crf.estimate_response(image=local.name)
