@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crfnet_core.errors import PlateError
-from crfnet_core.files import cut_to_bytes
+from crfnet_core.errors import CRFNetError, PlateError
+from crfnet_core.files import atomic_write, cut_to_bytes
 from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
@@ -58,34 +58,30 @@ class OutputFiles:
     forward: tuple[Path, ...] = ()
 
     @classmethod
-    def named(
-        cls,
-        folder: Path,
-        photos: Sequence[Path],
-        *,
-        has_sheet: bool = True,
-        has_linear: bool = True,
-        has_forward: bool = False,
-    ) -> OutputFiles:
-        """Return the files for `photos`, which have one response in common."""
-        stem = plain_stem(photos[0])
+    def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> OutputFiles:
+        """Return the files that the options ask for; by default the usual ones.
+
+        Parameters
+        ----------
+        folder : Path
+            The folder for them.
+        photos : sequence of Path
+            The photographs, which have one response in common.
+        outputs : OutputOptions, optional
+            Which files are written.
+        """
+        stem, outputs = plain_stem(photos[0]), outputs or OutputOptions()
         return cls(
             spi1d=folder / f"{stem}.spi1d",
             cube=folder / f"{stem}.cube",
             clf=folder / f"{stem}.clf",
             config=folder / CONFIG_NAME,
-            linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos if has_linear),
-            sheet=folder / f"{stem}{SHEET_ENDING}" if has_sheet else None,
+            linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos if outputs.has_linear),
+            sheet=folder / f"{stem}{SHEET_ENDING}" if outputs.has_sheet else None,
             report=folder / f"{stem}.json",
             color_space=f"CRF {stem}",
-            forward=tuple(folder / f"{stem}_forward{suffix}" for suffix in WRITERS) if has_forward else (),
+            forward=tuple(folder / f"{stem}_forward{suffix}" for suffix in WRITERS if outputs.has_forward),
         )
-
-    @classmethod
-    def planned(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions) -> OutputFiles:
-        """Return the files for `photos` that the options ask for."""
-        has_sheet, has_linear, has_forward = outputs.has_sheet, outputs.has_linear, outputs.has_forward
-        return cls.named(folder, photos, has_sheet=has_sheet, has_linear=has_linear, has_forward=has_forward)
 
     @property
     def luts(self) -> tuple[Path, ...]:
@@ -288,13 +284,17 @@ def output_folder(folder: Path) -> Iterator[None]:
 
 
 @contextmanager
-def new_files_removed_on_failure(paths: Iterable[Path]) -> Iterator[None]:
-    """Run a block; if it fails or is cancelled, remove those of `paths` that did not exist before it."""
-    new = [path for path in paths if not path.exists()]
+def as_before_on_failure(paths: Iterable[Path]) -> Iterator[None]:
+    """Run a block; if it fails or is cancelled, give each of `paths` its earlier content, or remove it if it is new."""
+    earlier = {path: path.read_bytes() if path.is_file() else None for path in paths}
     try:
         yield
     except BaseException:
-        for path in new:
-            with suppress(OSError):
-                path.unlink(missing_ok=True)
+        for path, content in earlier.items():
+            with suppress(OSError, CRFNetError):
+                if content is None:
+                    path.unlink(missing_ok=True)
+                    continue
+                with atomic_write(path, overwrite=True) as temporary:
+                    temporary.write_bytes(content)
         raise

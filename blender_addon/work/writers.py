@@ -14,7 +14,7 @@ from crfnet_core.types import Progress, counted_from, show_progress
 from ocio.configs.installed import Installed, install
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import Lut1D
-from ocio.options import PlateOptions
+from ocio.options import OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, plain_stem
 from ocio.pipeline import all_or_none, export_luts
 from ocio.plates.frames import FrameSequence
@@ -164,7 +164,7 @@ def identity(plate: Plate) -> str:
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
     """Return the files that the `crfnet` command would write for a plate into a folder."""
-    return OutputFiles.named(folder, [_photo(plate)], has_sheet=False)
+    return OutputFiles.named(folder, [_photo(plate)], OutputOptions(has_sheet=False))
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:

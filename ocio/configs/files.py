@@ -14,7 +14,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.files import atomic_write
 from crfnet_core.types import Float32Array
-from ocio.configs.reference_space import rec709_to_reference
+from ocio.configs.reference_space import rec709_to_reference, steps_to_reference
 from ocio.luts.lut1d import Lut1D
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
@@ -132,9 +132,8 @@ def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -
 
 def plate_exposure(space: OCIO.ColorSpace) -> float:
     """Return the stops that a plate's colour space adds after its LUT."""
-    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    steps = list(transform) if isinstance(transform, OCIO.GroupTransform) else [transform]
-    return sum(float(step.getExposure()) for step in steps if isinstance(step, OCIO.ExposureContrastTransform))
+    steps = (step for step in steps_to_reference(space) if isinstance(step, OCIO.ExposureContrastTransform))
+    return sum(float(step.getExposure()) for step in steps)
 
 
 def _converted(config: OCIO.Config, source: str, target: str, values: NDArray[np.floating]) -> Float32Array:

@@ -4,13 +4,15 @@ from __future__ import annotations
 
 import json
 import shutil
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from contextlib import contextmanager
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, file_sha256, read_json
 from ocio.defaults import CONFIG_NAME
+from ocio.output_files import as_before_on_failure
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"
@@ -55,7 +57,7 @@ def own_folder(config: Path) -> Path:
 def read_record(config: Path) -> InstallationRecord | None:
     """Return what was done to a config, or None if nothing was or the record is damaged."""
     try:
-        entries = read_json(own_folder(config) / RECORD_NAME)
+        entries = read_json(record_file(config))
         folders, plates = tuple(entries["folders"]), dict(entries.get("plates", {}))
         files, backup = tuple(entries.get("files", ())), entries["backup"]
         if not all(Path(name).name == name not in ("", "..") for name in (*folders, *([backup] if backup else []))):
@@ -74,20 +76,33 @@ def write_record(config: Path, record: InstallationRecord) -> None:
         If the record cannot be written.
     """
     text = json.dumps(asdict(record), indent=1) + "\n"
-    atomic_write_text(own_folder(config) / RECORD_NAME, text, overwrite=True, error=ConfigError)
+    atomic_write_text(record_file(config), text, overwrite=True, error=ConfigError)
 
 
-def backed_up(config: Path, record: InstallationRecord | None) -> str | None:
-    """Return the file name of the earlier config's copy, after making the copy unless the record names one."""
+def record_file(config: Path) -> Path:
+    """Return the file of the record beside a config."""
+    return own_folder(config) / RECORD_NAME
+
+
+@contextmanager
+def backed_up(config: Path, record: InstallationRecord | None) -> Iterator[str | None]:
+    """Copy a config that somebody else wrote, and yield the copy's file name; if the block fails, remove the copy.
+
+    If the config is as the record says, nothing is copied, and the name is that in the record. It is None if there is
+    no earlier config.
+    """
     if not config.exists():
-        return None
+        yield None
+        return
     if record is not None and digest(config) == record.sha256:
-        return record.backup
+        yield record.backup
+        return
     numbered = (NUMBERED_BACKUP.format(config.stem, number) for number in range(2, MAX_BACKUPS + 1))
     names = (BACKUP_NAME.format(config.stem), *numbered)
     name = next(name for name in names if not config.with_name(name).exists())
-    shutil.copy2(config, config.with_name(name))
-    return name
+    with as_before_on_failure([config.with_name(name)]):
+        shutil.copy2(config, config.with_name(name))
+        yield name
 
 
 def check_is_ours(folder: Path, record: InstallationRecord) -> None:

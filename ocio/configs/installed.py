@@ -7,8 +7,7 @@ not match the record was written by somebody else: it is copied to a backup befo
 from __future__ import annotations
 
 import shutil
-from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -18,15 +17,16 @@ from crfnet_core.errors import ConfigError
 from ocio.configs.files import load_config, write_config
 from ocio.configs.installation_record import (
     FOLDER,
-    RECORD_NAME,
     InstallationRecord,
     backed_up,
     check_is_ours,
     digest,
     files_in,
     read_record,
+    record_file,
     write_record,
 )
+from ocio.configs.lut_folders import copied_lut_folders
 from ocio.configs.plate_color_space import (
     FAMILY,
     PlateColorSpace,
@@ -34,10 +34,11 @@ from ocio.configs.plate_color_space import (
     without_plate_color_space,
     without_plate_rules,
 )
+from ocio.configs.reference_space import lut_file_of
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_config_folder, distinct_names, new_files_removed_on_failure, output_folder
+from ocio.output_files import as_before_on_failure, check_config_folder, distinct_names, output_folder
 
 
 @dataclass(frozen=True)
@@ -122,12 +123,12 @@ def install(
         before = (digest(config), digest(lut_file))
         with (
             output_folder(folder / FOLDER),
-            _copied_folders(source, folder, Path(base).parent if is_new else None) as copied,
-            new_files_removed_on_failure([lut_file]),
+            copied_lut_folders(source, folder, Path(base).parent if is_new else None) as copied,
+            as_before_on_failure([lut_file, config, record_file(config)]),
+            backed_up(config, record) as backup,
         ):
             write_spi1d(lut_file, lut, overwrite=True)
             added = add_plate_color_space(source, replace(space, lut_file=f"{FOLDER}/{space.lut_file}"))
-            backup = backed_up(config, record)
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied
             files = record.files if record and not copied else tuple(files_in(folder, copied))
@@ -162,15 +163,25 @@ def restore(folder: Path) -> Restored:
     try:
         if record.backup:
             (folder / record.backup).replace(config)
-            (folder / FOLDER / RECORD_NAME).unlink()
+            _take_out_all(config)
         else:
             config.unlink(missing_ok=True)
-            for name in (*record.folders, FOLDER):
-                shutil.rmtree(folder / name, ignore_errors=True)
-            _remove_if_empty(folder)
+        for name in (FOLDER,) if record.backup else (FOLDER, *record.folders):
+            shutil.rmtree(folder / name, ignore_errors=True)
+        _remove_if_empty(folder)
     except OSError as problem:
         raise ConfigError(f"{config}: cannot be restored ({problem.strerror}); check the folder") from problem
     return Restored(config, is_removed=not record.backup)
+
+
+def _take_out_all(config: Path) -> None:
+    """Take our colour spaces out of a config: an earlier one has some if it was ours, and somebody changed it."""
+    loaded = load_config(config)
+    ours = [space.getName() for space in loaded.getColorSpaces() if _installed_lut(space)]
+    for name in ours:
+        loaded = without_plate_color_space(loaded, name)
+    if ours:
+        write_config(config, loaded, check={}, overwrite=True)
 
 
 def installed_color_spaces(folder: Path) -> tuple[str, ...]:
@@ -231,10 +242,11 @@ def uninstall(folder: Path, name: str) -> None:
         return
     loaded = load_config(config)
     lut_file = _installed_lut(loaded.getColorSpace(name))
-    write_config(config, without_plate_color_space(loaded, name), check={}, overwrite=True)
+    plates = {space: plate for space, plate in record.plates.items() if space != name}
     try:
-        plates = {space: plate for space, plate in record.plates.items() if space != name}
-        write_record(config, replace(record, sha256=digest(config), plates=plates))
+        with as_before_on_failure([config, record_file(config)]):
+            write_config(config, without_plate_color_space(loaded, name), check={}, overwrite=True)
+            write_record(config, replace(record, sha256=digest(config), plates=plates))
         (folder / lut_file).unlink(missing_ok=True)
     except OSError as problem:
         raise ConfigError(f"{folder}: cannot be changed ({problem.strerror}); check the folder") from problem
@@ -242,19 +254,18 @@ def uninstall(folder: Path, name: str) -> None:
 
 def _installed_lut(space: OCIO.ColorSpace) -> str:
     """Return the LUT file of a colour space that was installed, relative to the config; else an empty text."""
-    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    first = next(iter(transform), None) if isinstance(transform, OCIO.GroupTransform) else transform
-    source = first.getSrc() if isinstance(first, OCIO.FileTransform) else ""
-    return source if space.getFamily() == FAMILY and source.startswith(f"{FOLDER}/") else ""
+    file = lut_file_of(space)
+    return file if space.getFamily() == FAMILY and file.startswith(f"{FOLDER}/") else ""
 
 
 def free_name(config: OCIO.Config, name: str, plates: Mapping[str, str], plate: str, hint: str) -> str:
     """Return a name for a plate's colour space that the config does not use for another plate."""
-    for candidate in distinct_names(name, hint):
+
+    def is_free(candidate: str) -> bool:
         found = config.getColorSpace(candidate)
-        if found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate:
-            return candidate
-    raise AssertionError("there are names without end")
+        return found is None or found.getFamily() != FAMILY or plates.get(found.getName()) == plate
+
+    return next(filter(is_free, distinct_names(name, hint)))
 
 
 def _remove_if_empty(folder: Path) -> bool:
@@ -267,27 +278,3 @@ def _remove_if_empty(folder: Path) -> bool:
     except OSError:
         return False
     return True
-
-
-@contextmanager
-def _copied_folders(config: OCIO.Config, folder: Path, home: Path | None) -> Iterator[tuple[str, ...]]:
-    """Copy a config's LUT folders from its home to a new folder; yield their names; undo it if the block fails.
-
-    Search paths that cannot be copied point to where they are. `home` is None for a config that is in `folder` already.
-    """
-    copied: list[str] = []
-    try:
-        names = [] if home is None else [name for name in config.getSearchPaths() if name != "."]
-        if names:
-            config.clearSearchPaths()
-        for name in names:
-            is_copyable = Path(name).name == name and (home / name).is_dir() and not (folder / name).exists()
-            config.addSearchPath(name if is_copyable else str(home / name))
-            if is_copyable:
-                copied.append(name)
-                shutil.copytree(home / name, folder / name)
-        yield tuple(copied)
-    except BaseException:
-        for name in copied:
-            shutil.rmtree(folder / name, ignore_errors=True)
-        raise

@@ -17,7 +17,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
 from crfnet_core.metadata.color_tags import REC709
-from ocio.configs.reference_space import matrix_transform, rec709_to_reference
+from ocio.configs.reference_space import matrix_transform, rec709_to_reference, steps_to_reference
 
 #: The names of the two views and view transforms of a plate's colour space.
 VIEW_NAMES = ("As photographed ({})", "As photographed with roll-off ({})")
@@ -147,7 +147,7 @@ def _add_plain_view(config: OCIO.Config, space: str, displays: Sequence[str]) ->
 
 def _view_transform(config: OCIO.Config, space: str, name: str, *, is_rolled_off: bool) -> OCIO.ViewTransform:
     """Return the way from the scene reference through the plate's response to CIE XYZ of an sRGB display."""
-    response, *rest = _steps(config, space)
+    response, *rest = steps_to_reference(config.getColorSpace(space))
     inverse = OCIO.TRANSFORM_DIR_INVERSE
     steps: list[OCIO.Transform] = [OCIO.GroupTransform(rest, inverse)] if rest else []
     if is_rolled_off:
@@ -161,18 +161,12 @@ def _view_transform(config: OCIO.Config, space: str, name: str, *, is_rolled_off
     return transform
 
 
-def _steps(config: OCIO.Config, space: str) -> list[OCIO.Transform]:
-    """Return the transforms of a plate's colour space to the reference space; the first one is its LUT."""
-    conversion = config.getColorSpace(space).getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    return list(conversion) if isinstance(conversion, OCIO.GroupTransform) else [conversion]
-
-
 def _primaries_matrix(config: OCIO.Config, space: str) -> OCIO.Transform | None:
     """Return the matrix from a plate's primaries to linear Rec.709; None if it has these already.
 
     A plate's colour space is a LUT, perhaps an exposure, perhaps this matrix, and the way from Rec.709.
     """
-    own = _steps(config, space)[1:]
+    own = steps_to_reference(config.getColorSpace(space))[1:]
     own = own[: len(own) - len(rec709_to_reference(config))]
     return next((step for step in own if isinstance(step, OCIO.MatrixTransform)), None)
 

@@ -83,6 +83,20 @@ def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
     return [] if backward is None else [OCIO.GroupTransform([backward], OCIO.TRANSFORM_DIR_INVERSE)]
 
 
+def steps_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
+    """Return the transforms of a colour space to the reference space, one by one; none if it defines none."""
+    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
+    if isinstance(transform, OCIO.GroupTransform):
+        return list(transform)
+    return [] if transform is None else [transform]
+
+
+def lut_file_of(space: OCIO.ColorSpace) -> str:
+    """Return the LUT file that a plate's colour space begins with, as the config names it; else an empty text."""
+    first = next(iter(steps_to_reference(space)), None)
+    return str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
+
+
 def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:
     """Return a transform that multiplies RGB by `rows`, shape (3, 3), of 12 decimals, which every machine computes."""
     square = np.eye(4)

@@ -81,7 +81,7 @@ def plan_calibration(
     if name is not None and (not name.strip(" .") or Path(name).name != name):
         raise CalibrationError(f"{name!r} is no name for a file; give one without slashes, such as eos20d")
     stem = frames[0] if name is None else Path(f"{name}.stack")
-    files = OutputFiles.named(folder, [stem], has_sheet=outputs.has_sheet, has_linear=False)
+    files = OutputFiles.named(folder, [stem], replace(outputs, has_linear=False, has_forward=False))
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import PlateError
+from crfnet_core.errors import LutError, PlateError
 from crfnet_core.types import Progress
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
@@ -88,7 +89,7 @@ def plan_each(
     tasks = tuple(
         EstimateTask(
             photo=photo,
-            files=OutputFiles.planned(out / folder, (photo,), outputs),
+            files=OutputFiles.named(out / folder, (photo,), outputs),
             folder=folder,
             options=options,
             plates=plates,
@@ -180,8 +181,11 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
         if len(files) > MAX_COLOR_SPACES:
             files[0].config.unlink(missing_ok=True)
             continue
-        spaces = [_color_space(own, record, output_space) for own, record in written.values()]
-        check = {own.color_space: read_lut(own.spi1d).channels[0] for own in files}
+        spaces, check = [], {}
+        for own, record in written.values():
+            with suppress(LutError):  # a LUT that was damaged since gets no colour space
+                check[own.color_space] = read_lut(own.spi1d).channels[0]
+                spaces.append(_color_space(own, record, output_space))
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
 
 

@@ -8,12 +8,15 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
+import PyOpenColorIO as OCIO
+
 from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.metadata.color_tags import REC709
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
+from ocio.configs.studio.plates import plates_in_config
 from ocio.luts.files import write_lut
 from ocio.luts.forward import forward_lut
 from ocio.options import OutputOptions, PlateOptions
@@ -44,6 +47,8 @@ class OutputPlan:
         Entries of the LUTs.
     left : tuple of Path
         Files of an earlier run with other options that stay there, although they are not of this estimate.
+    dropped : tuple of str
+        Colour spaces of other plates in the config that is replaced, which it will not have any more.
     """
 
     files: OutputFiles
@@ -51,6 +56,7 @@ class OutputPlan:
     plates: PlateOptions
     lut_length: int
     left: tuple[Path, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
@@ -75,12 +81,12 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     ConfigError
         If the colour space cannot be in a config.
     """
-    files = OutputFiles.planned(folder, photos, outputs)
+    files = OutputFiles.named(folder, photos, outputs)
     check_distinct(zip(files.linear, photos, strict=False), remedy="add --no-linear")  # without linear plates, no pairs
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
-    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos))
+    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos), _dropped_spaces(files))
 
 
 def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool = False) -> tuple[Path, ...]:
@@ -99,10 +105,22 @@ def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool 
     """
     if not files.report.exists():
         return ()
-    every = OutputFiles.named(files.report.parent, photos, has_linear=not is_measured, has_forward=not is_measured).own
+    most = OutputOptions(has_linear=not is_measured, has_forward=not is_measured)
+    every = OutputFiles.named(files.report.parent, photos, most).own
     kept = {*files.own, *(photo.absolute() for photo in photos)}
     there = (path for path in every if path.exists() and not kept & {path, path.absolute()})
     return tuple(path for path in there if not path.with_suffix(".json").exists())
+
+
+def _dropped_spaces(files: OutputFiles) -> tuple[str, ...]:
+    """Return the colour spaces of other plates in the config that is there; none if it cannot be read."""
+    if not files.config.exists():
+        return ()
+    try:
+        plates = plates_in_config(OCIO.Config.CreateFromFile(str(files.config)))
+    except OCIO.Exception:
+        return ()
+    return tuple(plate.name for plate in plates if plate.name != files.color_space)
 
 
 def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:

@@ -17,7 +17,7 @@ from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.rgb_lut import RgbLut1D
-from ocio.options import EstimateOptions, PlateOptions
+from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles
 from ocio.pipeline.batch import network_and_prior
 from ocio.plates.frames import FrameSequence, find_frames
@@ -222,7 +222,7 @@ class TestAllOrNone:
 class TestExport:
     @pytest.fixture
     def files(self, tmp_path):
-        return OutputFiles.named(tmp_path / "look", [tmp_path / "plate.png"], has_sheet=False)
+        return OutputFiles.named(tmp_path / "look", [tmp_path / "plate.png"], OutputOptions(has_sheet=False))
 
     @pytest.fixture
     def space(self, files, tmp_path):
@@ -253,7 +253,7 @@ class TestExport:
         assert {path: path.read_bytes() for path in files.config.parent.iterdir()} == earlier
 
     def test_a_folder_in_which_opencolorio_finds_no_lut_is_refused(self, space, tmp_path):
-        files = OutputFiles.named(tmp_path / "projects$", [tmp_path / "plate.png"], has_sheet=False)
+        files = OutputFiles.named(tmp_path / "projects$", [tmp_path / "plate.png"], OutputOptions(has_sheet=False))
         with pytest.raises(PlateError, match="OpenColorIO takes \\$ and % in it for variables"):
             pipeline.export_luts(files, space, LUT)
         assert not files.config.parent.exists()

@@ -10,10 +10,10 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError, one_line
-from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
+from crfnet_core.metadata.color_tags import REC709, conversion_matrix
 from ocio.configs.files import plate_exposure
 from ocio.configs.reference_space import REC709_TO_AP0
-from ocio.luts.lut1d import Lut1D
+from ocio.configs.studio.looks import Look
 
 #: Differences in ACES2065-1 between a config's processor and the LUT and matrix: absolute up to a value of 1, relative
 #: above. The first is worth a note, the second refuses the config. Blender 4.5 goes through rounded matrices: 2.4e-4.
@@ -26,9 +26,7 @@ INTERCHANGE = "aces_interchange"
 CHECKED_LEVELS = 17
 
 
-def check_in_ap0(
-    config: OCIO.Config, folder: Path, luts: Mapping[str, Lut1D], primaries: Mapping[str, Primaries]
-) -> list[str]:
+def check_in_ap0(config: OCIO.Config, folder: Path, looks: Mapping[str, Look]) -> list[str]:
     """Check that plates' colour spaces reach ACES2065-1 as their LUTs and the matrix from Rec.709 do; return notes.
 
     Parameters
@@ -37,10 +35,8 @@ def check_in_ap0(
         The config. One without the role `aces_interchange` is not checked.
     folder : Path
         The folder from which it finds its files.
-    luts : mapping of str to Lut1D
-        The LUT of each plate's colour space, by the name of the space.
-    primaries : mapping of str to Primaries
-        The primaries of each plate, in the same way.
+    looks : mapping of str to Look
+        The look of each plate's colour space, by the name of the space.
 
     Raises
     ------
@@ -54,9 +50,9 @@ def check_in_ap0(
     config = copy.deepcopy(config)
     config.setWorkingDir(str(folder))
     OCIO.ClearAllCaches()
-    for name, lut in luts.items():
+    for name, look in looks.items():
         try:
-            error = ap0_error(config, name, lut, primaries[name])
+            error = ap0_error(config, name, look)
         except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
             raise ConfigError(f"{name}: cannot be converted to ACES2065-1 ({one_line(problem)})") from problem
         if not error <= MOST_DIFFERENCE:
@@ -67,13 +63,13 @@ def check_in_ap0(
     return list(dict.fromkeys(notes))
 
 
-def ap0_error(config: OCIO.Config, name: str, lut: Lut1D, primaries: Primaries = REC709) -> float:
+def ap0_error(config: OCIO.Config, name: str, look: Look) -> float:
     """Return the largest difference in ACES2065-1 between a plate's colour space and its LUT and matrix."""
     levels = np.linspace(0, 1, CHECKED_LEVELS, dtype=np.float32)
     codes = np.stack(np.meshgrid(levels, levels, levels), axis=-1).reshape(-1, 3)
     gain = 2 ** plate_exposure(config.getColorSpace(name))
-    matrix = np.array(REC709_TO_AP0) @ conversion_matrix(primaries, REC709)
-    expected = lut.apply(codes).astype(np.float64) * gain @ matrix.T
+    matrix = np.array(REC709_TO_AP0) @ conversion_matrix(look.space.primaries, REC709)
+    expected = look.lut.apply(codes).astype(np.float64) * gain @ matrix.T
     found = codes.copy()
     config.getProcessor(name, INTERCHANGE).getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(found)
     return float((np.abs(found - expected) / np.maximum(np.abs(expected), 1)).max())

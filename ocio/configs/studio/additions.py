@@ -13,7 +13,6 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from crfnet_core.metadata.color_tags import Primaries
 from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import (
@@ -22,6 +21,7 @@ from ocio.configs.installation_record import (
     digest,
     own_folder,
     read_record,
+    record_file,
     write_record,
 )
 from ocio.configs.installed import free_name
@@ -35,7 +35,7 @@ from ocio.configs.studio.sources import ConfigSource, is_blender_config
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import new_files_removed_on_failure, output_folder
+from ocio.output_files import as_before_on_failure, output_folder
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -88,22 +88,20 @@ def add_looks(source: ConfigSource, target: Path | None, looks: Sequence[Look], 
     target = checked_target(source, target)
     record = read_record(source.path) if source.path else None
     identities = dict(record.plates) if record else {}
-    config, notes, luts = _moved(source, target), list[str](), dict[str, Lut1D]()
-    primaries = dict[str, Primaries]()
+    config, notes, added = _moved(source, target), list[str](), dict[str, Look]()
     is_shared = is_blender_config(source.path) or is_blender_config(target)
     for look in looks:
         space = own_space(config, look, target, identities)
         config, more = _with_look(config, look, space, options, is_shared=is_shared)
-        identities[space.name], luts[space.name] = str(look.source), look.lut
-        primaries[space.name] = space.primaries
+        identities[space.name], added[space.name] = str(look.source), look
         notes += [note for note in more if note not in notes]
-    files = {_lut_path(config, name, target): lut for name, lut in luts.items()}
-    plates = tuple(plate for plate in plates_in_config(config) if plate.name in luts)
+    plates = tuple(plate for plate in plates_in_config(config) if plate.name in added)
+    files = {target.parent / plate.lut_file: added[plate.name].lut for plate in plates}
     if _is_same(target, config.serialize(), files):
         return Changed(target, plates, False, None, tuple(notes))
     if target != source.path and target.exists() and not options.overwrite:
         raise ConfigError(f"{target}: exists and differs; to add to it, name it as --base, or replace it: --overwrite")
-    backup, more = _write(target, config, luts, primaries, files, identities)
+    backup, more = _write(target, config, added, files, identities)
     return Changed(target, plates, True, target.with_name(backup) if backup else None, (*notes, *more))
 
 
@@ -148,11 +146,6 @@ def _state(config: OCIO.Config, name: str) -> tuple[object, ...]:
     return str(space), space and plate_in_config(config, space), transforms, set(config.getSearchPaths())
 
 
-def _lut_path(config: OCIO.Config, name: str, target: Path) -> Path:
-    """Return the LUT file of a plate in a config."""
-    return target.parent / plate_in_config(config, config.getColorSpace(name)).lut_file
-
-
 def _is_same(target: Path, text: str, files: dict[Path, Lut1D]) -> bool:
     """Return whether the config and the LUTs are there already."""
     return (
@@ -165,20 +158,22 @@ def _is_same(target: Path, text: str, files: dict[Path, Lut1D]) -> bool:
 def _write(
     target: Path,
     config: OCIO.Config,
-    luts: dict[str, Lut1D],
-    primaries: dict[str, Primaries],
+    added: dict[str, Look],
     files: dict[Path, Lut1D],
     identities: dict[str, str],
 ) -> tuple[str | None, list[str]]:
     """Write the LUTs, check the config, and write it, its backup and its record; return the backup's name and notes."""
     record = read_record(target)
     try:
-        with output_folder(own_folder(target)), new_files_removed_on_failure(files):
+        with (
+            output_folder(own_folder(target)),
+            as_before_on_failure([*files, target, record_file(target)]),
+            backed_up(target, record) as backup,
+        ):
             for path, lut in files.items():
                 write_spi1d(path, lut, overwrite=True)
-            notes = check_in_ap0(config, target.parent, luts, primaries)
-            backup = backed_up(target, record)
-            write_config(target, config, check=luts, overwrite=True)
+            notes = check_in_ap0(config, target.parent, added)
+            write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=True)
             folders = record.folders if record else ()
             write_record(target, InstallationRecord(digest(target), backup, folders, identities))
     except OSError as problem:

@@ -16,7 +16,6 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, check_target
-from crfnet_core.metadata.color_tags import Primaries
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import own_folder
 from ocio.configs.plate_color_space import add_plate_color_space
@@ -25,9 +24,8 @@ from ocio.configs.studio.additions import own_space
 from ocio.configs.studio.looks import Look
 from ocio.configs.studio.plates import PlateInConfig, plates_in_config
 from ocio.configs.studio.sources import ConfigSource
-from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_config_folder, new_files_removed_on_failure, output_folder
+from ocio.output_files import as_before_on_failure, check_config_folder, output_folder
 
 #: The config without plates.
 TEMPLATE = """\
@@ -112,23 +110,21 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     check_config_folder(target.parent)
     if target == base.path:
         raise ConfigError(f"{target}: is the config to merge with; choose another name for the overlay")
-    config, luts, identities = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Lut1D](), dict[str, str]()
-    primaries = dict[str, Primaries]()
+    config, added = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Look]()
     for look in looks:
-        space = own_space(config, look, target, identities)
+        space = own_space(config, look, target, {name: str(other.source) for name, other in added.items()})
         config = add_plate_color_space(config, space)
-        luts[space.name], identities[space.name] = look.lut, str(look.source)
-        primaries[space.name] = space.primaries
+        added[space.name] = look
     plates = plates_in_config(config)
-    files = {target.parent / plate.lut_file: luts[plate.name] for plate in plates}
+    files = {target.parent / plate.lut_file: added[plate.name].lut for plate in plates}
     text = MERGE.format(base=_quoted(base.name), overlay=_quoted(target.name))
-    with output_folder(own_folder(target)), new_files_removed_on_failure([*files, target, merge_file]):
+    with output_folder(own_folder(target)), as_before_on_failure([*files, target, merge_file]):
         for path in (target, merge_file):
             check_target(path, overwrite=overwrite, error=ConfigError)
         for path, lut in files.items():
             write_spi1d(path, lut, overwrite=overwrite)
-        check_in_ap0(config, target.parent, luts, primaries)
-        write_config(target, config, check=luts, overwrite=overwrite)
+        check_in_ap0(config, target.parent, added)
+        write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=overwrite)
         atomic_write_text(merge_file, text, overwrite=overwrite, error=ConfigError)
     return Overlay(target, merge_file, tuple(plates))
 

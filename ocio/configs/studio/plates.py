@@ -13,6 +13,7 @@ from ocio.configs.file_rules import LINEAR_SUFFIX, file_rules
 from ocio.configs.files import plate_exposure
 from ocio.configs.plate_color_space import FAMILY
 from ocio.configs.plate_views import plate_views
+from ocio.configs.reference_space import lut_file_of
 from ocio.configs.studio.sources import ConfigSource
 from ocio.output_files import check_config_folder
 
@@ -76,11 +77,8 @@ def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
 def plate_in_config(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:
     """Return what a config has of a plate."""
     name = space.getName()
-    transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
-    first = next(iter(transform), None) if isinstance(transform, OCIO.GroupTransform) else transform
-    lut_file = first.getSrc() if isinstance(first, OCIO.FileTransform) else ""
     rules = file_rules(config, (name, name + LINEAR_SUFFIX))
-    return PlateInConfig(name, lut_file, plate_exposure(space), rules, plate_views(config, name))
+    return PlateInConfig(name, lut_file_of(space), plate_exposure(space), rules, plate_views(config, name))
 
 
 def checked_target(source: ConfigSource, target: Path | None) -> Path:

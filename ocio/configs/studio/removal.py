@@ -8,14 +8,14 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from ocio.configs.files import write_config
+from ocio.configs.files import load_config, write_config
 from ocio.configs.installation_record import (
-    RECORD_NAME,
     InstallationRecord,
     backed_up,
     digest,
     own_folder,
     read_record,
+    record_file,
     write_record,
 )
 from ocio.configs.plate_color_space import without_plate_color_space
@@ -56,12 +56,12 @@ def _write_less(
     """Write a config after plates were taken out, or put its backup back; return the backup's name if one remains."""
     folder, kept = own_folder(target), plates_in_config(config)
     earlier = record.backup if record and digest(target) == record.sha256 and not kept else None
-    if earlier is not None and target.with_name(earlier).is_file():
+    if earlier is not None and _is_without_plates(target.with_name(earlier)):
         target.with_name(earlier).replace(target)
         backup, is_recorded = None, False
     else:
-        backup = backed_up(target, record)
-        write_config(target, config, check={}, overwrite=True)
+        with backed_up(target, record) as backup:
+            write_config(target, config, check={}, overwrite=True)
         is_recorded = bool(kept or backup) or is_blender_config(target)
     unused = {plate.lut_file for plate in plates} - {plate.lut_file for plate in kept}
     for lut_file in unused:
@@ -73,7 +73,15 @@ def _write_less(
         folder.mkdir(exist_ok=True)
         write_record(target, InstallationRecord(digest(target), backup, record.folders if record else (), identities))
     elif folder.is_dir():
-        (folder / RECORD_NAME).unlink(missing_ok=True)
+        record_file(target).unlink(missing_ok=True)
         if not any(folder.iterdir()):
             folder.rmdir()
     return backup
+
+
+def _is_without_plates(backup: Path) -> bool:
+    """Return whether a backup is there and has no plates: one of a config that was ours, and was changed, has some."""
+    try:
+        return backup.is_file() and not plates_in_config(load_config(backup))
+    except ConfigError:
+        return True  # no config, but a file that was replaced

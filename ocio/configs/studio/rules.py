@@ -66,7 +66,7 @@ class PlateRules:
         common = sorted({name for name in look.photographs if is_counter_name(name)})
         notes = []
         if is_shared and not patterns:
-            notes.append("no file rules: a Blender's config holds for all projects; --rule PATTERN makes one")
+            notes.append("no file rules: Blender's config is that of all projects; --rule PATTERN makes one")
         elif common and not patterns:
             first = common[0]
             notes.append(f"no file rule for {first}: many cameras give such names; --rule PATTERN makes one")

@@ -141,7 +141,7 @@ def test_a_config_of_somebody_else_is_kept_and_restored(folder, base):
     assert install(folder, base, SPACE, OTHER_LUT, plate=PLATE).backup == done.backup
     assert not (folder / "luts").exists(), "the folders of the base are not needed"
     assert not restore(folder).is_removed
-    assert (folder / CONFIG_NAME).read_bytes() == before[CONFIG_NAME]
+    assert tree(folder) == before, "our LUT is gone, too"
     with pytest.raises(ConfigError, match="there is nothing to restore"):
         restore(folder)
 
@@ -159,6 +159,21 @@ def test_a_config_changed_since_gets_a_backup_of_its_own(folder, base):
     second = install(folder, base, SPACE, LUT, plate=PLATE).backup
     assert second != first
     assert second.read_bytes().endswith(b"# mine again\n")
+
+
+def test_a_config_that_was_ours_and_was_changed_comes_back_without_our_spaces(folder, base):
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    changed = loaded(folder / CONFIG_NAME)
+    changed.setDescription("mine")
+    (folder / CONFIG_NAME).write_text(changed.serialize())
+    install(folder, base, SPACE, OTHER_LUT, plate=PLATE)
+    uninstall(folder, SPACE.name)
+    restored = loaded(folder / CONFIG_NAME)
+    assert restored.getDescription() == "mine"
+    assert restored.getColorSpace(SPACE.name) is None
+    assert installed_color_spaces(folder) == ()
+    assert not (folder / FOLDER).exists()
+    assert (folder / "luts").is_dir(), "the config needs the folders of its base"
 
 
 @pytest.mark.parametrize("change", [None, {"folders": [5]}, {"backup": 5}, {"folders": [".."]}, {"backup": "../a"}])
@@ -189,6 +204,23 @@ def test_what_was_written_goes_again_after_a_failure(folder, base, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         install(folder, base, SPACE, LUT, plate=PLATE)
     assert not folder.exists()
+
+
+@pytest.mark.parametrize("step", ["write_config", "write_record"])
+@pytest.mark.parametrize("is_changed", [False, True])
+def test_a_failure_leaves_the_earlier_lut_and_config(folder, base, monkeypatch, step, is_changed):
+    install(folder, base, SPACE, LUT, plate=PLATE)
+    if is_changed:
+        (folder / CONFIG_NAME).write_text((folder / CONFIG_NAME).read_text() + "\n# mine\n")
+    before = tree(folder)
+
+    def fail(*arguments, **options):
+        raise ConfigError("the disk is full")
+
+    monkeypatch.setattr(installed, step, fail)
+    with pytest.raises(ConfigError, match="the disk is full"):
+        install(folder, base, SPACE, OTHER_LUT, plate=PLATE)
+    assert tree(folder) == before
 
 
 def test_a_name_that_the_config_uses_is_refused(folder, base):

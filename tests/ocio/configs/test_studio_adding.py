@@ -10,6 +10,7 @@ from crfnet_core.errors import ConfigError
 from crfnet_core.metadata.color_tags import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
 from ocio.configs.plate_views import view_names
 from ocio.configs.reference_space import REC709_TO_AP0
+from ocio.configs.studio import additions
 from ocio.configs.studio.aces_check import check_in_ap0
 from ocio.configs.studio.plates import plates_in_config
 from tests.helpers.configs import converted, loaded
@@ -175,6 +176,20 @@ class TestAddingElsewhere:
         done = add(STUDIO, small_look, out, overwrite=True)
         assert done.backup.read_text() == "mine"
 
+    @pytest.mark.parametrize("step", ["check_in_ap0", "write_config", "write_record"])
+    def test_a_failure_leaves_everything_as_it_was(self, studio, small_look, monkeypatch, step):
+        add(studio, small_look)
+        studio.write_text(studio.read_text() + "\n# mine\n")
+        before = tree(studio.parent)
+
+        def fail(*arguments, **options):
+            raise ConfigError("the disk is full")
+
+        monkeypatch.setattr(additions, step, fail)
+        with pytest.raises(ConfigError, match="the disk is full"):
+            add(studio, write_look(small_look, lut=OTHER_LUT))
+        assert tree(studio.parent) == before
+
     def test_the_same_again_changes_no_byte(self, small_look, tmp_path):
         add(STUDIO, small_look, tmp_path / "show" / "config.ocio", has_views=True)
         before = tree(tmp_path / "show")
@@ -189,5 +204,5 @@ class TestAddingElsewhere:
 
 
 def test_a_config_without_aces_is_not_checked_and_says_so(tmp_path):
-    notes = check_in_ap0(OCIO.Config.CreateRaw(), tmp_path, {}, {})
+    notes = check_in_ap0(OCIO.Config.CreateRaw(), tmp_path, {})
     assert notes == ["not checked in ACES2065-1: the config has no role aces_interchange"]

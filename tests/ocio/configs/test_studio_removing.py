@@ -45,6 +45,13 @@ class TestRemoving:
         assert loaded(studio).getColorSpace("color_picking").getName() == "ACEScct"
         assert plates_in_config(loaded(studio)) == []
 
+    def test_a_backup_with_plates_in_it_is_not_put_back(self, studio, small_look, tmp_path):
+        add(studio, small_look)
+        studio.write_text(studio.read_text() + "\n# mine\n")
+        add(studio, write_look(tmp_path / "two", ["b.jpg"]))
+        remove_plates(find_config(str(studio)), [NAME, "CRF b"])
+        assert plates_in_config(loaded(studio)) == []
+
     def test_a_config_that_was_made_for_the_plates_stays(self, small_look, tmp_path):
         add(STUDIO, small_look, tmp_path / "show" / "config.ocio", has_views=True)
         remove_plates(find_config(str(tmp_path / "show")), [NAME])

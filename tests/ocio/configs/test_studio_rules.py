@@ -71,7 +71,7 @@ class TestRules:
         (folder / "config.ocio").write_text(portable_config([]).serialize())
         done = add(folder, small_look)
         assert rule_names(loaded(done.config)) == rule_names(portable_config([]))
-        assert "a Blender's config holds for all projects" in done.notes[0]
+        assert "Blender's config is that of all projects" in done.notes[0]
         assert NAME in rule_names(loaded(add(folder, small_look, patterns=("plate01.jpg",)).config))
 
 
