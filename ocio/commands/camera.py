@@ -99,12 +99,12 @@ def _remove(arguments: argparse.Namespace) -> None:
 def _export(arguments: argparse.Namespace) -> None:
     """Write the response of a camera as a LUT, for another program, or as the library keeps it."""
     camera, out = find_camera(arguments.name), arguments.out
-    notes: list[str] = []
+    notes: tuple[str, ...] = ()
     if out.suffix.lower() == ".json":
         atomic_write_text(out, json_text(camera_document(camera)), overwrite=arguments.overwrite, error=CameraError)
     else:
         lut = pipeline.response_lut(camera_estimate(camera, model=pipeline.model_label(arguments.model)))
-        notes += filter(None, [write_response(out, lut, overwrite=arguments.overwrite)])
+        notes = write_response(out, lut, overwrite=arguments.overwrite)
     if arguments.json:
         print_json({"camera": camera.name, "written": str(out), "notes": notes})
     else:

@@ -24,12 +24,12 @@ def run(arguments: argparse.Namespace) -> None:
         print_lines([*(f"{note}." for note in notes), f"Written: {arguments.out}."])
 
 
-def _write(out: Path, lut: AnyLut, *, is_forward: bool, overwrite: bool) -> list[str]:
+def _write(out: Path, lut: AnyLut, *, is_forward: bool, overwrite: bool) -> tuple[str, ...]:
     """Write the file and return what is to be said of it."""
     if not is_forward:
-        return list(filter(None, [write_response(out, lut, overwrite=overwrite)]))
+        return write_response(out, lut, overwrite=overwrite)
     if out.suffix.lower() not in WRITERS:
         raise LutError(f"{out}: --forward is for LUTs; give a name that ends in {', '.join(WRITERS)}")
     table = forward_lut(lut)
     write_lut(out, table, overwrite=overwrite)
-    return list(table.comments[:2])
+    return table.comments[:2]

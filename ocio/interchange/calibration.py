@@ -12,7 +12,10 @@ from crfnet_core.response import nearest_increasing
 from crfnet_core.types import Float64Array
 from ocio.interchange.response_file import ResponseFile, described
 from ocio.luts.lut1d import MAX_LENGTH, single_precision, strictly_increasing
-from ocio.luts.rgb_lut import lut_of_columns
+from ocio.luts.rgb_lut import AnyLut, lut_of_columns
+
+#: Codes of the files that are written, as of pictures of 8 bits.
+CODES = 256
 
 #: How much farther than the step before it the last code may lie before it is taken for clipped light.
 CLIPPED_STEP = 4.0
@@ -70,19 +73,14 @@ def calibrated_response(path: Path, table: ArrayLike, source: str) -> ResponseFi
     return described(path, ResponseFile(lut, source), notes)
 
 
-def codes_table(light: Float64Array, *, middle: int) -> Float64Array:
-    """Return light per code as calibrations scale it: 1 at the middle code, and above 0 everywhere.
+def codes_table(lut: AnyLut) -> Float64Array:
+    """Return an inverse response as light per 8-bit code, shape (256, 3): 1 at code 128 of green, above 0 everywhere.
 
     Programs take the logarithm of the light, so a black of 0 becomes half the light of the next code.
-
-    Parameters
-    ----------
-    light : ndarray, shape (N, 3)
-        Linear light of N uniform codes, increasing.
-    middle : int
-        The code whose light, of green, becomes 1.
     """
-    scaled = light / light[middle, 1]
+    codes = np.linspace(0, 1, CODES)
+    light = np.broadcast_to(np.stack([channel.apply(codes) for channel in lut.channels], axis=1), (CODES, 3))
+    scaled = light / light[CODES // 2, 1]
     scaled[0] = np.where(scaled[0] > 0, scaled[0], scaled[1] / 2)
     return np.asarray(np.maximum(single_precision(scaled), np.finfo(np.float32).tiny))
 

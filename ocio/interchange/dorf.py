@@ -20,6 +20,7 @@ from crfnet_core.files import atomic_write_text
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array
 from ocio.interchange.response_file import ResponseFile, from_curve
+from ocio.luts.response import brightness_samples
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText
 
@@ -62,7 +63,7 @@ def read_dorf(path: Path, *, curve: str = "") -> ResponseFile:
     return from_curve(path, samples, f"DoRF curve {chosen.name}")
 
 
-def write_dorf(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
+def write_dorf(path: Path, lut: AnyLut, *, overwrite: bool = False) -> tuple[str, ...]:
     """Write the response of an inverse one: a curve of 1024 samples, or one for each of R, G and B.
 
     Raises
@@ -71,13 +72,11 @@ def write_dorf(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
         If the file exists and may not be replaced, or cannot be written.
     """
     names = [path.stem] if len(lut.channels) == 1 else [f"{path.stem} {channel}" for channel in "RGB"]
-    lines = []
+    light, lines = _row(np.linspace(0, 1, SAMPLES)), []
     for name, channel in zip(names, lut.channels, strict=True):
-        black, white = channel.apply(np.array([0.0, 1.0]))
-        light = np.linspace(0, 1, SAMPLES)
-        brightness = np.clip(channel.apply_inverse(black + light * (white - black)), 0, 1)
-        lines += [name, "graph", "I =", _row(light), "B =", _row(brightness)]
+        lines += [name, "graph", "I =", light, "B =", _row(brightness_samples(channel))]
     atomic_write_text(path, "\n".join([*lines, ""]), overwrite=overwrite, error=LutError)
+    return ()
 
 
 def _row(values: Float64Array) -> str:

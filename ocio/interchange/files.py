@@ -19,7 +19,7 @@ from ocio.luts.rgb_lut import AnyLut
 SEVERAL: dict[str, Callable[..., ResponseFile]] = {".txt": read_dorf, ".pto": read_hugin}
 
 #: The reader of each other format, by suffix.
-READERS: dict[str, Callable[[Path], ResponseFile]] = {
+RESPONSE_READERS: dict[str, Callable[[Path], ResponseFile]] = {
     ".npy": read_opencv,
     ".yml": read_opencv,
     ".yaml": read_opencv,
@@ -31,7 +31,7 @@ READERS: dict[str, Callable[[Path], ResponseFile]] = {
 }
 
 #: The writer of each format of other programs, by suffix.
-RESPONSE_WRITERS: dict[str, Callable[..., str | None]] = {
+RESPONSE_WRITERS: dict[str, Callable[..., tuple[str, ...]]] = {
     ".npy": write_opencv,
     ".yml": write_opencv,
     ".yaml": write_opencv,
@@ -42,7 +42,7 @@ RESPONSE_WRITERS: dict[str, Callable[..., str | None]] = {
 }
 
 #: Every suffix that can be read, and every one that can be written.
-READABLE = (*WRITERS, *READERS, *SEVERAL)
+READABLE = (*WRITERS, *RESPONSE_READERS, *SEVERAL)
 WRITABLE = (*WRITERS, *RESPONSE_WRITERS)
 
 
@@ -68,15 +68,15 @@ def read_response(path: str | Path, *, curve: str = "") -> ResponseFile:
     if suffix in SEVERAL:
         return SEVERAL[suffix](path, curve=curve)
     if curve:
-        raise LutError(f"{path}: holds one response, so there is no {curve!r} to choose; leave it away")
-    if suffix in READERS:
-        return READERS[suffix](path)
+        raise LutError(f"{path}: holds one response, so there is no {curve!r} to choose; leave --curve out")
+    if suffix in RESPONSE_READERS:
+        return RESPONSE_READERS[suffix](path)
     found = from_lut(read_lut(path), f"LUT of the format {suffix}")
     return described(path, found) if found.was_forward else found
 
 
-def write_response(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> str:
-    """Write an inverse response in any known format, and return what is to be said of the file, or "".
+def write_response(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> tuple[str, ...]:
+    """Write an inverse response in any known format, and return what is to be said of the file.
 
     Parameters
     ----------
@@ -96,7 +96,7 @@ def write_response(path: str | Path, lut: AnyLut, *, overwrite: bool = False) ->
     suffix = path.suffix.lower()
     if suffix in WRITERS:
         write_lut(path, lut, overwrite=overwrite)
-        return ""
+        return ()
     if suffix not in RESPONSE_WRITERS:
         raise LutError(f"{path}: responses are written as {', '.join(WRITABLE)}; found {suffix or 'no suffix'!r}")
-    return RESPONSE_WRITERS[suffix](path, lut, overwrite=overwrite) or ""
+    return RESPONSE_WRITERS[suffix](path, lut, overwrite=overwrite)

@@ -20,10 +20,9 @@ import numpy as np
 from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write
-from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array
 from ocio.interchange.response_file import ResponseFile, from_curve
-from ocio.luts.lut1d import Lut1D
+from ocio.luts.response import brightness_samples
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText
 
@@ -90,7 +89,7 @@ def read_hugin(path: Path, *, curve: str = "") -> ResponseFile:
     return from_curve(path, hugin_response(np.array(chosen)), "Hugin's EMoR parameters", notes)
 
 
-def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> str:
+def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> tuple[str, ...]:
     """Set the response of all images of an existing Hugin project, and return in words how well five parameters do.
 
     The rest of the project stays as it is, byte for byte. An image whose parameters are linked to another's keeps the
@@ -107,7 +106,7 @@ def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> str:
         raise LutError(f"{path}: Hugin has one response for R, G and B; give one that treats the channels alike")
     source = LutText.read(path)
     _image_parameters(source)
-    brightness = _brightness(lut.channels[0])
+    brightness = brightness_samples(lut.channels[0])
     parameters = hugin_parameters(brightness)
     values = dict(zip(NAMES, parameters.tolist(), strict=True))
 
@@ -123,7 +122,7 @@ def write_hugin(path: Path, lut: AnyLut, *, overwrite: bool = False) -> str:
         temporary.write_bytes(_IMAGE_LINE.sub(changed_line, text).encode("latin-1"))
     error = np.sqrt(np.mean((hugin_response(parameters) - brightness) ** 2))
     named = ", ".join(f"{name}={value:.4g}" for name, value in values.items())
-    return f"{named}: off by {100 * error:.2g} % of the brightness range (RMS)"
+    return (f"{named}: off by {100 * error:.2g} % of the brightness range (RMS)",)
 
 
 def _image_parameters(source: LutText) -> list[tuple[float, ...]]:
@@ -150,9 +149,3 @@ def _image_parameters(source: LutText) -> list[tuple[float, ...]]:
             values += source.numbers(text, None, count=1)
         images.append(tuple(values))
     return images
-
-
-def _brightness(lut: Lut1D) -> Float64Array:
-    """Return the response at 1024 uniform irradiances from black to white."""
-    black, white = lut.apply(np.array([0.0, 1.0]))
-    return np.asarray(np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1), dtype=np.float64)

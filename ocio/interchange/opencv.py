@@ -19,13 +19,10 @@ import numpy as np
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write, atomic_write_text, read_bytes
 from crfnet_core.types import Float64Array
-from ocio.interchange.calibration import calibrated_response, codes_table
+from ocio.interchange.calibration import CODES, calibrated_response, codes_table
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import MAX_FILE_SIZE, LutText
-
-#: Codes of a response.
-CODES = 256
 
 _YAML = """%YAML:1.0
 ---
@@ -66,7 +63,7 @@ def read_opencv(path: Path) -> ResponseFile:
     return calibrated_response(path, channels, "OpenCV response (channels B, G, R)")
 
 
-def write_opencv(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
+def write_opencv(path: Path, lut: AnyLut, *, overwrite: bool = False) -> tuple[str, ...]:
     """Write an inverse response for cv2.createMergeDebevec and cv2.createMergeRobertson, as .npy, .yml, .yaml or .xml.
 
     Raises
@@ -74,17 +71,15 @@ def write_opencv(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
     LutError
         If the file exists and may not be replaced, or cannot be written.
     """
-    codes = np.linspace(0, 1, CODES)
-    light = np.stack([channel.apply(codes) for channel in lut.channels], axis=1)
-    light = np.broadcast_to(light, (CODES, 3))
-    response = codes_table(light, middle=CODES // 2)[:, ::-1].astype(np.float32)[:, None]  # (256, 1, 3): B, G, R
+    response = codes_table(lut)[:, ::-1].astype(np.float32)[:, None]  # (256, 1, 3): B, G, R
     if path.suffix.lower() == ".npy":
         with atomic_write(path, overwrite=overwrite, error=LutError) as temporary, temporary.open("wb") as file:
             np.save(file, response)
-        return
+        return ()
     numbers = ", ".join(f"{value:.9g}" for value in response.ravel().tolist())
     text = _XML.format(numbers.replace(",", "")) if path.suffix.lower() == ".xml" else _YAML.format(numbers)
     atomic_write_text(path, text, overwrite=overwrite, error=LutError)
+    return ()
 
 
 def _read_npy(path: Path) -> Float64Array:

@@ -15,15 +15,12 @@ import numpy as np
 from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.types import Float64Array
-from ocio.interchange.calibration import calibrated_response, codes_table
+from ocio.interchange.calibration import CODES, calibrated_response, codes_table
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText
 
 CHANNELS = ("IR", "IG", "IB")
-
-#: Codes of a file that is written, as of pictures of 8 bits.
-CODES = 256
 
 _MATRIX = re.compile(r"# name: (\w+)\n# type: matrix\n# rows: (\d+)\n# columns: 3\n([^#]*)")
 
@@ -46,7 +43,7 @@ def read_pfstools(path: Path) -> ResponseFile:
     return calibrated_response(path, np.stack(columns, axis=1), "pfstools response")
 
 
-def write_pfstools(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
+def write_pfstools(path: Path, lut: AnyLut, *, overwrite: bool = False) -> tuple[str, ...]:
     """Write an inverse response for `pfshdrcalibrate --response-file`, over codes of 8 bits.
 
     The weights are a Gaussian about the middle code, as wide as pfshdrcalibrate's own.
@@ -56,11 +53,8 @@ def write_pfstools(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
     LutError
         If the file exists and may not be replaced, or cannot be written.
     """
-    codes = np.arange(CODES)
-    light = np.stack([channel.apply(codes / (CODES - 1)) for channel in lut.channels], axis=1)
-    table = codes_table(np.broadcast_to(light, (CODES, 3)), middle=CODES // 2)
     lines = []
-    for name, column in zip(CHANNELS, table.T, strict=True):
+    for name, column in zip(CHANNELS, codes_table(lut).T, strict=True):
         lines += [
             f"# Camera response curve, channel {name}",
             "# data layout: log10(response) | camera output | response",
@@ -69,7 +63,7 @@ def write_pfstools(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
         lines += [f" {np.log10(light):.6e} {code:4d} {light:.6e}" for code, light in enumerate(column.tolist())]
         lines.append("")
     lines += ["# Weighting function", "# data layout: weight | camera output", "# name: W", "# type: matrix"]
-    weights = np.exp(-((codes / (CODES - 1) - 0.5) ** 2) / (2 * 0.2**2))
+    weights = np.exp(-((np.linspace(0, 1, CODES) - 0.5) ** 2) / (2 * 0.2**2))
     lines += [
         f"# rows: {CODES}",
         "# columns: 2",
@@ -77,6 +71,7 @@ def write_pfstools(path: Path, lut: AnyLut, *, overwrite: bool = False) -> None:
         "",
     ]
     atomic_write_text(path, "\n".join([*lines, ""]), overwrite=overwrite, error=LutError)
+    return ()
 
 
 def _light(source: LutText, rows: int, text: str) -> Float64Array:

@@ -12,9 +12,9 @@ from crfnet_core.errors import CurveError, LutError
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 from ocio.defaults import LUT_LENGTH
-from ocio.luts.forward import is_forward
 from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from ocio.luts.rgb_lut import AnyLut, RgbLut1D
+from ocio.luts.response import is_forward
+from ocio.luts.rgb_lut import AnyLut, lut_of_channels
 
 
 @dataclass(frozen=True)
@@ -68,5 +68,4 @@ def from_lut(lut: AnyLut, source: str) -> ResponseFile:
         return ResponseFile(lut, source)
     codes = np.linspace(0, 1, LUT_LENGTH)
     tables = [Lut1D(strictly_increasing(channel.apply_inverse(codes))) for channel in lut.channels]
-    inverse = tables[0] if len(tables) == 1 else RgbLut1D(tuple(tables))
-    return ResponseFile(replace(inverse, comments=lut.comments), source, was_forward=True)
+    return ResponseFile(replace(lut_of_channels(tables), comments=lut.comments), source, was_forward=True)

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from ocio.luts.lut1d import Lut1D, strictly_increasing
-from ocio.luts.response import MOST_MEAN
-from ocio.luts.rgb_lut import AnyLut, RgbLut1D
+from ocio.luts.rgb_lut import AnyLut, lut_of_channels
 
 #: How the comment begins that says that a LUT is an inverse response.
 INVERSE_COMMENT = "Inverse camera response"
@@ -46,9 +47,7 @@ def forward_lut(lut: AnyLut) -> AnyLut:
         f"Gives every code back from its linear light within, in codes, {errors}",
         *(comment for comment in lut.comments if not comment.startswith(INVERSE_COMMENT)),
     )
-    if isinstance(forward, RgbLut1D):
-        return RgbLut1D(forward.channels, comments)
-    return Lut1D(forward.values, forward.domain, comments)
+    return replace(forward, comments=comments)
 
 
 def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
@@ -70,25 +69,10 @@ def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
     return float(np.max(errors) * largest)
 
 
-def is_forward(lut: AnyLut) -> bool:
-    """Return whether a LUT brightens on average over its domain: it then leads from light to code values.
-
-    The inverses of camera responses darken: in linear light the mean is 0.5 of the range, in theirs it is less.
-    """
-    ramp = np.linspace(*lut.domain, 1024)
-    means = []
-    for channel in lut.channels:
-        first, last = channel.values[0], channel.values[-1]
-        means.append((channel.apply(ramp).mean() - first) / (last - first))
-    return bool(np.mean(means) > MOST_MEAN)
-
-
 def _sampled(lut: AnyLut, length: int) -> AnyLut:
     """Return the inverse of a LUT at uniform inputs; the channels get one domain."""
     ends = np.array([channel.apply(np.array([0.0, 1.0])) for channel in lut.channels])  # (1 or 3, 2)
     domain = float(ends[:, 0].min()), float(ends[:, 1].max())
     light = np.linspace(*domain, length)
-    tables = [
-        Lut1D(strictly_increasing(np.clip(channel.apply_inverse(light), 0, 1)), domain) for channel in lut.channels
-    ]
-    return tables[0] if len(tables) == 1 else RgbLut1D(tuple(tables))
+    tables = [strictly_increasing(np.clip(channel.apply_inverse(light), 0, 1)) for channel in lut.channels]
+    return lut_of_channels([Lut1D(table, domain) for table in tables])

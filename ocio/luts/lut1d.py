@@ -11,7 +11,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import BLOCK, ResponseCurve
-from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.types import EqualByFields, Float64Array
 from ocio.defaults import LUT_LENGTH
 
 #: Largest number of entries that every format and host accepts.
@@ -31,7 +31,7 @@ BELOW_NORMAL = 0x007FFFFF
 
 
 @dataclass(frozen=True, eq=False)
-class Lut1D:
+class Lut1D(EqualByFields):
     """A strictly increasing table, interpolated linearly between its entries, the same for R, G and B.
 
     All numbers are rounded to float32, the precision of LUT hosts. Written with nine digits they are therefore read
@@ -75,9 +75,6 @@ class Lut1D:
         object.__setattr__(self, "domain", (low, high))
         object.__setattr__(self, "comments", clean_comments(self.comments))
 
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, Lut1D) else NotImplemented
-
     @property
     def identity(self) -> str:
         """A name that depends on nothing but the table and its domain: a part of their SHA-256."""
@@ -104,8 +101,13 @@ class Lut1D:
         -------
         ndarray, float32 or float64, of the shape of `pixels`
             Outputs between the first and the last value.
+
+        Raises
+        ------
+        LutError
+            If integers beyond the domain, and above 1, are given: code values, which have to be divided.
         """
-        inputs = _floating(pixels)
+        inputs = _floating(pixels, last=self.domain[1])
         outputs = np.empty(inputs.shape, inputs.dtype)
         values = self.values.astype(inputs.dtype)
         source, target, steps = inputs.reshape(-1), outputs.reshape(-1), np.diff(values)
@@ -143,8 +145,13 @@ class Lut1D:
         -------
         ndarray, float32 or float64, of the shape of `pixels`
             Inputs within `domain`; float32 for half and single precision, else float64.
+
+        Raises
+        ------
+        LutError
+            If integers above the last value, and above 1, are given.
         """
-        outputs = _floating(pixels)
+        outputs = _floating(pixels, last=float(self.values[-1]))
         known = np.where(np.isnan(outputs), -np.inf, outputs).astype(np.float64)
         grid = np.linspace(*self.domain, self.values.size)
         return np.asarray(np.interp(known, self.values, grid), dtype=outputs.dtype)
@@ -255,7 +262,12 @@ def single_precision(values: ArrayLike) -> Float64Array:
     return np.where(np.abs(single) < np.finfo(np.float32).tiny, 0, single).astype(np.float64)
 
 
-def _floating(pixels: ArrayLike) -> NDArray[np.floating]:
-    """Return float32 for half and single precision, float64 for everything else."""
+def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
+    """Return float32 for half and single precision, float64 for everything else; refuse integers above `last`."""
     given = np.asarray(pixels)
+    if given.dtype.kind in "iu" and given.size and given.max() > max(last, 1):
+        raise LutError(
+            f"found integers up to {given.max()}, but the LUT ends at {last:g}: divide code values by the largest code,"
+            " such as 255"
+        )
     return given.astype(np.float32 if given.dtype in (np.float16, np.float32) else np.float64, copy=False)

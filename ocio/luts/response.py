@@ -6,12 +6,14 @@ import numpy as np
 
 from crfnet_core.errors import LutError
 from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
+from ocio.luts.lut1d import Lut1D
 from ocio.luts.rgb_lut import AnyLut, RgbLut1D
 
 #: Largest irradiance of brightness 0, as a part of that of brightness 1.
 MOST_BLACK = 0.01
 
-#: Largest mean of an inverse response on [0, 1]; that of linear light is 0.5, those of cameras are below.
+#: Largest mean of an inverse response, as a part of its range; that of linear light is 0.5, those of cameras are below.
 MOST_MEAN = 0.55
 
 
@@ -42,9 +44,27 @@ def response_of_lut(lut: AnyLut) -> ResponseCurve:
     black, white = lut.apply(np.array([0.0, 1.0]))
     if not white > 0 or abs(black) > MOST_BLACK * white:
         raise LutError(f"the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0")
-    mean = float(lut.apply(np.linspace(0, 1, SAMPLES)).mean() - black) / float(white - black)
-    if mean > MOST_MEAN:
+    if is_forward(lut):
         raise LutError("the LUT brightens, so it leads from light to code values; give its inverse")
-    brightness = np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1)
+    brightness = brightness_samples(lut)
     brightness[0], brightness[-1] = 0, 1
     return ResponseCurve(brightness)
+
+
+def brightness_samples(lut: Lut1D) -> Float64Array:
+    """Return the response of a LUT of its inverse at 1024 uniform irradiances from black to white, in [0, 1]."""
+    black, white = lut.apply(np.array([0.0, 1.0]))
+    return np.asarray(np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1), dtype=np.float64)
+
+
+def is_forward(lut: AnyLut) -> bool:
+    """Return whether a LUT brightens on average over its domain: it then leads from light to code values.
+
+    The inverses of camera responses darken: in linear light the mean is 0.5 of the range, in theirs it is less.
+    """
+    ramp = np.linspace(*lut.domain, SAMPLES)
+    means = []
+    for channel in lut.channels:
+        first, last = channel.values[0], channel.values[-1]
+        means.append((channel.apply(ramp).mean() - first) / (last - first))
+    return bool(np.mean(means) > MOST_MEAN)

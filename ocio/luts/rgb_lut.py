@@ -75,6 +75,11 @@ class RgbLut1D:
 AnyLut: TypeAlias = Lut1D | RgbLut1D
 
 
+def lut_of_channels(tables: Sequence[Lut1D]) -> AnyLut:
+    """Return the LUT of one table for all channels, or of three for R, G and B."""
+    return tables[0] if len(tables) == 1 else RgbLut1D(tuple(tables))
+
+
 def lut_of_columns(
     columns: ArrayLike, *, domain: tuple[float, float] = (0.0, 1.0), comments: Sequence[str] = ()
 ) -> AnyLut:

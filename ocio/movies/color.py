@@ -71,10 +71,12 @@ class Coding:
             Height of the picture as stored.
         """
         if is_rgb:
-            return cls("RGB", 0.0, 0.0, True, False)
+            return cls("RGB", 0.0, 0.0, is_full_range=True, is_centered=False)
         if is_gray:
             untold = ("does not say its range: full taken, as it is gray",) if color_range == 0 and not is_jpeg else ()
-            return cls("RGB", 0.0, 0.0, color_range in (0, FULL_RANGE), False, untold)
+            return cls(
+                "RGB", 0.0, 0.0, is_full_range=color_range in (0, FULL_RANGE), is_centered=False, assumptions=untold
+            )
         assumptions = []
         if matrix in (UNSPECIFIED, RGB):
             matrix = 5 if is_jpeg or lines < HD_LINES else 1

@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from crfnet_core.errors import PlateError
+from crfnet_core.image_io.file_kinds import AVIF_BRANDS, HEIC_BRANDS
 
 if TYPE_CHECKING:
     from av.container import InputContainer
@@ -18,10 +19,7 @@ if TYPE_CHECKING:
 QUICKTIME_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot")
 
 #: Brands of files that begin like MP4 and hold still pictures: HEIF, AVIF, Canon's camera raw.
-STILL_BRANDS = (
-    *(b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx", b"mif1", b"mif2", b"msf1", b"miaf"),
-    *(b"avif", b"avis", b"crx "),
-)
+STILL_BRANDS = (*HEIC_BRANDS, *AVIF_BRANDS, b"mif1", b"mif2", b"msf1", b"miaf", b"crx ")
 
 #: How other movies begin: Matroska and WebM, MXF, MPEG program and elementary streams, Flash, Windows Media.
 SIGNATURES = (

@@ -15,6 +15,8 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
+from ocio.movies.library import QUICKTIME_BOXES
+
 #: Texts in a movie, outside of its pictures, or beside it -> the curve, as `crfnet_core.recognition` names it.
 TEXTS = {
     rb"com\.apple\.rec2020\.apple-log": "Apple Log",
@@ -59,7 +61,7 @@ def log_curve(path: Path, metadata: Mapping[str, str]) -> str:
 
 def _beside_pictures(content: mmap.mmap) -> Iterator[slice]:
     """Yield the parts of a file that hold no pictures: the boxes of QuickTime and MP4, or its two ends."""
-    if content[4:8] not in (b"ftyp", b"moov", b"wide", b"free", b"skip", b"mdat", b"pnot"):
+    if content[4:8] not in QUICKTIME_BOXES:
         yield from (slice(0, _ENDS), slice(max(0, len(content) - _ENDS), len(content)))
         return
     start = 0

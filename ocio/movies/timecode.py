@@ -53,14 +53,13 @@ class Timecode:
         is_drop_frame = match[4] != ":" and nominal % 30 == 0
         count = (hours * 3600 + minutes * 60 + seconds) * nominal + frames
         if is_drop_frame:
-            total_minutes = hours * 60 + minutes
-            count -= nominal // 15 * (total_minutes - total_minutes // 10)
+            count -= _dropped(hours * 60 + minutes, nominal)
         return cls(count, nominal, is_drop_frame)
 
     def later(self, frames: int) -> Timecode:
         """Return the timecode so many frames later; after 24 hours it begins anew."""
         minutes = 24 * 60
-        day = minutes * 60 * self.rate - (self.rate // 15 * (minutes - minutes // 10) if self.is_drop_frame else 0)
+        day = minutes * 60 * self.rate - (_dropped(minutes, self.rate) if self.is_drop_frame else 0)
         return Timecode((self.count + frames) % day, self.rate, self.is_drop_frame)
 
     @property
@@ -92,3 +91,8 @@ class Timecode:
         parts = (frames, seconds, minutes, hours)
         digits = sum((part // 10 << 4 | part % 10) << 8 * index for index, part in enumerate(parts))
         return digits | self.is_drop_frame << 6 | field << 15, 0
+
+
+def _dropped(minutes: int, rate: int) -> int:
+    """Return how many numbers drop-frame counting leaves out in some minutes: 2 a minute at 30, but of each tenth."""
+    return rate // 15 * (minutes - minutes // 10)

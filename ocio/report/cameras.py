@@ -54,18 +54,20 @@ def photograph_documents(camera: Camera, found: Mapping[str, CameraAnswer]) -> l
     found : mapping of str to CameraAnswer
         As `crfnet_core.cameras.differences` returns it.
     """
-    return [
-        {
-            "name": photograph.name,
-            "sha256": photograph.sha256,
-            "network": photograph.model,
-            "iso": next(iter(photograph.settings.iso), None),
-            "difference_stops": found[key].difference_stops if (key := photograph.sha256) in found else None,
-            "difference": found[key].difference if key in found else None,
-            "agrees": found[key].agrees if key in found else None,
-        }
-        for photograph in camera.photographs
-    ]
+    return [_photograph_document(each, found.get(each.sha256)) for each in camera.photographs]
+
+
+def _photograph_document(photograph: KeptPhotograph, answer: CameraAnswer | None) -> dict[str, Any]:
+    """Return a photograph, with how far it is from the others; null where that is not known."""
+    return {
+        "name": photograph.name,
+        "sha256": photograph.sha256,
+        "network": photograph.model,
+        "iso": next(iter(photograph.settings.iso), None),
+        "difference_stops": answer and answer.difference_stops,
+        "difference": answer and answer.difference,
+        "agrees": answer and answer.agrees,
+    }
 
 
 def photograph_lines(camera: Camera, found: Mapping[str, CameraAnswer], *, model: str) -> list[str]:

@@ -4,7 +4,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.interchange.files import READERS, SEVERAL, read_response, write_response
+from ocio.interchange.files import RESPONSE_READERS, SEVERAL, read_response, write_response
 from ocio.luts.files import WRITERS, read_lut, write_lut
 from ocio.luts.lut1d import Lut1D, strictly_increasing
 from ocio.luts.rgb_lut import RgbLut1D
@@ -94,7 +94,7 @@ def responses(tmp_path):
     """A file of each format of other programs, by suffix."""
     lut = Lut1D(np.linspace(0, 1, 300) ** 2.2)
     texts = {".csp": CSP, ".3dl": DL3, ".lut": HOUDINI, ".pto": 'i w640 h480 Ra1.5 Rb0 Rc0 Rd0 Re0 n"a.jpg"\n'}
-    for suffix in (*READERS, *SEVERAL):
+    for suffix in (*RESPONSE_READERS, *SEVERAL):
         path = tmp_path / f"seed{suffix}"
         if suffix in texts:
             path.write_text(texts[suffix])

@@ -11,9 +11,9 @@ from crfnet_core.errors import LutError
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response import ResponseCurve
 from ocio.luts.files import read_lut, write_lut
-from ocio.luts.forward import LENGTHS, forward_lut, is_forward, round_trip_error
+from ocio.luts.forward import LENGTHS, forward_lut, round_trip_error
 from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from ocio.luts.response import response_of_lut
+from ocio.luts.response import is_forward, response_of_lut
 from ocio.luts.rgb_lut import RgbLut1D, lut_of_columns
 
 SUFFIXES = (".spi1d", ".cube", ".clf")

@@ -241,3 +241,17 @@ def test_curve_and_longest_lut_agree_on_every_number(true_response, tolerance):
     np.testing.assert_allclose(found, true_response.inverse(pixels), rtol=0, atol=tolerance.lut)
     usual = inverse_response_lut(true_response).apply(pixels)
     np.testing.assert_allclose(usual, true_response.inverse(pixels), rtol=0, atol=5e-5)
+
+
+@pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])
+def test_code_values_are_no_brightness(true_response, step):
+    """`ResponseCurve` refuses them in the same words; clipped, all but the first would be white."""
+    lut = inverse_response_lut(true_response)
+    with pytest.raises(LutError, match="found integers up to 255, but the LUT ends at 1: divide code values"):
+        step(lut, np.array([[[0, 128, 255]]], np.uint8))
+    np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
+
+
+def test_integers_within_the_domain_are_taken():
+    lut = Lut1D(np.linspace(0, 1, 256), domain=(0, 255))
+    np.testing.assert_allclose(lut.apply(np.array([0, 51, 255], np.uint8)), [0, 0.2, 1], atol=1e-6)
