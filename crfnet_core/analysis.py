@@ -135,7 +135,11 @@ def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin 
     """Return what is known of a photograph's making; None if nothing is."""
     if device is None:
         return None if metadata is None else file_origin(metadata)
-    return as_told(file_origin(metadata or FileMetadata()), device)
+    try:
+        return as_told(file_origin(metadata or FileMetadata()), device)
+    except ValueError:
+        names = ", ".join(kind.name for kind in Device)
+        raise PhotoError(f"{device!r} is no device; give one of crfnet_core.metadata.Device: {names}") from None
 
 
 def _thumbnail(pixels: Pixels) -> Float64Array:

@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.response import SAMPLES
-from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.types import EqualByFields, Float64Array
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
@@ -20,7 +20,7 @@ BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
 
 
 @dataclass(frozen=True, eq=False)
-class EmorBasis:
+class EmorBasis(EqualByFields):
     """A mean response and orthonormal components: f = mean + weights @ components.
 
     `data/emor.npz` was computed from the 201 curves of DoRF (Grossberg & Nayar) by
@@ -40,9 +40,6 @@ class EmorBasis:
 
     mean: Float64Array
     components: Float64Array
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, EmorBasis) else NotImplemented
 
     @classmethod
     @cache

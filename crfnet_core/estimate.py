@@ -11,6 +11,7 @@ import numpy as np
 
 from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
 from crfnet_core.emor import EmorBasis
+from crfnet_core.errors import PriorError
 from crfnet_core.metadata import Device, FileOrigin
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photo import Photo
@@ -63,7 +64,7 @@ def estimate_response(
     network : ResponseNetwork
         See `ResponseNetwork.load`.
     prior : Prior, optional
-        How likely each family of responses is beforehand; by default the packaged prior "camera".
+        How likely each family of responses is before photographs are seen; by default the packaged prior "camera".
     bank : ResponseBank, optional
         The responses to choose from; by default the packaged ones.
     use_metadata : bool
@@ -84,7 +85,11 @@ def estimate_response(
     PhotoError
         If there is no photograph, one is smaller than a window, something else is given, or a file names an encoding
         with a published curve.
+    PriorError
+        If the prior is none.
     """
+    if prior is not None and not isinstance(prior, Prior):
+        raise PriorError(f"a {type(prior).__name__} is no Prior; Prior.load makes one of a name or a file")
     analyzed = analyze_photographs(
         photos,
         network=network,

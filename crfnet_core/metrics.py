@@ -6,6 +6,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.types import Float64Array
 
 #: The 8-bit codes between which the shape of a response matters: outside, black level and clipping rule.
 FIRST_SHAPE_CODE, LAST_SHAPE_CODE = 16, 240
@@ -23,14 +24,6 @@ def brightness_percent(error: float) -> float:
     E_est / sqrt(SAMPLES).
     """
     return float(100 * error / np.sqrt(SAMPLES))
-
-
-def beside_limits(value: float, *limits: float) -> str:
-    """Return a number in words with two decimals, or more where two would hide on which side of a limit it lies."""
-    decimals = 2
-    while decimals < 6 and any(_sides(value, limit) != _sides(round(value, decimals), limit) for limit in limits):
-        decimals += 1
-    return f"{value:.{decimals}f}"
 
 
 def linearization_error(
@@ -66,9 +59,7 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     The error is log2(g_hat(B) / g(B)) at the 8-bit codes B from 16 to 240, less its mean over them: a linear plate has
     no absolute scale, so a constant factor is a gain and no error. This is the error that a compositor sees.
     """
-    brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
-    stops = np.log2(estimated.inverse(brightness) / true.inverse(brightness))
-    return float(np.std(stops))
+    return float(np.std(_stops_off(true, estimated)))
 
 
 def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
@@ -77,8 +68,7 @@ def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
     The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out. Both
     responses have white at 1.
     """
-    brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
-    return float(np.mean(np.log2(estimated.inverse(brightness) / true.inverse(brightness))))
+    return float(np.mean(_stops_off(true, estimated)))
 
 
 def peak_signal_to_noise(error: float) -> float:
@@ -86,6 +76,7 @@ def peak_signal_to_noise(error: float) -> float:
     return float(-20 * np.log10(error))
 
 
-def _sides(value: float, limit: float) -> tuple[bool, bool]:
-    """Return whether a number is above a limit, and whether it is below."""
-    return value > limit, value < limit
+def _stops_off(true: ResponseCurve, estimated: ResponseCurve) -> Float64Array:
+    """Return log2(g_hat(B) / g(B)) at the 8-bit codes B from 16 to 240, shape (225,)."""
+    brightness = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    return np.asarray(np.log2(estimated.inverse(brightness) / true.inverse(brightness)))

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import CurveError
-from crfnet_core.types import Float32Array, Float64Array, IndexArray, same_fields
+from crfnet_core.types import EqualByFields, Float32Array, Float64Array, IndexArray
 
 #: Samples of a response over irradiance in [0, 1], as in DoRF and EMoR.
 SAMPLES = 1024
@@ -19,7 +19,8 @@ SAMPLES = 1024
 #: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
 LEAST_SLOPE = 1e-4
 
-#: Arrays of more values than this are interpolated by `_PiecewiseLinear`: so many at once fit into a core's cache.
+#: Values that are interpolated at a time, because they fit into a core's cache; arrays of more are interpolated by
+#: `_PiecewiseLinear._evaluated`.
 BLOCK = 32768
 
 #: Cells of equal width by which it finds the segment of a value.
@@ -27,7 +28,7 @@ CELLS = 16384
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseCurve:
+class ResponseCurve(EqualByFields):
     """A strictly increasing response f with f(0) = 0 and f(1) = 1, linear between its samples.
 
     Build one with `from_samples`; the constructor only checks. As arrays, a response is `brightness` over
@@ -55,9 +56,6 @@ class ResponseCurve:
             raise CurveError("a response must increase strictly from 0 to 1; use from_samples")
         brightness.flags.writeable = False
         object.__setattr__(self, "brightness", brightness)
-
-    def __eq__(self, other: object) -> bool:
-        return same_fields(self, other) if isinstance(other, ResponseCurve) else NotImplemented
 
     def __hash__(self) -> int:
         return hash(self.brightness.tobytes())

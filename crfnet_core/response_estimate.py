@@ -19,7 +19,7 @@ from crfnet_core.metrics import brightness_percent
 from crfnet_core.posterior import Family, LikelyKind, Verdict
 from crfnet_core.recognition import Recognition
 from crfnet_core.response import ResponseCurve
-from crfnet_core.types import Float64Array, plain_values, same_fields
+from crfnet_core.types import EqualByFields, Float64Array, plain_values
 from crfnet_core.windows import Window
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
@@ -27,7 +27,7 @@ SCHEMA_VERSION = 1
 
 
 @dataclass(frozen=True, eq=False)
-class WindowEstimate:
+class WindowEstimate(EqualByFields):
     """One window's part in an estimate.
 
     Parameters
@@ -50,10 +50,6 @@ class WindowEstimate:
     weights: Float64Array
     expected_error: float
     kept: bool
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
-        return same_fields(self, other) if isinstance(other, WindowEstimate) else NotImplemented
 
 
 @dataclass(frozen=True)
@@ -89,7 +85,7 @@ class CameraAnswer:
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseEstimate:
+class ResponseEstimate(EqualByFields):
     """A response, its evidence, and how far to trust it.
 
     Parameters
@@ -141,10 +137,6 @@ class ResponseEstimate:
     photos: tuple[str, ...]
     recognition: Recognition | None = None
     camera: CameraAnswer | None = None
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
-        return same_fields(self, other) if isinstance(other, ResponseEstimate) else NotImplemented
 
     @property
     def likely_kind(self) -> LikelyKind | None:

@@ -7,13 +7,10 @@ import math
 import os
 from collections.abc import Callable, Mapping
 from enum import Enum
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import Any, ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
-
-if TYPE_CHECKING:
-    from _typeshed import DataclassInstance
 
 #: Pixels, statistics, and what the network computes with.
 Float32Array = NDArray[np.float32]
@@ -64,10 +61,19 @@ def cores() -> int:
     return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
 
 
-def same_fields(one: DataclassInstance, other: DataclassInstance) -> bool:
-    """Return whether two instances of one dataclass are equal: arrays by their elements, and NaN equal to NaN."""
-    names = [each.name for each in dataclasses.fields(one) if each.compare]
-    return all(_same(getattr(one, name), getattr(other, name)) for name in names)
+class EqualByFields:
+    """Base of dataclasses with arrays: equal if every field is, arrays by their elements, and NaN to NaN.
+
+    Like the arrays in them, these cannot be hashed.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, dataclasses.Field[Any]]]
+
+    def __eq__(self, other: object) -> bool:
+        if not isinstance(other, type(self)):
+            return NotImplemented
+        names = [each.name for each in dataclasses.fields(self) if each.compare]
+        return all(_same(getattr(self, name), getattr(other, name)) for name in names)
 
 
 def plain_values(value: Any) -> Any:

@@ -42,7 +42,7 @@ class Window:
     @property
     def extent(self) -> int:
         """Pixels of the photograph that the window spans in each direction."""
-        return (WINDOW_SIZE - 1) * self.step + 1
+        return window_extent(self.step)
 
     @property
     def covers_range(self) -> bool:
@@ -53,6 +53,11 @@ class Window:
         """Return the window's samples, shape (227, 227, 3); of an array a view."""
         end_y, end_x = self.y + self.extent, self.x + self.extent
         return pixels[self.y : end_y : self.step, self.x : end_x : self.step]
+
+
+def window_extent(step: int) -> int:
+    """Return the pixels that a window of this step spans in each direction."""
+    return (WINDOW_SIZE - 1) * step + 1
 
 
 def sampling_step(height: int, width: int) -> int:
@@ -107,11 +112,13 @@ def select_windows(
     Raises
     ------
     PhotoError
-        If the photograph is smaller than a window, with `step` pixels between its samples, or `count` or `step` is less
-        than 1.
+        If the photograph is smaller than a window, with `step` pixels between its samples, `count` or `step` is less
+        than 1, or `seed` is negative.
     """
     if count < 1:
         raise PhotoError(f"{count} windows cannot be analysed; ask for at least 1, usually {WINDOWS_PER_PHOTOGRAPH}")
+    if seed < 0:
+        raise PhotoError(f"a seed of {seed} draws no windows; give 0 or more")
     height, width = pixels.shape[:2]
     if min(height, width) < WINDOW_SIZE:
         raise PhotoError(
@@ -119,7 +126,7 @@ def select_windows(
             " give the original, never one scaled up"
         )
     step = sampling_step(height, width) if step is None else step
-    if step < 1 or Window(0, 0, step, 0).extent > min(height, width):
+    if step < 1 or window_extent(step) > min(height, width):
         most = (min(height, width) - 1) // (WINDOW_SIZE - 1)
         raise PhotoError(f"a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}")
     chosen: list[Window] = []
@@ -141,7 +148,7 @@ def cut_windows(pixels: Pixels, windows: Sequence[Window]) -> Float32Array:
 
 def _positions(height: int, width: int, step: int, seed: int) -> list[tuple[int, int]]:
     """Return up to `POSITIONS_TRIED` distinct random window corners (x, y), multiples of `GRID`."""
-    extent = Window(0, 0, step, 0).extent
+    extent = window_extent(step)
     rows, columns = ((side - extent) // GRID + 1 for side in (height, width))
     drawn = np.random.default_rng(seed).choice(rows * columns, min(POSITIONS_TRIED, rows * columns), replace=False)
     return [(GRID * int(position % columns), GRID * int(position // columns)) for position in drawn]

@@ -14,7 +14,8 @@ LONGEST_SIDE = 900
 #: Largest shift that is looked for, as a part of the shorter side.
 LARGEST_SHIFT = 0.1
 
-#: A shift is accepted if the correlation of two rank images rises by so much, and to so much.
+#: A shift is accepted if it raises the correlation of the two rank images by at least the first of these, to at least
+#: the second.
 LEAST_GAIN, LEAST_CORRELATION = 0.005, 0.4
 
 #: Shifts along rows and columns, in pixels.

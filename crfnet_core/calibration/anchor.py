@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.calibration.blocks import ALL_WHITE, PARTLY_WHITE, Observations
-from crfnet_core.calibration.curve_model import CurveModel, table_stops
+from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.solver import StackFit
 from crfnet_core.types import Float64Array
 
@@ -61,11 +61,11 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)
-    irradiance = np.exp2(_log_irradiance(model, fit, codes / 255))
+    irradiance = np.exp2(model.log_irradiance(fit.weights, codes / 255))
     parabola = np.polyfit(codes / 255 - 1, irradiance, 2)[-1]
     parabolic = float(np.log2(max(parabola, irradiance[-1])))
     crossing, blur = _crossing(seen, fit.exposed(exposures, seen))
-    before = float(_log_irradiance(model, fit, np.array([LINE_FROM / 255]))[0])
+    before = float(model.log_irradiance(fit.weights, np.array([LINE_FROM / 255]))[0])
     per_code = max(np.exp2(crossing) - np.exp2(before), 0) / (WHITE_CODE - LINE_FROM)
     crossed = float(np.log2(np.exp2(crossing) + per_code * (255 - WHITE_CODE)))
     parts = (LEAST_DEVIATION, (crossed - parabolic) / 2, blur / 2, crossed - crossing)
@@ -86,10 +86,3 @@ def _crossing(seen: Observations, log_exposed: Float64Array) -> tuple[float, flo
     crossing = float(stops[np.cumsum(white - 0.5).argmin()])
     below = white[(stops < crossing) & (stops > crossing - BELOW)]
     return crossing, max(float(below.mean()) - NOISE_BELOW, 0.0) if len(below) else 0.0
-
-
-def _log_irradiance(model: CurveModel, fit: StackFit, brightness: Float64Array) -> Float64Array:
-    """Return log2 of the irradiance that the fitted response needs for brightness."""
-    table = np.maximum.accumulate(model.mean + model.basis @ fit.weights)
-    rising = table + 1e-9 * np.arange(len(table))
-    return np.interp(brightness, rising, table_stops())

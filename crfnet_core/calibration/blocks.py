@@ -12,16 +12,16 @@ from crfnet_core.errors import CalibrationError
 from crfnet_core.photo import CodeArray
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
-#: A block is so many cells along each side, and a picture's longer side has about so many blocks.
+#: Cells along each side of a block, and blocks along a picture's longer side, about.
 CELLS, BLOCKS_ACROSS = 4, 190
 
-#: A pixel is white within so many 8-bit codes of the white level: JPEG and rounding take that much.
+#: 8-bit codes below the white level from which on a pixel counts as white: JPEG and rounding move codes by as much.
 WHITE_MARGIN = 0.5
 
-#: A block is white if at least so many of its pixels are, and partly white if more than so many are.
+#: Fraction of white pixels from which on a block is white, and above which it is partly white.
 ALL_WHITE, PARTLY_WHITE = 0.98, 0.03
 
-#: 8-bit code below which brightness is not used: there black level and clipping rule.
+#: 8-bit code below which brightness is not used: black level and clipping change it there.
 DARKEST_CODE = 5
 
 #: Deviations are multiplied by 1 + (this 8-bit code / code)^2, for the same reason: twice at this code.
@@ -32,7 +32,7 @@ CODE_NOISE, SPREAD_NOISE = 0.4, 0.15
 
 #: Factor on the deviation where another channel clips, and the chroma (a part of the brightness) at which the variance
 #: is twice that of gray.
-CLIPPED_NEIGHBOUR, STRONG_CHROMA = 4.0, 0.35
+CLIPPED_NEIGHBOR, STRONG_CHROMA = 4.0, 0.35
 
 #: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
 BIN, BLOCKS = 0.2, 650
@@ -80,7 +80,7 @@ class Observations:
     block: IndexArray
     channel: IndexArray
 
-    def of(self, samples: BoolArray | IndexArray) -> Observations:
+    def subset(self, samples: BoolArray | IndexArray) -> Observations:
         """Return some of the samples."""
         return Observations(**{name: values[samples] for name, values in vars(self).items()})
 
@@ -130,7 +130,7 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
     deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
     chroma = np.ptp(brightness, axis=1, keepdims=True) / np.maximum(brightness.max(axis=1, keepdims=True), 1 / 255)
     has_clipped = (white > PARTLY_WHITE).any(axis=1, keepdims=True) & is_used
-    deviation = deviation * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOUR, 1)
+    deviation = deviation * np.hypot(1, chroma / STRONG_CHROMA) * np.where(has_clipped, CLIPPED_NEIGHBOR, 1)
     count = is_used.sum(axis=2)
     typical = np.where(count > 0, (spread * is_used).sum(axis=2) / np.maximum(count, 1), np.inf)
     blocks, frame_count = len(brightness), brightness.shape[2]
@@ -147,8 +147,8 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
     )
 
 
-def pick_blocks(seen: Observations, log_irradiance: Float64Array, *, count: int = BLOCKS) -> Observations:
-    """Return the samples of the flattest and most neutral blocks of every level of irradiance.
+def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observations:
+    """Return the samples of about `BLOCKS` blocks, the flattest and most neutral ones of every level of irradiance.
 
     Parameters
     ----------
@@ -156,8 +156,6 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array, *, count: int 
         Every sample.
     log_irradiance : ndarray, float64, shape (M,)
         log2 of each sample's irradiance, roughly; NaN where no frame shows it.
-    count : int
-        Blocks to pick.
 
     Raises
     ------
@@ -169,11 +167,11 @@ def pick_blocks(seen: Observations, log_irradiance: Float64Array, *, count: int 
     is_often = (seen.is_used.sum(axis=1) >= 2).reshape(-1, channels)
     _check_often(is_often)
     fit = np.flatnonzero(is_often.all(axis=1) & np.isfinite(levels).all(axis=1))
-    colour = np.ptp(levels[fit], axis=1)
-    rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + colour)
+    color = np.ptp(levels[fit], axis=1)
+    rank = seen.spread.reshape(-1, channels)[fit].mean(axis=1) * (1 + color)
     bins = np.floor(levels[fit].mean(axis=1) / BIN).astype(int)
-    picked = _best_of_bins(rank, bins, count)
-    return seen.of(np.isin(seen.block, fit[picked]))
+    picked = _best_of_bins(rank, bins, BLOCKS)
+    return seen.subset(np.isin(seen.block, fit[picked]))
 
 
 def _check_often(is_often: BoolArray) -> None:

@@ -183,24 +183,24 @@ def calibrate_stack(
     every = observe(means, is_gray=all(frame.is_gray for frame in frames))
     check_seen(white * every.brightness[every.is_used])
     model = CurveModel.load()
-    labels, found, other = _measured(every, _readings(exposures, frames[0]), model)
+    labels, measurement, other = _measured(every, _readings(exposures, frames[0]), model)
     names = [frame.path.name for frame in frames]
-    check_measurement(found, names, white=white)
-    curve = in_file_codes(found.curve, white)
+    check_measurement(measurement, names, white=white)
+    curve = in_file_codes(measurement.curve, white)
     return Calibration(
         curve=curve,
         weights=EmorBasis.load().project(curve.brightness),
-        uncertainty=uncertainty_of(found, other, model, white=white),
-        residual=white * found.residual,
+        uncertainty=uncertainty_of(measurement, other, model, white=white),
+        residual=white * measurement.residual,
         white=white,
-        reaches_white=found.anchor.is_seen,
+        reaches_white=measurement.anchor.is_seen,
         labels=labels.name,
-        nearest_known=nearest_known(found.curve),
+        nearest_known=nearest_known(measurement.curve),
         metadata=frames[0].metadata,
-        frames=_frame_reports(frames, found, labels.stops, shifts, white=white),
-        points=_points(found, white=white),
-        counts=_best_exposed(frames, found).counts,
-        warnings=warnings_of(found, names, exposures, white=white),
+        frames=_frame_reports(frames, measurement, labels.stops, shifts, white=white),
+        points=_points(measurement, white=white),
+        counts=_best_exposed(frames, measurement).counts,
+        warnings=warnings_of(measurement, names, exposures, white=white),
     )
 
 
@@ -238,40 +238,40 @@ def _measured(
 ) -> tuple[_Reading, Measurement, ResponseCurve | None]:
     """Return the reading of the labels that costs less, what was measured with it, and the other's response."""
     first, *others = readings
-    found = measure(every, first.stops, model)
+    measurement = measure(every, first.stops, model)
     if not others:
-        return first, found, None
+        return first, measurement, None
     other = others[0]
-    again = fit_and_anchor(found.seen, other.stops[found.frames], model, found.curve)
-    if found.fit.cost - first.bonus <= again.fit.cost - other.bonus:
-        return first, found, again.curve
-    return other, replace(again, frames=found.frames, outliers=found.outliers), found.curve
+    again = fit_and_anchor(measurement.seen, other.stops[measurement.frames], model, measurement.curve)
+    if measurement.fit.cost - first.bonus <= again.fit.cost - other.bonus:
+        return first, measurement, again.curve
+    return other, replace(again, frames=measurement.frames, outliers=measurement.outliers), measurement.curve
 
 
 def _frame_reports(
-    frames: Sequence[Frame], found: Measurement, stops: Float64Array, shifts: Sequence[Shift], *, white: float
+    frames: Sequence[Frame], measurement: Measurement, stops: Float64Array, shifts: Sequence[Shift], *, white: float
 ) -> tuple[FrameReport, ...]:
     """Return what was found of each frame."""
-    offsets = np.full((len(frames), found.fit.offsets.shape[1]), np.nan)
-    offsets[found.frames] = found.fit.offsets
+    offsets = np.full((len(frames), measurement.fit.offsets.shape[1]), np.nan)
+    offsets[measurement.frames] = measurement.fit.offsets
     residuals = np.full(len(frames), np.nan)
-    residuals[found.frames] = white * frame_residuals(found.fit)
+    residuals[measurement.frames] = white * frame_residuals(measurement.fit)
     return tuple(
         FrameReport(frame.path, frame.label, float(stops[i]), offsets[i], shifts[i], float(residuals[i]), bool(is_used))
-        for i, (frame, is_used) in enumerate(zip(frames, found.frames, strict=True))
+        for i, (frame, is_used) in enumerate(zip(frames, measurement.frames, strict=True))
     )
 
 
-def _points(found: Measurement, *, white: float) -> Float64Array:
+def _points(measurement: Measurement, *, white: float) -> Float64Array:
     """Return what was measured, for a picture: see `Calibration.points`."""
-    log_irradiance = found.fit.exposed(found.exposures, found.seen) - found.anchor.log_white
-    used = np.broadcast_to(np.flatnonzero(found.frames), log_irradiance.shape)
-    columns = (log_irradiance, white * found.seen.brightness, white * found.fit.residual, used)
-    return np.stack([column[found.seen.is_used] for column in columns], axis=1)
+    log_irradiance = measurement.fit.exposed(measurement.exposures, measurement.seen) - measurement.anchor.log_white
+    used = np.broadcast_to(np.flatnonzero(measurement.frames), log_irradiance.shape)
+    columns = (log_irradiance, white * measurement.seen.brightness, white * measurement.fit.residual, used)
+    return np.stack([column[measurement.seen.is_used] for column in columns], axis=1)
 
 
-def _best_exposed(frames: Sequence[Frame], found: Measurement) -> Frame:
+def _best_exposed(frames: Sequence[Frame], measurement: Measurement) -> Frame:
     """Return the used frame whose mean brightness is nearest to the middle."""
-    used = [frame for frame, is_used in zip(frames, found.frames, strict=True) if is_used]
+    used = [frame for frame, is_used in zip(frames, measurement.frames, strict=True) if is_used]
     steps = np.arange(256) / 255
     return min(used, key=lambda frame: abs(float(np.average(steps, weights=frame.counts)) - 0.45))

@@ -8,19 +8,18 @@ from itertools import pairwise
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.exposures import Exposures
+from crfnet_core.calibration.exposures import LEAST_RANGE, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measurement import Measurement
-from crfnet_core.errors import CalibrationError
+from crfnet_core.errors import CalibrationError, beside_limits
 from crfnet_core.metadata import file_origin
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, beside_limits
+from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 
-#: Stops that the exposures of a stack have to span, and stops between two neighbours beyond which hardly a surface is
-#: seen between black and white in both.
-LEAST_RANGE, LARGEST_STEP = 2.0, 6.0
+#: Stops between two neighbouring exposures beyond which hardly a surface is seen between black and white in both.
+LARGEST_STEP = 6.0
 
 #: Largest difference in stops between a frame's exposure and its label.
 MOST_OFFSET = 0.3
@@ -109,12 +108,12 @@ def check_seen(brightness: Float64Array) -> None:
         )
 
 
-def check_measurement(found: Measurement, names: Sequence[str], *, white: float) -> None:
+def check_measurement(measurement: Measurement, names: Sequence[str], *, white: float) -> None:
     """Refuse what no camera response explains, and say why.
 
     Parameters
     ----------
-    found : Measurement
+    measurement : Measurement
         The response.
     names : sequence of str
         The names of all frames.
@@ -126,18 +125,18 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
     CalibrationError
         If the frames moved, are mistimed, or follow no one curve, or the curve is far from every known response.
     """
-    used, left_out = _names(found, names)
-    is_moved = found.frames.sum() < LEAST_FRAMES or found.outliers > MOST_OUTLIERS
-    residual = white * found.residual
+    used, left_out = _names(measurement, names)
+    is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
+    residual = white * measurement.residual
     if residual > MOST_RESIDUAL:
-        is_moved = is_moved or scatter(found.seen, found.exposures) > MOST_SCATTER
+        is_moved = is_moved or scatter(measurement.seen, measurement.exposures) > MOST_SCATTER
     if is_moved:
         which = f"{', '.join(left_out)} and more" if left_out else "some blocks"
         raise CalibrationError(
-            f"the frames do not show the same: {which} differ from what the rest says, even if shifted; the camera or"
+            f"the frames do not show the same scene: {which} differ from the others even after alignment; the camera or"
             " the scene has moved, so use a tripod and a still scene, or leave these frames out"
         )
-    _check_offsets(found, used)
+    _check_offsets(measurement, used)
     if residual > MOST_RESIDUAL:
         raise CalibrationError(
             "no single curve explains the frames: they are off by"
@@ -145,7 +144,7 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
             " rendered or edited on its own (automatic tones, local tone mapping, HDR): switch that off, and give the"
             " camera's own files"
         )
-    if (distance := nearest_known(found.curve)) > MOST_UNKNOWN and found.anchor.is_seen:
+    if (distance := nearest_known(measurement.curve)) > MOST_UNKNOWN and measurement.anchor.is_seen:
         raise CalibrationError(
             "the curve that explains the frames is far from every known response (E_est"
             f" {beside_limits(distance, MOST_UNKNOWN)}, at most {MOST_UNKNOWN:g}); the exposure times are probably"
@@ -153,12 +152,14 @@ def check_measurement(found: Measurement, names: Sequence[str], *, white: float)
         )
 
 
-def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, *, white: float) -> tuple[str, ...]:
+def warnings_of(
+    measurement: Measurement, names: Sequence[str], exposures: Exposures, *, white: float
+) -> tuple[str, ...]:
     """Return what to know of a measurement that is no reason to refuse it, in words.
 
     Parameters
     ----------
-    found : Measurement
+    measurement : Measurement
         The response.
     names : sequence of str
         The names of all frames.
@@ -167,24 +168,24 @@ def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, 
     white : float
         The code of white as a part of the largest code.
     """
-    used, left_out = _names(found, names)
+    used, left_out = _names(measurement, names)
     warnings = [f"{name} does not fit the other frames and was left out" for name in left_out]
-    offsets = zip(used, off_trend(found), strict=True)
+    offsets = zip(used, off_trend(measurement), strict=True)
     warnings += [
         f"{name} is {off:+.2f} stop from its exposure label" for name, off in offsets if abs(off) > NOTABLE_OFFSET
     ]
     if exposures.differing:
         differing = " and ".join(exposures.differing)
         warnings.append(f"{differing} differ between the frames: exposures are time x ISO / f-number^2")
-    if (distance := nearest_known(found.curve, in_camera=True)) > MOST_UNKNOWN:
+    if (distance := nearest_known(measurement.curve, in_camera=True)) > MOST_UNKNOWN:
         warnings.append(f"unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times")
-    highest = 255 * float(found.seen.brightness[found.seen.is_used].max())  # white = 255
+    highest = 255 * float(measurement.seen.brightness[measurement.seen.is_used].max())  # white = 255
     if highest < LAST_SHAPE_CODE:
         warnings.append(f"no code above {white * highest:.0f} is seen: there the curve is that of known responses")
-    if not found.anchor.is_seen:
+    if not measurement.anchor.is_seen:
         warnings.append("no frame reaches white: the scale is a guess; add a longer exposure")
-    if found.outliers > NOTABLE_OUTLIERS:
-        warnings.append(f"{found.outliers:.0%} of the blocks do not fit and were left out: something moved")
+    if measurement.outliers > NOTABLE_OUTLIERS:
+        warnings.append(f"{measurement.outliers:.0%} of the blocks do not fit and were left out: something moved")
     if white < 1:
         warnings.append(f"white is {255 * white:.0f} of 255 codes: the codes above it are white too")
     return tuple(warnings)
@@ -193,7 +194,7 @@ def warnings_of(found: Measurement, names: Sequence[str], exposures: Exposures, 
 def nearest_known(curve: ResponseCurve, *, in_camera: bool = False) -> float:
     """Return E_est between a response and the nearest packaged one: ordinary, or of cameras' own rendering only."""
     bank = ResponseBank.load()
-    members = np.any([bank.of(family) for family in IN_CAMERA], axis=0) if in_camera else bank.ordinary
+    members = np.any([bank.members(family) for family in IN_CAMERA], axis=0) if in_camera else bank.ordinary
     off = bank.brightness[members] - curve.brightness
     return float(np.sqrt((off**2).sum(axis=1).min()))
 
@@ -215,29 +216,29 @@ def scatter(seen: Observations, exposures: Float64Array) -> float:
     return float(np.median(found)) if found else 0.0
 
 
-def off_trend(found: Measurement) -> Float64Array:
+def off_trend(measurement: Measurement) -> Float64Array:
     """Return by how many stops green is brighter than its label in each used frame, beside the trend of most: (T,).
 
     The slope is Theil and Sen's, the median over pairs, so that one wrong label does not spoil the others.
     """
-    offsets = found.fit.offsets[:, found.fit.offsets.shape[1] // 2]
+    offsets = measurement.fit.offsets[:, measurement.fit.offsets.shape[1] // 2]
     first, second = np.triu_indices(len(offsets), 1)
-    distance = found.exposures[second] - found.exposures[first]
+    distance = measurement.exposures[second] - measurement.exposures[first]
     apart = np.abs(distance) > 0.1
     slope = np.median((offsets[second] - offsets[first])[apart] / distance[apart])
-    rest = offsets - slope * found.exposures
+    rest = offsets - slope * measurement.exposures
     return np.asarray(rest - np.median(rest), dtype=np.float64)
 
 
-def _names(found: Measurement, names: Sequence[str]) -> tuple[list[str], list[str]]:
+def _names(measurement: Measurement, names: Sequence[str]) -> tuple[list[str], list[str]]:
     """Return the names of the frames that are used, and of those that are left out."""
-    frames = list(zip(names, found.frames, strict=True))
+    frames = list(zip(names, measurement.frames, strict=True))
     return [name for name, is_used in frames if is_used], [name for name, is_used in frames if not is_used]
 
 
-def _check_offsets(found: Measurement, names: Sequence[str]) -> None:
+def _check_offsets(measurement: Measurement, names: Sequence[str]) -> None:
     """Refuse a frame whose exposure is not the one of its label."""
-    offsets = off_trend(found)
+    offsets = off_trend(measurement)
     worst = int(np.abs(offsets).argmax())
     if abs(offsets[worst]) > MOST_OFFSET:
         direction = "brighter" if offsets[worst] > 0 else "darker"

@@ -23,7 +23,7 @@ KNOTS = (
     *(0.59, 0.67, 0.74, 0.8, 0.85, 0.89, 0.92, 0.945, 0.965, 0.982, 1.0),
 )
 
-#: Standard deviation of the splines' weights beforehand, in brightness.
+#: Prior standard deviation of the splines' weights, in brightness.
 SPLINE_DEVIATION = 0.012
 
 #: Factor on the second moment of the EMoR weights of known responses, about EMoR's mean: this response may be of a kind
@@ -56,7 +56,7 @@ class CurveModel:
     basis : ndarray, float64, shape (G, K)
         What a unit of each weight adds.
     precision : ndarray, float64, shape (K, K)
-        Inverse covariance of the weights beforehand.
+        Inverse of the weights' prior covariance.
     """
 
     mean: Float64Array
@@ -89,10 +89,16 @@ class CurveModel:
         return CurveValues(brightness, (table[below + 1] - table[below]) * STEPS, gradient)
 
     def weights_of(self, curve: ResponseCurve) -> Float64Array:
-        """Return the weights, shape (K,), whose response is nearest to `curve` and not unlikely beforehand."""
+        """Return the weights, shape (K,), whose response is nearest to `curve` and not unlikely by the prior."""
         wanted = _tabulated(curve.brightness) - self.mean
         system = self.basis.T @ self.basis + 1e-4 * self.precision
         return np.asarray(np.linalg.solve(system, self.basis.T @ wanted), dtype=np.float64)
+
+    def log_irradiance(self, weights: Float64Array, brightness: Float64Array) -> Float64Array:
+        """Return log2 of the irradiance that the response with `weights`, shape (K,), needs for `brightness`."""
+        table = np.maximum.accumulate(self.mean + self.basis @ weights)
+        rising = table + 1e-9 * np.arange(len(table))
+        return np.interp(brightness, rising, table_stops())
 
     def response(self, weights: ArrayLike, *, log_white: float = 0.0) -> ResponseCurve:
         """Return the response with `weights` as a strictly monotone curve.

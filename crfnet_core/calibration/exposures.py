@@ -13,11 +13,15 @@ import numpy as np
 
 from crfnet_core.errors import CalibrationError
 from crfnet_core.files import read_bytes
+from crfnet_core.metadata.header_colors import header_attribute
 from crfnet_core.types import Float64Array
 
-#: Steps of cameras, as parts of a stop, and how far at most a label is from the exposure that it stands for, in stops:
+#: Stops that the exposures of a stack have to span.
+LEAST_RANGE = 2.0
+
+#: Steps of a camera to a stop -> the largest distance in stops between a label and the exposure that it stands for:
 #: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
-STEPS = {3: 0.13, 2: 0.18}
+LABEL_ERRORS = {3: 0.13, 2: 0.18}
 
 #: Size of the largest table of exposure times.
 _MOST_BYTES = 16 * 2**20
@@ -108,26 +112,30 @@ def parse_times(text: str) -> tuple[float, ...]:
 def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
     """Return the seconds of each of the files `names`, in a CSV file of rows such as "IMG_1.jpg,1/60".
 
-    Rows may be in any order, and may name other files too; a first row without a time is a heading.
+    Rows may be in any order, and may name other files too; folders in them do not count. A first row without a time is
+    a heading.
 
     Raises
     ------
     CalibrationError
-        If the file cannot be read, a row holds no name and time, or a frame has no row.
+        If the file cannot be read, a row holds no name and time, or a frame has no row, or two times.
     """
     try:
         rows = [
             row for row in csv.reader(read_bytes(path, most=_MOST_BYTES).decode("utf-8-sig").splitlines()) if any(row)
         ]
     except (OSError, UnicodeDecodeError, csv.Error) as problem:
-        raise CalibrationError(f"{path}: cannot be read as CSV ({problem}); give rows such as IMG_1.jpg,1/60") from None
+        reason = getattr(problem, "strerror", None) or problem
+        raise CalibrationError(f"{path}: cannot be read as CSV ({reason}); give rows such as IMG_1.jpg,1/60") from None
     found: dict[str, float] = {}
     for number, row in enumerate(rows):
         if len(row) < 2:
             raise CalibrationError(f"{path}: row {number + 1} holds no file and time; write it as IMG_1.jpg,1/60")
         if number == 0 and not any(character.isdigit() for character in row[1]):
             continue
-        found[Path(row[0].strip()).name] = _seconds(row[1])
+        name, seconds = Path(row[0].strip()).name, _seconds(row[1])
+        if found.setdefault(name, seconds) != seconds and name in names:
+            raise CalibrationError(f"{path}: has two times for {name}; give every frame a name and a row of its own")
     if missing := [name for name in names if name not in found]:
         raise CalibrationError(f"{path}: has no row for {missing[0]}; add its exposure time")
     return tuple(found[name] for name in names)
@@ -155,15 +163,12 @@ def _snapped(stops: Float64Array) -> Float64Array | None:
     """Return stops on the grid of thirds or of halves that is nearer, or None if a label is too far from both."""
     if not np.ptp(stops):
         return stops  # a setting that all frames share has no effect, whatever it is
-    grids = [(np.round(stops * step) / step, most) for step, most in STEPS.items()]
+    grids = [(np.round(stops * step) / step, most) for step, most in LABEL_ERRORS.items()]
     near = [grid for grid, most in grids if np.abs(grid - stops).max() <= most]
     return min(near, key=lambda grid: float(np.abs(grid - stops).sum())) if near else None
 
 
 def _positive(header: Any, name: str) -> float | None:
     """Return a positive number in a header."""
-    try:
-        value = header.getattribute(name)
-    except (RuntimeError, TypeError, ValueError):
-        return None
+    value = header_attribute(header, name)
     return float(value) if isinstance(value, int | float) and 0 < value < math.inf else None

@@ -12,7 +12,7 @@ import numpy as np
 from crfnet_core.calibration.alignment import LONGEST_SIDE, chain_of_shifts, common_area, rank_image
 from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import CalibrationError
-from crfnet_core.image_io import read_codes
+from crfnet_core.image_io import read_codes, read_metadata
 from crfnet_core.metadata import FileMetadata
 from crfnet_core.photo import CodeArray, CodeValues
 from crfnet_core.types import Float64Array, Progress, show_progress
@@ -28,7 +28,7 @@ WHITE_FROM, WHITE_FRACTION, WHITE_FRAMES = 236, 0.002, 2
 
 #: How many times the fraction of the codes beside it, and of those further below, a pile has at least. Of 90 simulated
 #: stacks that clip at code 255 none has such a pile; of 180 that clip at 238 to 254, 175 have.
-ABOVE_NEIGHBOURS, ABOVE_REST = 1.5, 2.0
+ABOVE_NEIGHBORS, ABOVE_REST = 1.5, 2.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -88,6 +88,8 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
         If there are fewer than `LEAST_FRAMES`, or they differ in what a stack has in common.
     """
     if len(paths) < LEAST_FRAMES:
+        for path in paths:
+            read_metadata(path)  # refuses a folder, and the name of no file
         raise CalibrationError(
             f"a stack needs at least {LEAST_FRAMES} frames of one scene at different exposures, found {len(paths)};"
             " take more, a stop apart"
@@ -136,7 +138,7 @@ def _pile(fractions: Float64Array) -> int | None:
     if pile == 255 or fractions[pile] < WHITE_FRACTION:
         return None
     beside, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
-    return pile if fractions[pile] > ABOVE_NEIGHBOURS * beside and fractions[pile] > ABOVE_REST * below else None
+    return pile if fractions[pile] > ABOVE_NEIGHBORS * beside and fractions[pile] > ABOVE_REST * below else None
 
 
 def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[tuple[int, int], ...]]:

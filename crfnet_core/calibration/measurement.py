@@ -9,9 +9,11 @@ import numpy as np
 from crfnet_core.calibration.anchor import Anchor, find_white
 from crfnet_core.calibration.blocks import Observations, pick_blocks
 from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.exposures import LEAST_RANGE
 from crfnet_core.calibration.frames import LEAST_FRAMES
 from crfnet_core.calibration.solver import StackFit, fit_stack
 from crfnet_core.calibration.start import best_known_response, rough_irradiance
+from crfnet_core.errors import CalibrationError, beside_limits
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import BoolArray, Float64Array
 
@@ -21,7 +23,8 @@ ROUNDS = 2
 #: Residual in 8-bit codes from which a frame does not fit, and how many times it has to be that of the others.
 WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
-#: A sample is an outlier if its residuals are so many times those expected, and of the typical sample.
+#: A sample is an outlier if its largest residual, in expected standard deviations, exceeds this many times that of the
+#: median sample, or this many if the median is below 1.
 OUTLIER = 5.0
 
 
@@ -76,7 +79,7 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
     Raises
     ------
     CalibrationError
-        If too few blocks are seen often: see `pick_blocks`.
+        If too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans too few stops.
     """
     frames = np.ones(len(exposures), dtype=bool)
     while True:
@@ -85,12 +88,13 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
         seen = pick_blocks(within, rough_irradiance(within, stops, known))
         found = fit_and_anchor(seen, stops, model, known)
         worst = _worst_frame(found.fit)
-        if worst is None or frames.sum() <= LEAST_FRAMES - 1:
+        if worst is None or frames.sum() < LEAST_FRAMES:
             break
         frames[np.flatnonzero(frames)[worst]] = False
+        _check_rest(exposures[frames], len(frames))
     is_outlier = _outliers(seen, found.fit)
     if is_outlier.any() and not is_outlier.all():
-        found = fit_and_anchor(seen.of(~is_outlier), stops, model, found.curve)
+        found = fit_and_anchor(seen.subset(~is_outlier), stops, model, found.curve)
     return replace(found, frames=frames, outliers=float(is_outlier.mean()))
 
 
@@ -121,6 +125,16 @@ def _worst_frame(fit: StackFit) -> int | None:
     worst = int(residuals.argmax())
     others = float(np.median(np.delete(residuals, worst)))
     return worst if residuals[worst] > max(WORST_FRAME, WORSE_THAN_OTHERS * others) else None
+
+
+def _check_rest(stops: Float64Array, count: int) -> None:
+    """Refuse the frames that fit each other, of `count` frames, if their exposures span too few stops."""
+    if (span := float(np.ptp(stops))) < LEAST_RANGE:
+        raise CalibrationError(
+            f"without the frames that do not fit the others ({count - len(stops)} of {count}), the exposures span"
+            f" {beside_limits(span, LEAST_RANGE)} stops; a stack needs {LEAST_RANGE:g} or more: use a tripod and a"
+            " still scene, and take frames one or two stops apart"
+        )
 
 
 def _outliers(seen: Observations, fit: StackFit) -> BoolArray:

@@ -10,11 +10,11 @@ from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, STEPS, CurveModel, CurveValues
 from crfnet_core.types import BoolArray, Float64Array
 
-#: How often an observation is counted less than its noise alone would ask for: the errors of blocks go together.
+#: Factor by which every observation is down-weighted, because errors of neighbouring blocks are correlated.
 DEFLATION = 10.0
 
-#: Standard deviations in stops, beforehand, of a frame's exposure around its label, and of the other channels' around
-#: that of green: cameras that change the white balance between frames leave green alone.
+#: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around that of
+#: green: cameras that change the white balance between frames leave green alone.
 TIME_DEVIATION, BALANCE_DEVIATION = 0.05, 0.3
 
 #: The same, in stops a stop, of green's offsets' trend over the exposures. A power of the exposures cannot be told from
@@ -24,10 +24,10 @@ TREND_DEVIATION = 5e-4
 #: Standard deviations from which errors of brightness, and of exposures, count linearly.
 HUBER = 2.0
 
-#: Least slope df/du, in brightness a stop, that costs nothing; and the deviation by which one below is weighed.
+#: Least slope df/du, in brightness a stop, that costs nothing, and the standard deviation that weighs a lower one.
 LEAST_SLOPE, SLOPE_DEVIATION = 2e-4, 2e-4
 
-#: A white sample costs nothing once the model is within so many 8-bit codes of white.
+#: 8-bit codes below white from which on the model's value for a white sample costs nothing.
 WHITE_CODES = 0.5
 
 #: Iterations at most, and the relative change of the cost that ends them.
@@ -209,7 +209,7 @@ class _Problem:
         return residual, seen.is_used | is_too_dark
 
     def _add_priors(self, state: _State, matrix: Float64Array, right: Float64Array) -> float:
-        """Add what is known beforehand to the normal equations of weights and offsets, and return its cost."""
+        """Add the priors to the normal equations of weights and offsets, and return their cost."""
         size = len(state.weights)
         of_weights, of_offsets = slice(size), slice(size, None)
         return (

@@ -9,8 +9,8 @@ from crfnet_core.posterior import ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
-#: Samples that the known responses are compared on.
-COMPARED = 400
+#: Samples that the known responses are compared on, and the seed of their choice.
+COMPARED, SEED = 400, 0
 
 #: Largest disagreement in 8-bit codes that counts: beyond, a sample is an outlier.
 LARGEST_SPREAD = 20.0
@@ -19,19 +19,19 @@ LARGEST_SPREAD = 20.0
 LEAST_STOPS = 0.004
 
 
-def best_known_response(seen: Observations, exposures: Float64Array, *, seed: int = 0) -> ResponseCurve:
+def best_known_response(seen: Observations, exposures: Float64Array) -> ResponseCurve:
     """Return the response of the packaged bank under which samples have the same irradiance in every frame.
 
     The measure is the mean spread over frames of log2 g(B) less the exposure, in units of the spread that one code of
     noise makes. Source: Mitsunaga and Nayar, "Radiometric self calibration", CVPR 1999.
     """
     bank = ResponseBank.load()
-    rng = np.random.default_rng(seed)
+    rng = np.random.default_rng(SEED)
     often = np.flatnonzero(seen.is_used.sum(axis=1) >= 2)
-    some = seen.of(rng.permutation(often)[:COMPARED])
+    some = seen.subset(rng.permutation(often)[:COMPARED])
     tables = bank.log_irradiance[bank.ordinary]
     code = np.rint(some.brightness * (SAMPLES - 1)).astype(np.intp)
-    noise = np.gradient(tables, axis=1) * np.float32(SAMPLES / 255)
+    noise = np.gradient(tables, axis=1) * np.float32((SAMPLES - 1) / 255)
     disagreement = np.zeros(len(tables))
     for start in range(0, len(tables), 256):
         part = slice(start, start + 256)
@@ -51,7 +51,7 @@ def rough_irradiance(seen: Observations, exposures: Float64Array, curve: Respons
     Frames count by their slope df/du, so that the best exposed ones decide.
     """
     codes = np.linspace(0, 1, SAMPLES)
-    table = np.log2(np.maximum(curve.inverse(codes), 2.0**-14))
+    table = np.log2(np.maximum(curve.inverse(codes), 2.0**-14))  # the least of `CurveModel`'s table
     slope = 1 / np.maximum(np.gradient(table, codes), 1e-3)
     index = np.rint(seen.brightness * (SAMPLES - 1)).astype(np.intp)
     weight = seen.is_used * slope[index] ** 2

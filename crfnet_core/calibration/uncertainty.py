@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.curve_model import CurveModel, in_file_codes, table_stops
+from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
 from crfnet_core.calibration.solver import TIME_DEVIATION
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
@@ -24,7 +25,7 @@ LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
 #: Part of the difference between the channels' own responses that counts: they have a response in common.
 CHANNEL_PART = 0.5
 
-#: A channel needs so many samples for a response of its own.
+#: Least samples of a channel for a response of its own.
 LEAST_SAMPLES = 60
 
 
@@ -46,22 +47,22 @@ class Uncertainty:
     @property
     def shape_stops(self) -> float:
         """The root of the sum of squares of the shape's parts."""
-        return float(np.sqrt(sum(part**2 for part in self.shape.values())))
+        return math.hypot(*self.shape.values())
 
     @property
     def scale_stops(self) -> float:
         """The same of the scale's parts."""
-        return float(np.sqrt(sum(part**2 for part in self.scale.values())))
+        return math.hypot(*self.scale.values())
 
 
 def uncertainty_of(
-    found: Measurement, other_labels: ResponseCurve | None, model: CurveModel, *, white: float
+    measurement: Measurement, other_labels: ResponseCurve | None, model: CurveModel, *, white: float
 ) -> Uncertainty:
     """Return how far a measured response may be off, at the codes of the file.
 
     Parameters
     ----------
-    found : Measurement
+    measurement : Measurement
         The response.
     other_labels : ResponseCurve, optional
         The response by the other reading of the exposure labels, if there is one.
@@ -70,20 +71,22 @@ def uncertainty_of(
     white : float
         The code of white as a part of the largest code.
     """
-    curve = in_file_codes(found.curve, white)
-    even = found.seen.block % 2 == 0
-    parts = [_curve_of(found.seen.of(part), found.exposures, found, model) for part in (even, ~even)]
+    curve = in_file_codes(measurement.curve, white)
+    even = measurement.seen.block % 2 == 0
+    parts = [
+        _curve_of(measurement.seen.subset(part), measurement.exposures, measurement, model) for part in (even, ~even)
+    ]
     halves = [in_file_codes(part, white) for part in parts]
-    alone = [_channel_curve(found, channel, model) for channel in range(found.fit.offsets.shape[1])]
+    alone = [_channel_curve(measurement, channel, model) for channel in range(measurement.fit.offsets.shape[1])]
     channels = [in_file_codes(channel, white) for channel in alone]
     others = [] if other_labels is None else [in_file_codes(other_labels, white)]
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
-    posterior = _posterior_deviation(found, model, codes)
+    posterior = _posterior_deviation(measurement, model, codes)
     shape = {
         "posterior": posterior[0],
         "sampling": shape_error(halves[0], halves[1]) / 2,
         "channels": CHANNEL_PART * _rms(shape_error(curve, channel) for channel in channels),
-        "times": _time_deviation(found, codes),
+        "times": _time_deviation(measurement, codes),
         "labels": 0.5 * _rms(shape_error(curve, other) for other in others),
         "least": LEAST_SHAPE,
     }
@@ -91,43 +94,43 @@ def uncertainty_of(
         "posterior": posterior[1],
         "sampling": abs(scale_error(halves[0], halves[1])) / 2,
         "channels": CHANNEL_PART * _rms(scale_error(curve, channel) for channel in channels),
-        "white": found.anchor.deviation,
+        "white": measurement.anchor.deviation,
         "labels": 0.5 * _rms(scale_error(curve, other) for other in others),
         "least": LEAST_SCALE,
     }
     return Uncertainty(shape, scale)
 
 
-def _curve_of(seen: Observations, exposures: Float64Array, found: Measurement, model: CurveModel) -> ResponseCurve:
+def _curve_of(
+    seen: Observations, exposures: Float64Array, measurement: Measurement, model: CurveModel
+) -> ResponseCurve:
     """Return the response of a part of the samples; that of all if the part is too small."""
     if len(seen.block) < LEAST_SAMPLES:
-        return found.curve
-    return fit_and_anchor(seen, exposures, model, found.curve, rounds=1).curve
+        return measurement.curve
+    return fit_and_anchor(seen, exposures, model, measurement.curve, rounds=1).curve
 
 
-def _channel_curve(found: Measurement, channel: int, model: CurveModel) -> ResponseCurve:
+def _channel_curve(measurement: Measurement, channel: int, model: CurveModel) -> ResponseCurve:
     """Return the response of one channel by itself, with the exposures that all channels found for it."""
-    part = found.seen.of(found.seen.channel == channel)
+    part = measurement.seen.subset(measurement.seen.channel == channel)
     alone = replace(part, channel=np.zeros_like(part.channel))
-    return _curve_of(alone, found.exposures + found.fit.offsets[:, channel], found, model)
+    return _curve_of(alone, measurement.exposures + measurement.fit.offsets[:, channel], measurement, model)
 
 
-def _posterior_deviation(found: Measurement, model: CurveModel, codes: Float64Array) -> tuple[float, float]:
+def _posterior_deviation(measurement: Measurement, model: CurveModel, codes: Float64Array) -> tuple[float, float]:
     """Return the standard deviations of shape and scale at some codes over draws from the posterior, in stops."""
     rng = np.random.default_rng(SEED)
-    weights = rng.multivariate_normal(found.fit.weights, found.fit.covariance, size=DRAWS, method="eigh")
-    tables = np.maximum.accumulate(model.mean + weights @ model.basis.T, axis=1)
-    tables += 1e-9 * np.arange(tables.shape[1])
-    stops = np.stack([np.interp(codes, table, table_stops()) for table in tables])
+    weights = rng.multivariate_normal(measurement.fit.weights, measurement.fit.covariance, size=DRAWS, method="eigh")
+    stops = np.stack([model.log_irradiance(drawn, codes) for drawn in weights])
     off = stops - stops.mean(axis=0)
     scales = off.mean(axis=1)
     return float(np.sqrt(((off - scales[:, None]) ** 2).mean())), float(scales.std())
 
 
-def _time_deviation(found: Measurement, codes: Float64Array) -> float:
+def _time_deviation(measurement: Measurement, codes: Float64Array) -> float:
     """Return the shape error in stops at some codes if labels are off by `TIME_DEVIATION` each: a trend bends it."""
-    trend = TIME_DEVIATION / np.sqrt(((found.exposures - found.exposures.mean()) ** 2).sum())
-    return float(trend * np.log2(found.curve.inverse(codes)).std())
+    trend = TIME_DEVIATION / np.sqrt(((measurement.exposures - measurement.exposures.mean()) ** 2).sum())
+    return float(trend * np.log2(measurement.curve.inverse(codes)).std())
 
 
 def _rms(values: Iterable[float]) -> float:

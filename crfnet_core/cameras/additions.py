@@ -70,7 +70,7 @@ def add_photographs(
     PhotoError
         If a photograph cannot be read, is recognised as something else, or its encoding has a published curve.
     CameraError
-        If a photograph is of another make or model, or the library cannot be written to.
+        If a photograph is of another make or model, the camera's file is damaged, or the library cannot be written to.
     """
     name = checked_name(name)
     camera = _own_camera(library, name)
@@ -95,7 +95,8 @@ def add_measured(library: CameraLibrary, name: str, measured: MeasuredResponse, 
     Raises
     ------
     CameraError
-        If it has one that may not be replaced, another camera was measured, or the library cannot be written to.
+        If it has one that may not be replaced, another camera was measured, its file is damaged, or the library cannot
+        be written to.
     """
     name = checked_name(name)
     with library.locked():
@@ -127,6 +128,7 @@ def _own_camera(library: CameraLibrary, name: str) -> Camera:
         return camera
     if CameraLibrary.shipped().find(name):
         raise CameraError(f"{name!r} is a measured camera that comes with crfnet; give another name")
+    library.target(name)  # refuses early to replace a file that cannot be read
     return Camera(name)
 
 

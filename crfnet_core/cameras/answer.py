@@ -19,8 +19,8 @@ from crfnet_core.types import Float64Array
 #: Deviations of a normal distribution within which 90 % of it lies.
 BAND_DEVIATIONS = 1.645
 
-#: A photograph disagrees if its own estimate is farther away than so many times the error that is expected of both, in
-#: shape or in E_est: from a measured response, and from another estimate, which is nearer because it begins at the same
+#: A photograph disagrees if its own estimate is farther away than this many times the error expected of both, in shape
+#: or in E_est: from a measured response, and from another estimate, which is nearer because it begins at the same
 #: prior. docs/CAMERAS.md has the shares of real photographs that disagree with their own camera and with another.
 MEASURED_LIMIT, ESTIMATED_LIMIT = 2.0, 0.7
 
@@ -42,15 +42,14 @@ def camera_estimate(camera: Camera, *, model: str, prior: Prior | None = None) -
     CameraError
         If there is neither a measured response nor a photograph that this network read.
     """
-    answer = CameraAnswer(camera.name, camera.measured is not None, camera.basis)
     if camera.measured:
-        return replace(_measured_estimate(camera.measured), camera=answer)
+        return replace(_measured_estimate(camera.measured), camera=_answer(camera))
     photographs = [photograph for photograph in camera.photographs if photograph.model == model]
     if not photographs:
         raise CameraError(
             f"{camera.name!r} has no evidence of {model}, but of {_read_by(camera)}; add its photographs again"
         )
-    return replace(_estimate(photographs, model, prior), camera=answer)
+    return replace(_estimate(photographs, model, prior), camera=_answer(camera))
 
 
 def compared(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = None) -> CameraAnswer:
@@ -58,7 +57,7 @@ def compared(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = Non
     return _compared(own, camera, camera_estimate(camera, model=own.model, prior=prior))
 
 
-def differences(camera: Camera, *, model: str, prior: Prior | None = None) -> dict[str, CameraAnswer]:
+def differences(camera: Camera, *, model: str) -> dict[str, CameraAnswer]:
     """Return how far each photograph's own estimate is from the response without it, by the photograph's SHA-256.
 
     Photographs that another network read are left out, and so is the only photograph of a camera.
@@ -68,7 +67,7 @@ def differences(camera: Camera, *, model: str, prior: Prior | None = None) -> di
         others = replace(camera, photographs=tuple(one for one in camera.photographs if one is not photograph))
         if photograph.model != model or not (others.measured or any(one.model == model for one in others.photographs)):
             continue
-        found[photograph.sha256] = compared(_estimate([photograph], model, prior), others, prior=prior)
+        found[photograph.sha256] = compared(_estimate([photograph], model), others)
     return found
 
 
@@ -122,17 +121,15 @@ def _compared(own: ResponseEstimate, camera: Camera, other: ResponseEstimate) ->
     limit = MEASURED_LIMIT if camera.measured else ESTIMATED_LIMIT
     has_shape = stops <= limit * float(np.hypot(own.shape_uncertainty, other.shape_uncertainty))
     has_curve = error <= limit * float(np.hypot(own.uncertainty, other.uncertainty))
-    return CameraAnswer(
-        camera.name,
-        camera.measured is not None,
-        camera.basis,
-        difference_stops=stops,
-        difference=error,
-        agrees=has_shape and has_curve,
-    )
+    return replace(_answer(camera), difference_stops=stops, difference=error, agrees=has_shape and has_curve)
 
 
-def _estimate(photographs: list[KeptPhotograph], model: str, prior: Prior | None) -> ResponseEstimate:
+def _answer(camera: Camera) -> CameraAnswer:
+    """Return what is said of a camera whose response is the answer."""
+    return CameraAnswer(camera.name, camera.measured is not None, camera.basis)
+
+
+def _estimate(photographs: list[KeptPhotograph], model: str, prior: Prior | None = None) -> ResponseEstimate:
     """Return the estimate from kept photographs of one network."""
     return estimate_of([photograph.analyzed for photograph in photographs], model=model, prior=prior)
 

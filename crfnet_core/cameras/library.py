@@ -39,11 +39,14 @@ class CameraLibrary:
 
     Parameters
     ----------
-    folder : Path
+    folder : str or Path
         The folder; it need not exist.
     """
 
     folder: Path
+
+    def __post_init__(self) -> None:
+        object.__setattr__(self, "folder", Path(self.folder))
 
     @classmethod
     def of_user(cls) -> CameraLibrary:
@@ -87,10 +90,28 @@ class CameraLibrary:
         Raises
         ------
         CameraError
-            If the file cannot be written.
+            If the file cannot be written: see also `target`.
         """
-        path = self._file_of(camera.name) or self.folder / _file_name(camera.name)
+        path = self.target(camera.name)
         atomic_write_text(path, json_text(camera_document(camera)), overwrite=True, error=CameraError)
+        return path
+
+    def target(self, name: str) -> Path:
+        """Return the file that a camera of this name is written to.
+
+        Raises
+        ------
+        CameraError
+            If a file would be replaced that cannot be read as a camera, or holds another one.
+        """
+        if path := self._file_of(name):
+            return path
+        path = self.folder / _file_name(name)
+        found = dict(self._files()).get(path)
+        if isinstance(found, CameraError):
+            raise found
+        if found:
+            raise CameraError(f"{path}: holds the camera {found.name!r}, not {name!r}; rename the file")
         return path
 
     def remove(self, name: str) -> None:

@@ -62,10 +62,7 @@ def file_kind(path: Path) -> str:
         If it cannot be opened.
     """
     if path.is_dir():
-        raise PhotoError(
-            f"{path}: is a folder; give one photograph, the frames of a shot ({path / 'shot.%04d.png'}), or --each for"
-            " every photograph in it"
-        )
+        raise PhotoError(f"{path}: is a folder; give a photograph in it")
     if not path.is_file():
         raise PhotoError(f"{path}: there is no such file; check the name")
     with path.open("rb") as file:

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import tempfile
 import warnings
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -35,22 +36,23 @@ _TURNS = {
     8: (True, True, False),
 }
 
+#: Metadata, as pi-heif and Pillow name it.
+_SEGMENTS = ("exif", "xmp", "icc_profile")
+
 #: What the decoders raise for damaged files.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
-#: Boxes that tell of the main picture stand within so many bytes.
+#: Bytes at the start of a file that hold the boxes which describe the main picture.
 _HEAD_BYTES = 1 << 20
 
 
 @dataclass(frozen=True)
 class _Picture:
-    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, upright, and the segments of its metadata."""
+    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, upright, and its metadata by `_SEGMENTS`."""
 
     samples: NDArray[Any]
     bit_depth: int
-    exif: bytes = b""
-    xmp: bytes = b""
-    icc: bytes = b""
+    segments: Mapping[str, bytes]
     is_associated: bool = False
 
 
@@ -99,9 +101,7 @@ def _heic(path: Path) -> _Picture:
     return _Picture(
         samples=np.atleast_3d(samples),
         bit_depth=bit_depth,
-        exif=info.get("exif") or b"",
-        xmp=info.get("xmp") or b"",
-        icc=info.get("icc_profile") or b"",
+        segments=_segments(info),
         is_associated=main.premultiplied_alpha,
     )
 
@@ -120,10 +120,13 @@ def _avif(path: Path, bit_depth: int) -> _Picture:
     return _Picture(
         samples=_upright(np.atleast_3d(samples), orientation),
         bit_depth=max(8, bit_depth),
-        exif=info.get("exif") or b"",
-        xmp=info.get("xmp") or b"",
-        icc=info.get("icc_profile") or b"",
+        segments=_segments(info),
     )
+
+
+def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
+    """Return the metadata that pi-heif or Pillow found, as `_SEGMENTS` names it."""
+    return {name: info[name] for name in _SEGMENTS if info.get(name)}
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> NDArray[np.uint16]:
@@ -162,14 +165,16 @@ def _code_values(picture: _Picture, kind: str, properties: HeifProperties) -> Co
     """Return the samples as three channels and alpha, with a header as OpenImageIO would give it."""
     samples, channels = picture.samples, picture.samples.shape[2]
     header = _header(picture, properties)
-    metadata = metadata_of_header(header, kind)
+    has_alpha = channels in (2, 4)
+    alpha = {(True, False): "straight", (True, True): "multiplied"}.get((has_alpha, picture.is_associated), "")
+    metadata = replace(metadata_of_header(header, kind), has_gain_map=properties.has_gain_map, alpha=alpha)
     return CodeValues(
         codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
-        alpha=samples[..., -1] if channels in (2, 4) else None,
+        alpha=samples[..., -1] if has_alpha else None,
         bit_depth=picture.bit_depth,
-        is_associated=picture.is_associated and channels in (2, 4),
+        is_associated=picture.is_associated and has_alpha,
         header=header,
-        metadata=replace(metadata, has_gain_map=properties.has_gain_map),
+        metadata=metadata,
     )
 
 
@@ -194,8 +199,7 @@ def _segment_attributes(picture: _Picture) -> list[Any]:
     """
     from PIL import Image
 
-    segments = {"exif": picture.exif, "xmp": picture.xmp, "icc_profile": picture.icc}
-    fitting = {name: content for name, content in segments.items() if content and len(content) < _most_bytes(name)}
+    fitting = {name: content for name, content in picture.segments.items() if len(content) < _most_bytes(name)}
     if not fitting:
         return []
     with tempfile.TemporaryDirectory() as folder:

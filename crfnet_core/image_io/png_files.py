@@ -72,8 +72,8 @@ def _color_chunks(path: Path) -> dict[bytes, bytes]:
             size, name = struct.unpack(">I4s", start)
             if name == b"IDAT":
                 break
-            content = file.read(size)
-            if name in _CHUNKS and len(content) == (_CHUNKS[name] or size):
+            following = file.tell() + size + 4  # behind the checksum
+            if name in _CHUNKS and len(content := file.read(size)) == (_CHUNKS[name] or size):
                 found[name] = content
-            file.seek(4, 1)  # the checksum
+            file.seek(following)
     return found

@@ -31,7 +31,7 @@ def oiio_message(source: Any = oiio) -> str:
 
 def first_line(problem: str) -> str:
     """Return the first line of a decoder's message."""
-    return problem.strip().partition("\n")[0] or "OpenImageIO gives no reason"
+    return problem.strip().partition("\n")[0] or "no reason is given"
 
 
 def linear(path: Path, kind: str) -> PhotoError:

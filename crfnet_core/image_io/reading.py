@@ -137,7 +137,8 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     """Return the samples in an open file, shape (H, W, 1 to 4), or None; whole pictures OpenImageIO holds twice."""
     channels = min(header.nchannels, 4)
     if header.tile_width:
-        return np.asarray(source.read_image(0, 0, 0, channels, header.format))
+        tiles: NDArray[Any] | None = source.read_image(0, 0, 0, channels, header.format)
+        return tiles
     values = np.empty((header.height, header.width, channels), str(header.format))
     for top in range(0, header.height, _ROWS):
         bottom = min(top + _ROWS, header.height)

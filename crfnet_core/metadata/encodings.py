@@ -6,6 +6,7 @@ import re
 from enum import StrEnum
 
 from crfnet_core.metadata.file_metadata import FileMetadata
+from crfnet_core.metadata.transfer_tags import profile_transfer
 
 
 class Encoding(StrEnum):
@@ -24,21 +25,20 @@ FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
 #: Transfer characteristics of DPX that say nothing of the values.
 _UNSPECIFIC_TRANSFERS = ("", "Undefined", "User defined")
 
-#: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic.
-_ENCODINGS = (
-    (Encoding.LINEAR, r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|g10\b|gamma ?1\.0\b"),
-    (
-        Encoding.LOG,
-        r"\bs-?log|\bv-?log|\bc-?log|\bn-?log|\bf-?log|\blog ?c|log3g|\blogarithmic|\bcineon|\bprinting density",
-    ),
-)
+#: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic, that mean linear values.
+_LINEAR = r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|(?<![a-z0-9])g10\b|gamma ?1\.0\b"
+
+#: What `profile_transfer` names beside log: encodings for a display.
+_FOR_DISPLAYS = ("PQ", "HLG")
 
 
 def encoding_of(metadata: FileMetadata) -> Encoding:
     """Return what the profile, or DPX's transfer characteristic, says of the code values."""
-    profile = metadata.profile.casefold()
-    found = (encoding for encoding, words in _ENCODINGS if re.search(words, profile))
-    return next(found, FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN))
+    if re.search(_LINEAR, metadata.profile.casefold()):
+        return Encoding.LINEAR
+    if profile_transfer(metadata.profile) not in ("", *_FOR_DISPLAYS):
+        return Encoding.LOG
+    return FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN)
 
 
 def encoding_words(metadata: FileMetadata, encoding: Encoding) -> list[str]:

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import re
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -39,8 +38,6 @@ class FileMetadata:
         The file that a program of Adobe developed: Camera Raw's crs:RawFileName in XMP. It may be an ordinary picture.
     renderer : str
         The program that rendered the picture, which no camera took.
-    year : int, optional
-        Of EXIF DateTimeOriginal, by the camera's clock.
     iso : int, optional
         EXIF PhotographicSensitivity.
     exif_size : (int, int), optional
@@ -57,6 +54,8 @@ class FileMetadata:
         "JPEG", "HEIC", "DPX" and so on, as `image_io.file_kinds` names them; "movie" for a frame of one.
     has_gain_map : bool
         Whether the file holds a gain map, so that its picture is the base of an HDR picture.
+    alpha : str
+        "straight" or "multiplied": whether the colours of a file with alpha are stored multiplied by it; else empty.
     color : ColorTags
         What the file says of its primaries and of its encoding.
     """
@@ -69,7 +68,6 @@ class FileMetadata:
     history: tuple[str, ...] = ()
     raw_file: str = ""
     renderer: str = ""
-    year: int | None = None
     iso: int | None = None
     exif_size: tuple[int, int] | None = None
     luma_table: Table = ()
@@ -80,6 +78,7 @@ class FileMetadata:
     profile: str = ""
     file_format: str = ""
     has_gain_map: bool = False
+    alpha: str = ""
     color: ColorTags = field(default_factory=ColorTags)
 
     @property
@@ -114,7 +113,6 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         history=tuple(part.strip() for part in history.split(";") if part.strip()),
         raw_file=_text(header, "crs:RawFileName"),
         renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
-        year=_year(_text(header, "Exif:DateTimeOriginal") or _text(header, "exif:DateTimeOriginal")),
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
         luma_table=jpeg.luma_table,
@@ -125,6 +123,7 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         profile=profile or dpx,
         file_format=file_format,
         has_gain_map=jpeg.has_gain_map,
+        alpha=_alpha(header),
         color=with_named_transfer(header_color_tags(header, file_format, jpeg.interop_index), dpx, profile),
     )
 
@@ -135,13 +134,14 @@ def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
     return "".join(filter(str.isprintable, value[:longest])).strip() if isinstance(value, str) else ""
 
 
+def _alpha(header: Any) -> str:
+    """Return how colours are stored beside alpha, of a file that was opened to be read as it is stored."""
+    if header.alpha_channel < 0:
+        return ""
+    return "straight" if header.get_int_attribute("oiio:UnassociatedAlpha") else "multiplied"
+
+
 def _number(header: Any, name: str) -> int | None:
     """Return a positive whole number in the header."""
     value = header_attribute(header, name)
     return value if isinstance(value, int) and value > 0 else None
-
-
-def _year(time: str) -> int | None:
-    """Return the year of "2004:01:02 03:04:05" or "2004-01-02T03:04:05"."""
-    year = re.match(r"((?:19|20)\d\d)[:-]", time)
-    return int(year[1]) if year else None

@@ -112,8 +112,8 @@ def _to_pcs(tags: dict[str, bytes], *, version: int) -> Float64Array:
 
 
 def _unnamed(matrix: Float64Array) -> Primaries | None:
-    """Return the primaries of a matrix from RGB to XYZ, shape (3, 3); None if it has no colours of three kinds."""
+    """Return the primaries of a matrix from RGB to XYZ, shape (3, 3); None if they make no white."""
     if abs(np.linalg.det(matrix)) < 1e-4 or (matrix.sum(axis=0) <= 0).any():
         return None
-    red, green, blue = (chromaticity_of(column) for column in matrix.T)
-    return Primaries("primaries of its own", red, green, blue, chromaticity_of(matrix.sum(axis=1)))
+    red, green, blue, white = (chromaticity_of(xyz) for xyz in (*matrix.T, matrix.sum(axis=1)))
+    return Primaries("primaries of its own", red, green, blue, white) if white[1] > 0 else None

@@ -32,7 +32,7 @@ SCALED_BELOW = 1600
 #: Longest sides in pixels to which messengers and photograph sites scale.
 WEB_SIDES = (1600, 1920, 2048)
 
-#: Sensors write sides that are multiples of these, longer and shorter, and since 2004 at least so many pixels.
+#: The longer and the shorter side of what a sensor writes are multiples of these; since 2004 it has this many pixels.
 NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 
 #: From this quality on the tables of the IJG library are nearly all ones, as those of many cameras are.

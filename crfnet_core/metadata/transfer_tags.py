@@ -12,16 +12,17 @@ DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 
 #: Words of an ICC profile's description, in lower case -> the encoding that it names. What is more special comes first.
 PROFILE_TRANSFERS = (
-    (r"\bs-?log ?3|\bslog3", "Sony S-Log3"),
-    (r"\bs-?log ?2|\bslog2", "Sony S-Log2"),
+    (r"\bs-?log ?3", "Sony S-Log3"),
+    (r"\bs-?log ?2", "Sony S-Log2"),
     (r"\bs-?log\b", "Sony S-Log"),
     (r"\blog ?c ?4", "ARRI LogC4"),
-    (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"),
+    (r"\blog ?c(?: ?3)?(?![a-z0-9])", "ARRI LogC3"),
     (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
     (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
     (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
     (r"\bv-?log", "Panasonic V-Log"),
     (r"log3g10", "RED Log3G10"),
+    (r"log3g12", "RED Log3G12"),
     (r"\bd-?log\b", "DJI D-Log"),
     (r"\bapple ?log", "Apple Log"),
     (r"\bf-?log ?2", "Fujifilm F-Log2"),
@@ -54,9 +55,14 @@ def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
         return color
     if dpx in DPX_TRANSFERS:
         return replace(color, transfer=DPX_TRANSFERS[dpx], source=color.source or f'dpx:Transfer "{dpx}"')
-    text = profile.casefold()
-    name = next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")
+    name = profile_transfer(profile)
     return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
+
+
+def profile_transfer(profile: str) -> str:
+    """Return the encoding that an ICC profile's description, or DPX's transfer characteristic, names; empty if none."""
+    text = profile.casefold()
+    return next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")
 
 
 def dpx_transfer(value: str) -> str:

@@ -71,7 +71,7 @@ class ModelConfig:
     accuracy: dict[str, Any]
 
     @classmethod
-    def read(cls, path: Path) -> ModelConfig:
+    def read(cls, path: str | Path) -> ModelConfig:
         """Return the configuration in a model.json.
 
         Raises
@@ -80,6 +80,7 @@ class ModelConfig:
             If the file is absent, is no JSON, lacks an entry or has one of another type, or describes a network of
             another kind.
         """
+        path = Path(path)
         entries = _read_json(path)
         missing = [field.name for field in fields(cls) if field.name not in entries]
         if missing:

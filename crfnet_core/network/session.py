@@ -36,7 +36,7 @@ _PROBLEMS: tuple[type[Exception], ...] = (
     ),
 )
 
-#: onnxruntime's own lines on stderr are left away below this severity: fatal.
+#: onnxruntime's own lines on stderr are suppressed below this severity: fatal.
 _FATAL = 4
 
 

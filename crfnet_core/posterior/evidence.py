@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.posterior.responses import ResponseBank
-from crfnet_core.types import Float64Array, same_fields
+from crfnet_core.types import EqualByFields, Float64Array
 
 #: EMoR weights that evidence is about: the others hardly change a photograph.
 EVIDENCE_WEIGHTS = 5
@@ -19,7 +19,7 @@ DEGREES_OF_FREEDOM = 5.0
 
 
 @dataclass(frozen=True, eq=False)
-class Evidence:
+class Evidence(EqualByFields):
     """A likelihood of responses, up to a factor.
 
     Of ordinary responses it is Student's t in their first EMoR weights. Of the families `UNUSUAL`, whose pictures
@@ -39,10 +39,6 @@ class Evidence:
     factor: Float64Array
     log_odds: Float64Array
 
-    def __eq__(self, other: object) -> bool:
-        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
-        return same_fields(self, other) if isinstance(other, Evidence) else NotImplemented
-
     def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
         """Return the log likelihood of every response of a bank, shape (N,): Eq. 18 of docs/METHOD.md."""
         offsets = (bank.weights[:, :EVIDENCE_WEIGHTS] - self.location) @ self.factor
@@ -50,7 +46,7 @@ class Evidence:
         exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
         likelihoods = -exponent * np.log1p(squares / DEGREES_OF_FREEDOM)
         for family, log_odds in zip(UNUSUAL, self.log_odds, strict=True):
-            likelihoods[bank.of(family)] = log_odds
+            likelihoods[bank.members(family)] = log_odds
         return np.asarray(likelihoods)
 
 

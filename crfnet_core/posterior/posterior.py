@@ -14,17 +14,17 @@ from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.types import Float32Array, Float64Array, same_fields
+from crfnet_core.types import EqualByFields, Float32Array, Float64Array
 
 #: The fraction of the posterior that the band holds at every irradiance.
 BAND = 0.9
 
-#: Responses of the bank that are weighed at a time: so many in double precision fit into a core's cache.
+#: Responses of the bank that are weighed at a time: in double precision, these fit into a core's cache.
 ROWS = 64
 
 
 @dataclass(frozen=True, eq=False)
-class Posterior:
+class Posterior(EqualByFields):
     """Weights over a bank of responses.
 
     Parameters
@@ -43,10 +43,6 @@ class Posterior:
     weights: Float64Array
     unexplained: float
     prior: Prior | None = None
-
-    def __eq__(self, other: object) -> bool:
-        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
-        return same_fields(self, other) if isinstance(other, Posterior) else NotImplemented
 
     @classmethod
     def of(
@@ -77,7 +73,7 @@ class Posterior:
             logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
             gains = _bounded(log_odds - average, prior.lookalikes)
             for family, gain in zip(UNUSUAL, gains, strict=True):
-                logarithms[bank.of(family)] += gain
+                logarithms[bank.members(family)] += gain
             unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
         explained = _log_sum(logarithms)
         weights = np.exp(logarithms - explained)
@@ -87,7 +83,7 @@ class Posterior:
     @cached_property
     def families(self) -> dict[Family, float]:
         """The probability of every family; their sum is 1."""
-        explained = {family: float(self.weights[self.bank.of(family)].sum()) for family in Family}
+        explained = {family: float(self.weights[self.bank.members(family)].sum()) for family in Family}
         shares = {family: share * (1 - self.unexplained) for family, share in explained.items()}
         return shares | {Family.UNEXPLAINED: self.unexplained}
 
@@ -118,7 +114,7 @@ class Posterior:
 
     @cached_property
     def expected_shape_error(self) -> float:
-        """The expected shape error of the answer, in stops."""
+        """The expected shape error of the answer, in stops: Eq. 28 of docs/METHOD.md."""
         codes = np.linspace(0, 1, SAMPLES)[SHAPE_SAMPLES]
         answer = np.log2(self.curve.inverse(codes))
         shapes = self.bank.log_irradiance[:, SHAPE_SAMPLES]
@@ -169,10 +165,10 @@ def _bounded(log_odds: Float64Array, lookalikes: float) -> Float64Array:
 
 
 def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:
-    """Return the logarithm of every response's probability before a photograph is seen, shape (N,)."""
+    """Return the logarithm of every response's probability before a photograph is seen, shape (N,): Eq. 22."""
     logarithms = np.empty(len(bank.families))
     for family in Family:
-        members = bank.of(family)
+        members = bank.members(family)
         if members.any():
             logarithms[members] = _log(prior.shares.get(family, 0.0) / members.sum())
     return logarithms

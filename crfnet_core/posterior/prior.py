@@ -17,7 +17,7 @@ DEFAULT_PRIOR = "camera"
 
 @dataclass(frozen=True)
 class Prior:
-    """Shares of the families, and how much the evidence of a photograph counts against them.
+    """Shares of the families (Eq. 22 of docs/METHOD.md), and how much a photograph's evidence counts against them.
 
     Parameters
     ----------

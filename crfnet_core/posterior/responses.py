@@ -12,7 +12,7 @@ from crfnet_core.emor import EmorBasis
 from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.response import SAMPLES
-from crfnet_core.types import BoolArray, Float32Array, Float64Array, IndexArray, same_fields
+from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
 BANK_FILE = Path(__file__).parents[1] / "data" / "responses.npz"
@@ -33,7 +33,7 @@ BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
 
 @dataclass(frozen=True, eq=False)
-class ResponseBank:
+class ResponseBank(EqualByFields):
     """Responses of every family; those of one family are equally likely before a photograph is seen.
 
     Parameters
@@ -47,10 +47,6 @@ class ResponseBank:
     brightness: Float32Array
     families: tuple[Family, ...]
 
-    def __eq__(self, other: object) -> bool:
-        """Return whether every field is equal; like the arrays in it, this cannot be hashed."""
-        return same_fields(self, other) if isinstance(other, ResponseBank) else NotImplemented
-
     @classmethod
     @cache
     def load(cls) -> ResponseBank:
@@ -61,7 +57,7 @@ class ResponseBank:
         members = list(Family)
         return cls(brightness.astype(np.float32), tuple(members[number] for number in numbers))
 
-    def of(self, family: Family) -> BoolArray:
+    def members(self, family: Family) -> BoolArray:
         """Return which responses belong to a family, bool (N,)."""
         return self._members[family]
 

@@ -134,8 +134,9 @@ class TestIccProfiles:
             profile({name: numbers(b"XYZ ", (0.3214, 0.3333, 0.275)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
             profile({name: numbers(b"XYZ ", (0.5, 0.5, 0.5)) for name in ("rXYZ", "gXYZ", "bXYZ")}),
             matrix_profile(OWN, chad=numbers(b"sf32", np.zeros(9))),
+            matrix_profile(OWN, chad=numbers(b"sf32", np.diag([1, -4, 1]))),
         ],
-        ids=["tables too", "tables", "empty", "short", "three equal", "not white", "no adaptation"],
+        ids=["tables too", "tables", "empty", "short", "three equal", "not white", "no adaptation", "no white"],
     )
     def test_what_gives_no_primaries_is_unknown(self, icc):
         assert read_icc(icc).primaries is None

@@ -126,6 +126,14 @@ def test_developed_from_a_raw_file_or_not(fields, is_developed):
         ("Linear", "DPX", Encoding.LINEAR),
         ("Undefined", "DPX", Encoding.FOOTAGE),
         ("Catalog", "JPEG", Encoding.UNKNOWN),
+        ("Apple Log", "TIFF", Encoding.LOG),
+        ("D-Log", "TIFF", Encoding.LOG),
+        ("Canon Log 3", "TIFF", Encoding.LOG),
+        ("REDWideGamutRGB Log3G10", "TIFF", Encoding.LOG),
+        ("REDWideGamutRGB Log3G12", "TIFF", Encoding.LOG),
+        ("LogC_EI800", "TIFF", Encoding.LOG),
+        ("Slogan", "TIFF", Encoding.UNKNOWN),
+        ("Rec. 2100 PQ", "TIFF", Encoding.UNKNOWN),
     ],
 )
 def test_encoding_by_profile(profile, file_format, encoding):

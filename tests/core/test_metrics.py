@@ -1,6 +1,7 @@
 import numpy as np
 import pytest
 
+from crfnet_core.errors import beside_limits
 from crfnet_core.metrics import (
     estimation_error,
     linearization_error,
@@ -54,6 +55,15 @@ def test_the_scale_error_is_the_exposure():
     clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
     assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
     assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)
+
+
+@pytest.mark.parametrize(
+    ("value", "words"),
+    [(0.2, "0.20"), (0.1101, "0.1101"), (0.11, "0.11"), (0.10999, "0.10999"), (0.11 + 1e-9, "0.110000")],
+)
+def test_a_number_shows_on_which_side_of_a_limit_it_lies(value, words):
+    """By six decimals at most."""
+    assert beside_limits(value, 0.11) == words
 
 
 def test_psnr():

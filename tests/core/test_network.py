@@ -159,6 +159,10 @@ def test_the_package_stays_small():
     assert sum(path.stat().st_size for path in DEFAULT_MODEL.parent.rglob("*")) < 20e6
 
 
+def test_the_config_may_be_named_by_a_text(fixed_model):
+    assert ModelConfig.read(str(fixed_model / "model.json")) == ModelConfig.read(fixed_model / "model.json")
+
+
 def test_an_altered_graph_is_refused(copied):
     with (copied / "model.onnx").open("ab") as file:
         file.write(b"x")

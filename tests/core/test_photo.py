@@ -107,6 +107,7 @@ def test_unassociated_alpha_is_dropped_and_the_codes_are_kept(tmp_path, name):
     np.testing.assert_array_equal(read_photo(path).pixels, (CODES8 / 255).astype(np.float32))
     np.testing.assert_array_equal(values.alpha, alpha[..., 0])
     assert not values.is_associated
+    assert values.metadata.alpha == "straight"
 
 
 def test_opaque_webp_with_alpha_keeps_its_codes(tmp_path):
@@ -120,6 +121,7 @@ def test_associated_alpha_is_divided_out(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.tif", stored))
     expected = [[[0, 0, 0], [0.5, 1, 0.25], [10 / 255, 20 / 255, 30 / 255], [1, 0, 0]]]
     np.testing.assert_allclose(photo.pixels, expected, rtol=1e-7)
+    assert photo.metadata.alpha == "multiplied"
 
 
 def test_extra_channel_that_is_no_alpha_is_dropped(tmp_path):
@@ -127,6 +129,7 @@ def test_extra_channel_that_is_no_alpha_is_dropped(tmp_path):
     path.write_bytes(tiff(1, 1, samples=4, extra=((338, 3, 0),), content=bytes([10, 20, 30, 40])))
     assert read_codes(path).codes.tolist() == [[[10, 20, 30]]]
     assert read_codes(path).alpha is None
+    assert read_codes(path).metadata.alpha == ""
 
 
 def test_gray_with_alpha(tmp_path):

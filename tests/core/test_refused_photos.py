@@ -156,8 +156,7 @@ FOUR_INKS = _four_inks()
     ("make", "name", "found", "advice"),
     [
         (absent, "a.jpg", "no such file", "check the name"),
-        (folder, "a.jpg", "is a folder; give one photograph", "or --each for every photograph in it"),
-        (folder, "a.jpg", "the frames of a shot", "shot.%04d.png"),
+        (folder, "a.jpg", "is a folder", "give a photograph in it"),
         (empty, "a.jpg", "is empty", "copy it again"),
         (text, "a.jpg", "is no JPEG, HEIC, PNG, TIFF, WebP,", "save the photograph"),
         (heic, "a.heic", "HEIC file is damaged or cut short", "copy it again"),

@@ -180,3 +180,16 @@ def test_a_curve_that_does_not_increase_is_refused(estimate):
 def test_what_is_no_photograph_is_refused_with_what_to_do(given, fixed_model):
     with pytest.raises(PhotoError, match=r"is no Photo; read_photo .* Photo\.from_array"):
         estimate_response(given, network=ResponseNetwork.load(fixed_model))
+
+
+@pytest.mark.parametrize(
+    ("options", "words"),
+    [
+        ({"seed": -1}, "a seed of -1 draws no windows; give 0 or more"),
+        ({"prior": "any"}, r"a str is no Prior; Prior\.load makes one"),
+        ({"device": "nokia"}, r"'nokia' is no device; give one of .*Device: PHONE,"),
+    ],
+)
+def test_options_that_cannot_be_are_refused_with_what_to_do(plate, fixed_model, options, words):
+    with pytest.raises(CRFNetError, match=words):
+        estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), **options)

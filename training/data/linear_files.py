@@ -12,7 +12,8 @@ import rawpy
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import LINEAR_SIGNATURES, MAX_PIXELS, RAW_SUFFIXES, first_line
+from crfnet_core.image_io import LINEAR_SIGNATURES, RAW_SUFFIXES, first_line
+from crfnet_core.image_io.header_checks import check_size
 from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import BAND, LUMINANCE, area_averaged
 
@@ -86,7 +87,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
     _check_file(path)
     try:
         with rawpy.imread(str(path)) as raw:
-            _check_size(path, raw.sizes.width, raw.sizes.height)
+            check_size(path, raw.sizes.width, raw.sizes.height)
             pixels = raw.postprocess(**DEVELOPMENT)
     except rawpy.LibRawError as problem:
         raise PhotoError(f"{path}: LibRaw cannot develop it ({_reason(problem)}); check the file") from problem
@@ -150,15 +151,9 @@ def _check_file(path: Path) -> None:
         raise PhotoError(f"{path}: cannot be opened; check its permissions")
 
 
-def _check_size(path: Path, width: int, height: int) -> None:
-    """Refuse more pixels than `MAX_PIXELS`."""
-    if width * height > MAX_PIXELS:
-        raise PhotoError(f"{path}: claims {width} x {height} pixels; at most {MAX_PIXELS} are read: crop it")
-
-
 def _check_header(path: Path, header: Any) -> None:
     """Refuse an OpenEXR or HDR file that is not a flat scene-linear picture of floats."""
-    _check_size(path, header.width, header.height)
+    check_size(path, header.width, header.height)
     names, space = set(header.channelnames), header.get_string_attribute("colorInteropID")
     if header.deep or header.depth != 1 or str(header.format) not in ("half", "float"):
         raise PhotoError(f"{path}: holds no flat picture of half or float samples; convert it")

@@ -50,7 +50,7 @@ class CurveSet(IntEnum):
 
 
 #: Fractions of the photographs whose response is of DoRF (both sets together), and of each other set. All families are
-#: common enough to be learned; what they are worth in use is the prior's affair.
+#: common enough to be learned. In use, the prior has shares of its own.
 OF_DORF = 0.5
 FRACTIONS = {
     CurveSet.IN_CAMERA: 0.3,

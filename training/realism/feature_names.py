@@ -11,7 +11,7 @@ from crfnet_core.statistics.layout import COUNTS_OF, SHAPES
 from training.network.features import SMOOTHNESS
 
 #: What is counted of the neighbours of the samples at a level.
-NEIGHBOURS = ("log mean |d|", "mean log |d|", "equal", "signed")
+NEIGHBORS = ("log mean |d|", "mean log |d|", "equal", "signed")
 
 #: Parts of the range of levels, of thirds.
 THIRDS = ("dark", "middle", "bright")
@@ -22,7 +22,7 @@ def feature_names() -> list[str]:
     third = [THIRDS[3 * level // LEVELS] for level in range(LEVELS)]
     channel = [f"histogram, {part}" for part in third]
     for stride in STRIDES:
-        for what in NEIGHBOURS:
+        for what in NEIGHBORS:
             channel += [f"neighbours at {stride}: {what}, {part}" for part in third]
     edges = [f"edges at {stride}: {what}" for stride in STRIDES for what in ("number", "ratio") for _ in range(GRID**2)]
     parts = [f"curvature, smoothness {weight:g}" for weight in SMOOTHNESS] + ["evidence"]

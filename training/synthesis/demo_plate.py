@@ -36,20 +36,22 @@ JPEG_QUALITY = 95
 ROLL_OFF, CONTRAST = 1.5, 0.8
 
 
-def camera_response(irradiance: Float64Array) -> Float64Array:
-    """Return brightness f(E) of the simulated camera: roll-off, sRGB encoding, S-curve.
+def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contrast: float = CONTRAST) -> Float64Array:
+    """Return brightness f(E) of a simulated camera, by default the plate's: roll-off, sRGB encoding, S-curve.
 
-    With s = `ROLL_OFF`, k = `CONTRAST`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
+    With s = `roll_off`, k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
     f = (1 - k) v + k v^2 (3 - 2 v). It is no measured curve, but of the kind that cameras have.
 
     Parameters
     ----------
     irradiance : ndarray, float64
         Relative irradiance E in [0, 1], any shape.
+    roll_off, contrast : float
+        Of highlights (1 is none), and weight of the S-curve (0 is none, 1 is smoothstep).
     """
-    rolled = ROLL_OFF * irradiance / (1 + (ROLL_OFF - 1) * irradiance)
+    rolled = roll_off * irradiance / (1 + (roll_off - 1) * irradiance)
     encoded = srgb_encode(rolled)
-    return (1 - CONTRAST) * encoded + CONTRAST * encoded**2 * (3 - 2 * encoded)
+    return (1 - contrast) * encoded + contrast * encoded**2 * (3 - 2 * encoded)
 
 
 def read_scene(studio_light: str | Path) -> Float64Array:

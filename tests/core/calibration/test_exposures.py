@@ -62,13 +62,18 @@ def test_what_is_no_time_is_refused(text):
 
 def test_times_are_read_from_csv_by_name(tmp_path):
     path = tmp_path / "times.csv"
-    path.write_text("file,time\nb.jpg,1/30\nsub/a.jpg,1/60\nother.jpg,1\n")
+    path.write_text("file,time\nb.jpg,1/30\nsub/a.jpg,1/60\nother.jpg,1\nsub/other.jpg,2\nb.jpg,1/30\n")
     assert read_times(path, ["a.jpg", "b.jpg"]) == pytest.approx((1 / 60, 1 / 30))
 
 
 @pytest.mark.parametrize(
     ("text", "message"),
-    [("a.jpg,1/60\n", "has no row for b.jpg"), ("a.jpg\n", "row 1 holds no file and time"), ("a.jpg,x1\n", "no expo")],
+    [
+        ("a.jpg,1/60\n", "has no row for b.jpg"),
+        ("a.jpg\n", "row 1 holds no file and time"),
+        ("a.jpg,x1\n", "no expo"),
+        ("one/a.jpg,1/60\ntwo/a.jpg,1/30\nb.jpg,1\n", r"has two times for a\.jpg; give every frame a name and a row"),
+    ],
 )
 def test_a_csv_file_that_lacks_something_is_refused(tmp_path, text, message):
     path = tmp_path / "times.csv"
@@ -78,5 +83,5 @@ def test_a_csv_file_that_lacks_something_is_refused(tmp_path, text, message):
 
 
 def test_an_absent_csv_file_is_refused(tmp_path):
-    with pytest.raises(CalibrationError, match=r"cannot be read as CSV"):
+    with pytest.raises(CalibrationError, match=r"cannot be read as CSV \(No such file or directory\); give rows"):
         read_times(tmp_path / "none.csv", ["a.jpg"])

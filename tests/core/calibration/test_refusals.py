@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.calibration import calibrate_stack
-from crfnet_core.errors import CalibrationError
+from crfnet_core.errors import CalibrationError, PhotoError
 from tests.helpers.images import write_image
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
@@ -12,6 +12,14 @@ from tests.helpers.stacks import StackOptions, emor_response, make_stack
 def test_three_frames_are_too_few(stack):
     with pytest.raises(CalibrationError, match=r"at least 4 frames of one scene at different exposures, found 3"):
         calibrate_stack(stack()[:3])
+
+
+def test_a_folder_or_an_absent_file_in_place_of_frames_is_named(stack):
+    folder = stack()[0].parent
+    with pytest.raises(PhotoError, match=r"is a folder; give a photograph in it"):
+        calibrate_stack([folder])
+    with pytest.raises(PhotoError, match=r"stack_%02d\.jpg: there is no such file"):
+        calibrate_stack([folder / "stack_%02d.jpg"])
 
 
 def test_a_frame_that_is_given_twice_is_named(stack):
@@ -78,9 +86,22 @@ def test_a_mistimed_frame_is_named(stack, stops, words):
 
 def test_a_scene_that_moves_is_refused(stack):
     with pytest.raises(
-        CalibrationError, match=r"the frames do not show the same: .*; the camera or the scene has moved"
+        CalibrationError, match=r"the frames do not show the same scene: .*; the camera or the scene has moved"
     ):
         calibrate_stack(stack(shifts=[(41 * i, 59 * i) for i in range(8)]))
+
+
+@pytest.mark.parametrize("seconds", [[1 / 60] * 5 + [1 / 8], [1 / 60] * 4 + [1 / 40, 1 / 8]])
+def test_a_stack_whose_only_other_exposure_shows_another_scene_is_refused(tmp_path, seconds):
+    """The frame at 1/8 s fits none of the others, and these alone tell nothing of the exposures."""
+    paths = []
+    for i, time in enumerate(seconds):
+        rng = np.random.default_rng(i == len(seconds) - 1)
+        light = np.kron(np.exp2(rng.uniform(-6, 0, (30, 40, 1))), np.ones((16, 16, 3))) * time * 54
+        codes = 255 * np.minimum(light, 1) ** (1 / 2.2) + np.random.default_rng(i).normal(0, 0.4, light.shape)
+        paths.append(write_image(tmp_path / f"{i}.png", np.rint(codes).clip(0, 255).astype(np.uint8)))
+    with pytest.raises(CalibrationError, match=r"do not fit the others \(1 of 6\), the exposures span 0\.\d\d stops;"):
+        calibrate_stack(paths, seconds=seconds)
 
 
 def test_frames_that_were_rendered_each_on_its_own_are_refused(stack, tmp_path):

@@ -103,6 +103,26 @@ def test_a_damaged_file_hides_no_other_camera(library, content):
 
 
 @pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"camera_version": 2}, "has camera_version 2, this crfnet reads 1: update it"),
+        ({"photographs": [{}]}, "is damaged .*; restore or remove it"),
+        ({"name": "b"}, "holds the camera 'b', not 'A'; rename the file"),
+    ],
+    ids=["later", "damaged", "another camera"],
+)
+def test_a_file_that_is_not_read_as_the_camera_of_its_name_is_never_replaced(library, change, message):
+    add_measured(library, "a", measured())
+    (path,) = library.folder.glob("*.json")
+    content = json.dumps(json.loads(path.read_text(encoding="utf-8")) | change)
+    path.write_text(content, encoding="utf-8")
+    for write in (library.save, lambda camera: add_measured(library, camera.name, measured(), overwrite=True)):
+        with pytest.raises(CameraError, match=message):
+            write(Camera("A"))
+    assert path.read_text(encoding="utf-8") == content
+
+
+@pytest.mark.parametrize(
     ("name", "value"),
     [
         ("brightness", [0, 1]),
@@ -185,6 +205,11 @@ def test_a_lock_that_nobody_gives_back_is_named(library, monkeypatch):
     (library.folder / ".lock").touch()
     with pytest.raises(CameraError, match=r"\.lock: another crfnet changes the library; if none runs, remove"):
         add_measured(library, "a", measured())
+
+
+def test_the_folder_may_be_given_as_text(tmp_path):
+    assert CameraLibrary(str(tmp_path)) == CameraLibrary(tmp_path)
+    assert CameraLibrary(str(tmp_path)).cameras() == []
 
 
 def test_a_folder_that_cannot_be_made_is_named(tmp_path):

@@ -135,6 +135,14 @@ def test_avif_of_8_bits_is_read_by_pillow(tmp_path, limits):
     assert values.header.getattribute("CICP")[3] == (limits == "full")
 
 
+def test_alpha_of_avif_is_told_from_none(tmp_path):
+    image = pytest.importorskip("PIL.Image")
+    codes = colored_ramp(8)
+    for name, samples in (("a.avif", codes), ("b.avif", np.dstack([codes, codes[..., :1]]))):
+        image.fromarray(samples).save(tmp_path / name, quality=100, subsampling="4:4:4")
+    assert [read_codes(tmp_path / name).metadata.alpha for name in ("a.avif", "b.avif")] == ["", "straight"]
+
+
 def test_avif_is_turned_upright(tmp_path):
     image = pytest.importorskip("PIL.Image")
     codes, tags = colored_ramp(8), image.Exif()

@@ -29,8 +29,8 @@ def test_the_likelihood_of_an_ordinary_response_is_student_s_t(bank):
 def test_the_families_of_stated_odds_have_one_number_each(bank):
     evidence = Evidence(np.zeros(5), np.eye(5), np.array([-1.0, -2.0, -3.0]))
     found = evidence.log_likelihoods(bank)
-    assert found[bank.of(Family.LINEAR)].tolist() == [-1, -1]
-    assert found[bank.of(Family.LOG)].tolist() == [-2]
+    assert found[bank.members(Family.LINEAR)].tolist() == [-1, -1]
+    assert found[bank.members(Family.LOG)].tolist() == [-2]
 
 
 def test_a_response_at_the_location_is_the_most_likely(bank):

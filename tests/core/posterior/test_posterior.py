@@ -27,7 +27,7 @@ def test_no_evidence_returns_the_prior(bank):
     prior = even_prior(unexplained=0.2)
     posterior = Posterior.of(bank, prior)
     for family, members in SMALL_BANK.items():
-        np.testing.assert_allclose(posterior.weights[bank.of(family)], 0.2 / len(members))
+        np.testing.assert_allclose(posterior.weights[bank.members(family)], 0.2 / len(members))
     unknown = dict.fromkeys((Family.COMPACT, Family.DEVELOPED, Family.EDITED), 0)
     assert posterior.families == pytest.approx(dict(prior.shares) | unknown)
 
@@ -92,7 +92,7 @@ def test_the_unexplained_compete_with_all_responses_together(bank):
     prior, evidence = even_prior(unexplained=0.3), evidence_for(bank.weights[3], log_odds=(-6, -6, -1.5))
     posterior = Posterior.of(bank, prior, [evidence])
     explained = sum(
-        0.7 / len(SMALL_BANK) / bank.of(family).sum() * np.exp(likelihood)
+        0.7 / len(SMALL_BANK) / bank.members(family).sum() * np.exp(likelihood)
         for family, likelihood in zip(bank.families, evidence.log_likelihoods(bank), strict=True)
     )
     unexplained = 0.3 * np.exp(-1.5)

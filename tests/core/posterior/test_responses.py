@@ -20,7 +20,7 @@ def test_the_packaged_responses_rise_from_0_to_1(bank):
 
 
 def test_every_family_but_the_unexplained_has_responses(bank):
-    counts = {family: int(bank.of(family).sum()) for family in Family}
+    counts = {family: int(bank.members(family).sum()) for family in Family}
     assert counts.pop(Family.UNEXPLAINED) == 0
     assert min(counts.values()) >= 30
     assert sum(counts.values()) == len(bank.families)

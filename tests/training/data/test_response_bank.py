@@ -41,7 +41,7 @@ def data(tmp_path):
 
 def test_a_bank_has_its_counts_and_rises_from_0_to_1(data):
     bank = make_bank(data)
-    counts = {family: int(bank.of(family).sum()) for family in COUNTS}
+    counts = {family: int(bank.members(family).sum()) for family in COUNTS}
     assert counts == {family: count // 20 for family, count in COUNTS.items()}
     assert bank.brightness.dtype == np.float32
     assert (np.diff(bank.brightness, axis=1) >= -1e-7).all()
@@ -50,7 +50,9 @@ def test_a_bank_has_its_counts_and_rises_from_0_to_1(data):
 
 def test_the_curves_of_dorf_come_first_among_film(data):
     bank = make_bank(data)
-    np.testing.assert_allclose(bank.brightness[bank.of(Family.FILM)][: len(DORF)], UNIFORM ** DORF[:, None], atol=1e-6)
+    np.testing.assert_allclose(
+        bank.brightness[bank.members(Family.FILM)][: len(DORF)], UNIFORM ** DORF[:, None], atol=1e-6
+    )
 
 
 def test_held_out_curves_of_dorf_can_be_left_out(data):
@@ -64,9 +66,11 @@ def test_a_bank_without_a_fold_holds_nothing_of_its_bodies(data):
     """The body of the fold lifts the shadows as no other does: only the bank with it has such responses."""
     ordinary = [Family.PHONE, Family.COMPACT, Family.CAMERA, Family.EDITED]
     whole, part = (make_bank(data, without=each) for each in (None, "the fold"))
-    lifted = [max(bank.brightness[bank.of(family), 10].max() for family in ordinary[:3]) for bank in (whole, part)]
+    lifted = [max(bank.brightness[bank.members(family), 10].max() for family in ordinary[:3]) for bank in (whole, part)]
     assert lifted[0] > lifted[1] + 0.1
-    np.testing.assert_array_equal(whole.brightness[whole.of(Family.FILM)], part.brightness[part.of(Family.FILM)])
+    np.testing.assert_array_equal(
+        whole.brightness[whole.members(Family.FILM)], part.brightness[part.members(Family.FILM)]
+    )
 
 
 def test_a_written_bank_is_read_again(data, tmp_path, monkeypatch):

@@ -294,7 +294,7 @@ def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):
     write_response(data / "real/gt/two.csv", 9.0)
     one, two, _ = real_photographs(data)["real"]
     brightest = [
-        max(bank.brightness[bank.of(family), 10].max() for family in IN_CAMERA)
+        max(bank.brightness[bank.members(family), 10].max() for family in IN_CAMERA)
         for bank in (bank_without_fold(photograph, data) for photograph in (one, two))
     ]
     assert brightest[0] > brightest[1] + 0.1

@@ -89,7 +89,7 @@ def test_evidence_that_says_nothing_costs_nothing_but_the_error_of_the_mean(comp
 def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):
     """The posterior's mean, under a prior that gives every ordinary response the same share."""
     (evidence,), tensors = drawn(1)
-    counts = {family: float(bank.of(family).sum()) for family in bank.families if family not in UNUSUAL}
+    counts = {family: float(bank.members(family).sum()) for family in bank.families if family not in UNUSUAL}
     prior = Prior("p", {family: count / sum(counts.values()) for family, count in counts.items()}, 1.0)
     mean = Posterior.of(bank, prior, [evidence]).mean_weights
     found = EvidenceLoss(*competitors).errors(tensors, torch.zeros(1, 11, dtype=torch.float64))

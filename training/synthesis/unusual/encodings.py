@@ -15,6 +15,7 @@ from crfnet_core.windows import WINDOW_SIZE
 from training.data.curves import IRRADIANCE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, enlarged, jpeg_compressed
+from training.synthesis.demo_plate import camera_response
 from training.synthesis.unusual.log_curves import log_curves
 
 #: The sRGB encoding as a response, at 1024 irradiances.
@@ -99,14 +100,11 @@ def drawn_camera_curve(rng: np.random.Generator) -> Float64Array:
 
 
 def camera_curve(roll_off: float, contrast: float) -> Float64Array:
-    """Return the response of an ordinary camera, shape (1024,): roll-off, sRGB encoding, S-curve.
+    """Return the response of an ordinary camera, shape (1024,): see `training.synthesis.demo_plate.camera_response`.
 
-    With s = `roll_off` and k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding of u; f = (1 - k) v +
-    k v^2 (3 - 2 v). It needs no measured response, so these pictures tell nothing of the test cameras.
+    It needs no measured response, so these pictures tell nothing of the test cameras.
     """
-    rolled = roll_off * IRRADIANCE / (1 + (roll_off - 1) * IRRADIANCE)
-    encoded = srgb_encode(rolled)
-    return (1 - contrast) * encoded + contrast * encoded**2 * (3 - 2 * encoded)
+    return camera_response(IRRADIANCE, roll_off, contrast)
 
 
 def saturated(pixels: Float32Array, factor: float) -> Float32Array:
