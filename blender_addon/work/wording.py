@@ -36,6 +36,7 @@ _IN_BLENDER = {
     "there is no frame of this name; check the name and the frames": "none of its frames is found; find them with File,"
     " External Data",
     ", or give the primaries of all with --primaries": "",
+    ", or run crfnet calibrate": "",
     "crfnet camera list shows them": "choose another Camera under Advanced, or none",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
     "pip install 'av', or save it": "save it",

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_json, positive
+from ocio.arguments.parts import Commands, add_command, add_json, positive, written_path
 from ocio.defaults import LUT_LENGTH
 
 EXAMPLES = """examples:
@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
     """Add `crfnet calibrate`."""
     parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
     parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, HEIC, PNG, TIFF, DPX and others")
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
+    parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
     parser.add_argument("--name", metavar="NAME", help="how the files and the colour space are called (first frame)")
     parser.add_argument(
         "--times", metavar="LIST|CSV", help="exposure times in seconds, one for each frame, instead of EXIF's"

@@ -50,7 +50,9 @@ def _add_add(actions: Commands) -> None:
         help="names of its linear files",
     )
     parser.add_argument("--no-rules", action="store_true", help="no file rules at all")
-    parser.add_argument("--view", action="store_true", help='add the views "As photographed": the scene as the camera')
+    parser.add_argument(
+        "--view", action="store_true", help='add the views "As photographed": the scene through the camera response'
+    )
 
 
 def _add_overlay(actions: Commands) -> None:

@@ -4,7 +4,17 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_each, add_frames, add_network, add_plate, count, positive
+from ocio.arguments.parts import (
+    Commands,
+    add_command,
+    add_each,
+    add_frames,
+    add_network,
+    add_plate,
+    count,
+    positive,
+    written_path,
+)
 from ocio.defaults import LUT_LENGTH, WINDOWS
 
 EXAMPLES = """examples:
@@ -31,7 +41,7 @@ def add(commands: Commands) -> None:
         metavar="PHOTO",
         help="JPEG, HEIC, PNG, TIFF, DPX and others, a movie, or a sequence",
     )
-    parser.add_argument("--out", type=Path, required=True, metavar="DIR", help="folder for everything written")
+    parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
     add_frames(parser)
     add_each(parser, "one response per photograph, not one for all; PHOTO may be a folder")
     parser.add_argument(

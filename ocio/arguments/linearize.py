@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_each, add_frames, add_network, add_plate
+from ocio.arguments.parts import Commands, add_command, add_each, add_frames, add_network, add_plate, written_path
 
 EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
@@ -29,7 +29,11 @@ def add(commands: Commands) -> None:
         " shot.1001-1100#.png; with --each photographs and folders of them",
     )
     parser.add_argument(
-        "--out", required=True, metavar="PATTERN", help="file, or pattern like that of PLATES; with --each a folder"
+        "--out",
+        type=written_path,
+        required=True,
+        metavar="PATTERN",
+        help="file, or pattern like that of PLATES; with --each a folder",
     )
     parser.add_argument(
         "--lut",

@@ -142,6 +142,13 @@ def count(text: str) -> int:
     return number
 
 
+def written_path(text: str) -> Path:
+    """Return the path in `text`, which must not be empty, as an unset variable of a shell is."""
+    if not text:
+        raise argparse.ArgumentTypeError("is empty; give a name, or . for the present folder")
+    return Path(text)
+
+
 def exposure(text: str) -> Exposure:
     """Return the exposure in `text`: white, gray, gray=BRIGHTNESS, in any case, or stops within `MAX_EXPOSURE`."""
     anchor, _, brightness = text.lower().replace("grey", "gray").partition("=")

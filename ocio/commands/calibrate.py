@@ -8,7 +8,7 @@ from pathlib import Path
 
 from crfnet_core.calibration import calibrate_stack, parse_times, read_times
 from ocio import pipeline, report
-from ocio.commands.printing import has_matplotlib, print_json, print_left, print_lines, progress_bar
+from ocio.commands.printing import prepare_matplotlib, print_json, print_left, print_lines, progress_bar
 from ocio.options import OutputOptions
 
 
@@ -16,7 +16,7 @@ def run(arguments: argparse.Namespace) -> None:
     """Measure a response; write every file; say what was found, and how far another response is from it."""
     frames: list[Path] = arguments.photos
     outputs = OutputOptions(
-        lut_length=arguments.length, has_sheet=not arguments.no_sheet and has_matplotlib(), has_linear=False
+        lut_length=arguments.length, has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False
     )
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None

@@ -12,9 +12,10 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
+from crfnet_core.image_io import read_metadata
 from ocio import pipeline, report
-from ocio.commands.options import estimate_options, plate_arguments, plate_options
-from ocio.commands.printing import has_matplotlib, print_json, print_left, print_lines, progress_bar
+from ocio.commands.options import check_each, estimate_options, plate_arguments, plate_options
+from ocio.commands.printing import prepare_matplotlib, print_json, print_left, print_lines, progress_bar
 from ocio.defaults import ESTIMATES
 from ocio.movies.source import movie_of
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
@@ -24,10 +25,11 @@ from ocio.pipeline import OutputPlan, PhotographEstimate, PhotographRecord
 
 def run(arguments: argparse.Namespace) -> None:
     """Estimate one response of all photographs, or one of each; write every file; say what was found."""
+    check_each(arguments)
     options = estimate_options(arguments, windows=arguments.windows, seed=arguments.seed)
     outputs = OutputOptions(
         lut_length=arguments.length,
-        has_sheet=not arguments.no_sheet and has_matplotlib(),
+        has_sheet=not arguments.no_sheet and prepare_matplotlib(),
         has_linear=not arguments.no_linear,
         has_forward=arguments.forward,
     )
@@ -84,6 +86,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
     print_left([path.name for path in plan.left], "this estimate")
+    _print_dropped(plan)
     print_lines([""])
     plate = estimated.plates[0]
     if movie_of(plate):
@@ -91,7 +94,21 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
         print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
         return
     print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
-    print_lines(f"  {line}" for line in report.oiiotool_lines(estimated.paths[0], files, document))
+    photo = estimated.paths[0]
+    print_lines(f"  {line}" for line in report.oiiotool_lines(photo, files, document, alpha=read_metadata(photo).alpha))
+
+
+def _print_dropped(plan: OutputPlan) -> None:
+    """Warn of the colour spaces of other plates that the folder's config had before, and how they come back."""
+    if plan.dropped:
+        config, first = plan.files.config, plan.dropped[0]
+        names = f'"{first}"' + (f" and {len(plan.dropped) - 1} more" if plan.dropped[1:] else "")
+        print_lines(
+            [
+                f"Warning: {config.name} was replaced, and does not have {names} any more; crfnet config add --base"
+                f" {shlex.quote(str(config))} LOOK puts a plate back, by its JSON."
+            ]
+        )
 
 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:

@@ -9,7 +9,7 @@ from pathlib import Path
 from crfnet_core.errors import CameraError, PlateError
 from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
-from ocio.commands.options import estimate_options, plate_options
+from ocio.commands.options import check_each, estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
 from ocio.defaults import PLATES
 from ocio.interchange.files import read_response
@@ -19,11 +19,13 @@ from ocio.luts.rgb_lut import AnyLut
 from ocio.movies.source import PlateSource, find_source, movie_of
 from ocio.movies.stream import check_progressive
 from ocio.output_files import check_folder, output_folder
+from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.linear import linear_targets, linearize_plates
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Write plates as linear EXR through a LUT, a stored camera's response, or one estimated from the frames."""
+    check_each(arguments)
     if arguments.lut and arguments.camera:
         raise CameraError("--lut and --camera both name a response; give one of them")
     if arguments.each:
@@ -36,8 +38,9 @@ def run(arguments: argparse.Namespace) -> None:
     sequence = find_source(arguments.plates[0], arguments.frames)
     if movie := movie_of(sequence):
         check_progressive(movie)
+    _check_single(arguments.out, sequence)
     targets = linear_targets(arguments.out, sequence)
-    folder = Path(arguments.out).parent
+    folder = arguments.out.parent
     check_folder(folder)
     estimate = None if arguments.lut else _response(sequence, arguments)
     lut: AnyLut
@@ -56,11 +59,21 @@ def run(arguments: argparse.Namespace) -> None:
         print_lines([*read, *lines, *report.light_lines(document), *report.plate_lines(done)])
 
 
+def _check_single(out: Path, sequence: PlateSource) -> None:
+    """Refuse the pattern of a sequence for a single file whose own name is none: the file would be called so."""
+    plate = sequence.paths[0]
+    if not sequence.numbers and FramePattern.parse(out) and FramePattern.parse(plate) is None:
+        raise PlateError(
+            f"{out}: stands for the frames of a sequence, but {plate} is a single file; give its sequence, such as"
+            " shot.%04d.png, or a name without a placeholder"
+        )
+
+
 def _run_each(arguments: argparse.Namespace) -> None:
     """Write each photograph as linear EXR; those that fail are named at the end."""
     if arguments.frames:
         raise PlateError("--frames chooses frames of one sequence, --each takes photographs; drop one")
-    out = Path(arguments.out)
+    out: Path = arguments.out
     photographs = pipeline.find_photographs([Path(name) for name in arguments.plates])
     options, plates = estimate_options(arguments), plate_options(arguments)
     tasks = pipeline.plan_each_linear(out, photographs, options, plates, arguments.lut)

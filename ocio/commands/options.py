@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from crfnet_core.errors import CRFNetError
 from ocio.options import EstimateOptions, PlateOptions
 
 
@@ -18,6 +19,19 @@ def estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOpti
         camera=arguments.camera,
         **more,
     )
+
+
+def check_each(arguments: argparse.Namespace) -> None:
+    """Refuse the options of --each where it is not given.
+
+    Raises
+    ------
+    CRFNetError
+        With the option.
+    """
+    for name in ("workers", "scheduler"):
+        if getattr(arguments, name) is not None and not arguments.each:
+            raise CRFNetError(f"--{name} is for --each, one response for each photograph; add it, or drop --{name}")
 
 
 def plate_options(arguments: argparse.Namespace) -> PlateOptions:

@@ -24,8 +24,8 @@ MOST_NAMES = 20
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
 
-def has_matplotlib() -> bool:
-    """Return whether a sheet can be drawn; if not, say on stderr what to do."""
+def prepare_matplotlib() -> bool:
+    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do."""
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     if find_spec("matplotlib") is not None:
         return True
@@ -48,7 +48,7 @@ def print_left(left: Sequence[str], what: str) -> None:
     if left:
         more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
         names = ", ".join(left[:MOST_NAMES]) + more
-        print_lines([f"Warning: of an earlier run, and not of {what}, are {names}; remove them."])
+        print_lines([f"Warning: left from an earlier run, and not part of {what}: {names}; remove them."])
 
 
 @contextmanager

@@ -16,8 +16,9 @@ from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress, cores, show_progress
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import check_targets, plain_stem
-from ocio.pipeline.loading import load_network, load_prior
-from ocio.pipeline.manifest import Manifest, PhotographRecord
+from ocio.pipeline.estimates import response_lut
+from ocio.pipeline.loading import load_camera_response, load_network, load_prior
+from ocio.pipeline.manifest import RESPONSE, Manifest, PhotographRecord
 from ocio.pipeline.photographs import check_distinct, fault, is_folder
 from ocio.pipeline.workers import worker_pool
 
@@ -50,9 +51,11 @@ class Task(ABC):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What all tasks of a manifest have in common, ready for JSON."""
+        """What all tasks of a manifest have in common, ready for JSON; also which response a stored camera has now."""
         chosen = {**asdict(self.options), **asdict(self.plates)}
-        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")}
+        stored = load_camera_response(self.options)
+        response = response_lut(stored).identity if stored else None
+        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")} | {RESPONSE: response}
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
+from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.metadata import Device
 from crfnet_core.metadata.color_tags import ColorTags
@@ -21,7 +23,7 @@ from ocio.movies.library import is_movie
 from ocio.movies.source import PlateSource, file_source, movie_of, photographs_of
 from ocio.options import EstimateOptions
 from ocio.pipeline.loading import load_camera
-from ocio.pipeline.photographs import each_once
+from ocio.pipeline.photographs import each_once, is_folder
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import find_frames, sample_frames
 from ocio.report import PhotoFacts, provenance
@@ -85,13 +87,28 @@ def sampled_photographs(names: Sequence[Path], frames: str | None = None) -> lis
     Raises
     ------
     PlateError
-        If a sequence has no such frames, or `frames` is malformed or given for a single photograph.
+        If a sequence has no such frames, `frames` is malformed or given for a single photograph, or a name is that of a
+        folder, or of nothing.
     """
     found: list[Path] = []
     for name in names:
         is_single = frames is None and (name.is_file() or FramePattern.parse(name) is None)
+        if is_single:
+            _check_file(name)
         found += [name] if is_single or is_movie(name) else sample_frames(find_frames(name, frames))
     return each_once(found)
+
+
+def _check_file(name: Path) -> None:
+    """Refuse a folder, and the name of nothing, before the output is looked at."""
+    if is_folder(name):
+        shot = name / "shot.%04d.png"
+        raise PlateError(
+            f"{name}: is a folder; give one photograph, the frames of a shot ({shot}), or --each for every photograph"
+            " in it"
+        )
+    if not os.path.lexists(name):
+        raise PlateError(f"{name}: there is no such file; check the name")
 
 
 def estimate_photographs(

@@ -18,8 +18,20 @@ from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line
 
-#: Settings that are called otherwise than in `ocio.options` -> what people call them.
-SETTINGS = {"device": "--taken-with", "use_metadata": "use of metadata", "is_encoded": "--encoded"}
+#: Settings that are called otherwise than in `ocio.options` -> the options that people give.
+OPTIONS = {"device": "--taken-with", "gray": "--exposure", "lut_length": "--length"}
+
+#: The setting that says which response the LUT, or the stored camera, of a run holds; absent in earlier manifests.
+RESPONSE = "response"
+
+#: Settings that are on or off -> the option, and which of the two it stands for.
+SWITCHES = {
+    "use_metadata": ("--ignore-metadata", False),
+    "is_encoded": ("--encoded", True),
+    "has_sheet": ("--no-sheet", False),
+    "has_linear": ("--no-linear", False),
+    "has_forward": ("--forward", True),
+}
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -162,12 +174,10 @@ class Manifest:
             records = list(map(_record, entries[1:]))
         except (ArithmeticError, AttributeError, IndexError, KeyError, TypeError, ValueError) as problem:
             raise PlateError(f"{self.path}: is no manifest; choose another folder, or add --overwrite") from problem
+        settings.setdefault(RESPONSE, self.settings.get(RESPONSE))
         if differing := [name for name, value in self.settings.items() if settings.get(name) != value]:
-            name, value = differing[0], settings.get(differing[0])
-            raise PlateError(
-                f"{self.path}: was begun with another {SETTINGS.get(name, name.replace('_', ' '))}"
-                f" ({'none' if value is None else value}); give the same, choose another folder, or add --overwrite"
-            )
+            how = _setting_words(differing[0], settings)
+            raise PlateError(f"{self.path}: was begun {how}; give the same, choose another folder, or add --overwrite")
         self.records = {record.photograph: record for record in records}
 
 
@@ -180,8 +190,23 @@ def check_records(records: Sequence[PhotographRecord]) -> None:
         With the number of those that did, and what the first lacks.
     """
     if failed := [record for record in records if record.error]:
+        others = " and the others are written" if len(failed) < len(records) else ""
         first = f"the first: {failed[0].error}"
-        raise PhotoError(f"{len(failed)} of {len(records)} photographs failed and the others are written; {first}")
+        raise PhotoError(f"{len(failed)} of {len(records)} photographs failed{others}; {first}")
+
+
+def _setting_words(name: str, settings: Mapping[str, Any]) -> str:
+    """Return in the words of the command's options how the settings of an earlier run were in one point."""
+    value = settings.get(name)
+    if name == RESPONSE:
+        return "when the LUT, or the camera, of that name held another response"
+    if name in SWITCHES:
+        option, stands_for = SWITCHES[name]
+        return f"{'with' if value == stands_for else 'without'} {option}"
+    option = OPTIONS.get(name, "--" + name.replace("_", "-"))
+    if name in ("exposure", "gray"):
+        value = settings.get("exposure") if settings.get("gray") is None else f"gray={settings['gray']:g}"
+    return f"with another {option} ({'none' if value is None else value})"
 
 
 def _record(entry: Mapping[str, Any]) -> PhotographRecord:

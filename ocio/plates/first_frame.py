@@ -41,6 +41,11 @@ class FirstFrame:
     source: SourceFrame
     frame: EncodedFrame
 
+    @property
+    def size(self) -> tuple[int, int]:
+        """Its width and height in pixels."""
+        return self.frame.header.width, self.frame.header.height
+
 
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
     """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""

@@ -137,7 +137,7 @@ def _no_sequence(path: Path) -> str:
     sequence = "a sequence such as plate.%04d.png or plate.####.png"
     return {
         "folder": f"is a folder without a sequence; give a file in it, or {sequence}",
-        "file": "is a single file, which has no frames to choose from; leave the frames away or give a pattern",
+        "file": "is a single file, which has no frames to choose from; leave --frames out or give a pattern",
         "": f"there is no such file; check the name, or give {sequence}",
     }[_kind(path)]
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -22,8 +22,8 @@ from ocio.plates.primaries import PlatePrimaries, plate_primaries
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"
 PRIMARIES, PRIMARIES_SOURCE = "crfnet:primaries", "crfnet:primariesSource"
 
-#: The name under which `_attributes` has the sample type, which is no attribute.
-_DEPTH = "crfnet:depth"
+#: The names under which `_attributes` has the sample type, and width and height, which are no attributes.
+_DEPTH, _SIZE = "crfnet:depth", "crfnet:size"
 
 #: Largest difference in stops between exposures that are the same.
 SAME_EXPOSURE = 1e-3
@@ -81,26 +81,39 @@ class PlateLight:
         return {name: value for name, value in attributes.items() if value not in ("", ())}
 
 
-def check_finished(frames: Iterable[Path], light: PlateLight, depth: str) -> None:
+def check_finished(
+    frames: Iterable[Path], light: PlateLight, depth: str, *, sizes: Mapping[Path, tuple[int, int]] | None = None
+) -> None:
     """Check that finished frames mean the same, and have the same sample type, as those that will stand beside them.
 
     Files that say nothing, or cannot be read, pass: they were not written by this command.
 
+    Parameters
+    ----------
+    frames : iterable of Path
+        The finished frames.
+    light, depth : PlateLight and str
+        What the numbers mean, and the sample type.
+    sizes : mapping, optional
+        Width and height of the plates of frames where they are known: another size is that of another plate.
+
     Raises
     ------
     PlateError
-        If a frame has another exposure, LUT, space or sample type, or was made of other primaries.
+        If a frame has another exposure, LUT, space, sample type or size, or was made of other primaries.
     """
     for path in frames:
         written = _attributes(path)
-        if EXPOSURE in written and (difference := _difference(written, light, depth)):
+        if EXPOSURE in written and (difference := _difference(written, light, depth, (sizes or {}).get(path))):
             raise PlateError(
                 f"{path}: is there already, with {difference}; repeat that, add --overwrite or change --out"
             )
 
 
-def _difference(written: dict[str, Any], light: PlateLight, depth: str) -> str:
+def _difference(written: dict[str, Any], light: PlateLight, depth: str, size: tuple[int, int] | None) -> str:
     """Return in words how a finished frame differs; empty if it does not."""
+    if size and written[_SIZE] != size:
+        return "{} x {} pixels, not {} x {}".format(*written[_SIZE], *size)
     if written[_DEPTH] != depth:
         return f"{written[_DEPTH]} samples, not {depth}"
     if abs(written[EXPOSURE] - light.stops) > SAME_EXPOSURE:
@@ -112,13 +125,14 @@ def _difference(written: dict[str, Any], light: PlateLight, depth: str) -> str:
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return what the header of an OpenEXR file holds, by name, and its sample type; nothing if it cannot be read."""
+    """Return what the header of an OpenEXR file holds, by name, its type and size; nothing if it cannot be read."""
     source = oiio.ImageInput.open(str(path))
     if source is None:
         oiio_message()
         return {}
     try:
         header = source.spec()
-        return {attribute.name: attribute.value for attribute in header.extra_attribs} | {_DEPTH: str(header.format)}
+        own = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
+        return {attribute.name: attribute.value for attribute in header.extra_attribs} | own
     finally:
         source.close()

@@ -86,7 +86,8 @@ def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
         pattern = FramePattern.parse(out)
         if pattern is None:
             count = len(sequence.numbers)
-            raise PlateError(f"{out}: one name for {count} frames; put their number into it, as in plate.%04d.exr")
+            frames = f"{count} frames; put their" if count > 1 else "a frame of a sequence; put its"
+            raise PlateError(f"{out}: one name for {frames} number into it, as in plate.%04d.exr")
         targets = [pattern.path(number) for number in sequence.numbers]
     plates = {os.path.realpath(path) for path in sequence.paths}
     for target in targets:
@@ -151,7 +152,8 @@ def linearize_plates(
     light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    check_finished(skipped, light, options.depth)
+    sizes = {targets[first.source.position]: first.size} if first else {}
+    check_finished(skipped, light, options.depth, sizes=sizes)
     left_alone = set(skipped)
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
     _remove_leftovers(pending)

@@ -80,5 +80,5 @@ def check_same_primaries(path: Path, found: PlatePrimaries, first: Path, expecte
     if found.primaries != expected.primaries:
         raise PlateError(
             f"{path}: its primaries are {found}, those of {first.name} {expected};"
-            f" give them apart, or say with --primaries which all have"
+            f" process them separately, or give the primaries of all with --primaries"
         )

@@ -21,7 +21,7 @@ from ocio.report.facts import agreeing, basis, curve_error_words, expected_error
 VERDICTS = {
     Verdict.GOOD: "good",
     Verdict.USABLE: "usable: look at the plate before you rely on it",
-    Verdict.DO_NOT_TRUST: "not to be trusted: take another photograph of this camera, or several together",
+    Verdict.DO_NOT_TRUST: "not to be trusted: give the file that the camera wrote, or run crfnet calibrate",
 }
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
@@ -81,22 +81,31 @@ def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty a
     return [f"  {names:<{width}}  {meaning}" for names, meaning in named if names]
 
 
-def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any]) -> list[str]:
+def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any], *, alpha: str = "") -> list[str]:
     """Return two command lines by which oiiotool makes the linear plate: with the LUT and with the config.
 
-    Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither.
+    Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither;
+    where the linear EXR keeps primaries that the config has no linear space of, it says that the config converts them.
+    `alpha` is that of the photograph's `FileMetadata`: the LUT takes colours that are not multiplied by it.
     """
     primaries, linear = document["primaries"], document["output_space"]
     target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
-    is_converted = "white" in primaries and linear["name"] != f"linear {primaries['name']}"
+    is_known = "white" in primaries
+    is_converted = is_known and linear["name"] != f"linear {primaries['name']}"
+    is_kept = is_known and not is_converted and linear["interop_id"] == "unknown"
     is_more = is_converted or document["exposure"]["stops"] != 0
     lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.spi1d, files.config, photo))
     space = shlex.quote(files.color_space)
     oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
+    # Straight colours are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
+    oiiotool += " --no-autopremult" * (alpha == "straight")
+    divide, multiply = ":unpremult=1" * (alpha == "multiplied"), " --premult" * (alpha == "straight")
+    end = f"{multiply} -d half -o linear.exr"
     return [
-        f"{oiiotool} {plate} --ociofiletransform {lut} -d half -o linear.exr",
-        f"{oiiotool} --colorconfig {config} {plate} --colorconvert {space} {target} -d half -o linear.exr",
+        f"{oiiotool} {plate} --ociofiletransform{divide} {lut}{end}",
+        f"{oiiotool} --colorconfig {config} {plate} --colorconvert{divide} {space} {target}{end}",
         *([f"(The LUT alone adds no exposure, and does not convert {primaries['name']}.)"] * is_more),
+        *(["(The config converts to linear Rec.709; the linear EXR keeps the plate's primaries.)"] * is_kept),
     ]
 
 

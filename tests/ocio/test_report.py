@@ -126,9 +126,9 @@ def test_the_remedy_follows_the_kind(estimate, family):
     assert first == f"The estimate is not to be trusted: {report.REMEDIES[family]}."
 
 
-def test_of_a_cameras_photograph_another_may_help(estimate):
+def test_of_a_cameras_photograph_its_own_file_or_a_measurement_helps(estimate):
     first = report.verdict_lines(estimate(verdict=Verdict.DO_NOT_TRUST))[0]
-    assert first == "The estimate is not to be trusted: take another photograph of this camera, or several together."
+    assert first == "The estimate is not to be trusted: give the file that the camera wrote, or run crfnet calibrate."
 
 
 def test_several_photographs_are_told_by_the_first(estimate):

@@ -175,10 +175,13 @@ def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tm
     (tmp_path / "eos20d_sheet.png").write_text("of an earlier run")
     (tmp_path / "eos20d_linear.exr").write_text("of another command, which stays unnamed")
     done = crfnet(*again)
-    assert "Warning: of an earlier run, and not of this calibration, are eos20d_sheet.png; remove them." in done.out
+    assert (
+        "Warning: left from an earlier run, and not part of this calibration: eos20d_sheet.png; remove them."
+        in done.out
+    )
     assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]
     (tmp_path / "eos20d_sheet.png").unlink()
-    assert "of an earlier run" not in crfnet(*again).out
+    assert "from an earlier run" not in crfnet(*again).out
 
 
 def test_a_response_from_a_lut_is_gamma(tmp_path):

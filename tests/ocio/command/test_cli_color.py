@@ -150,7 +150,7 @@ class TestPrimaries:
         assert (
             "p3.jpg: its primaries are Display P3 (ICC profile), those of plate.jpg Rec.709 (no tag, so by" in done.err
         )
-        assert "give them apart, or say with --primaries which all have" in done.err
+        assert "process them separately, or give the primaries of all with --primaries" in done.err
         assert not (tmp_path / "out").exists()
         assert estimate(plate, other, "--primaries", "p3").code == 0
         assert estimate(plate, other, "--each", "--overwrite").code == 0

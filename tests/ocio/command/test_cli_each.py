@@ -106,14 +106,28 @@ def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, mo
     assert all(f"name: CRF {stem}\n" in config for stem in ("a", "b", "bad", "c"))
 
 
+def test_of_one_photograph_that_failed_no_others_are_said_to_be_written(estimate, tmp_path):
+    (tmp_path / "bad.jpg").write_text("no photograph")
+    done = estimate(tmp_path / "bad.jpg", *QUICK)
+    assert done.err.startswith(f"crfnet: error: 1 of 1 photographs failed; the first: {tmp_path / 'bad.jpg'}: is no")
+
+
 def test_other_settings_are_refused(estimate, photographs, tmp_path):
     estimate(photographs, *QUICK)
     before = tree(tmp_path / "out")
     done = estimate(photographs, *QUICK, "--prior", "any")
     assert done.code == BAD_INPUT
-    assert "was begun with another prior (camera)" in done.err
+    assert "was begun with another --prior (camera);" in done.err
     done = estimate(photographs, *QUICK, "--taken-with", "phone")
-    assert "was begun with another --taken-with (none)" in done.err
+    assert "was begun with another --taken-with (none);" in done.err
+    for options, words in (
+        (("--exposure", "gray"), "with another --exposure (0.0)"),
+        (("--length", "256"), "with another --length (4081)"),
+        (("--ignore-metadata",), "without --ignore-metadata"),
+        (("--forward",), "without --forward"),
+    ):
+        assert f"was begun {words}; give the same" in estimate(photographs, *QUICK, *options).err
+    assert "was begun with --no-linear; give" in estimate(photographs, "--each", "--no-sheet", "--workers", "1").err
     assert tree(tmp_path / "out") == before
     assert estimate(photographs, *QUICK, "--prior", "any", "--overwrite").code == 0
     assert manifest_lines(tmp_path)[0]["prior"] == "any"
@@ -189,6 +203,15 @@ def test_what_is_another_json_is_no_manifest(estimate, photographs, tmp_path, te
     (tmp_path / "out" / ESTIMATES).write_text(f"{text}\n")
     done = estimate(photographs, *QUICK)
     assert (done.code, "is no manifest" in done.err, done.err.count("\n")) == (BAD_INPUT, True, 1)
+
+
+def test_a_lut_that_was_damaged_since_costs_only_its_colour_space(estimate, photographs, tmp_path):
+    estimate(photographs, *QUICK)
+    (tmp_path / "out" / "a.spi1d").write_text("no LUT")
+    shutil.copy(photographs / "a.jpg", photographs / "c.jpg")
+    assert estimate(photographs, *QUICK).code == 0
+    config = (tmp_path / "out" / "config.ocio").read_text()
+    assert [f"name: CRF {stem}\n" in config for stem in ("a", "b", "c")] == [False, True, True]
 
 
 def test_a_crowded_folder_gets_no_config(estimate, photographs, tmp_path, monkeypatch):

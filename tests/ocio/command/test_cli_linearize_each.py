@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseCurve
+from crfnet_core.cameras.library import SHIPPED
 from ocio.arguments.parts import BAD_INPUT
 from ocio.defaults import PLATES
 from ocio.luts.files import write_lut
@@ -104,7 +105,7 @@ def test_another_response_is_refused(linearize, photographs, look, tmp_path):
     before = tree(tmp_path / "out")
     done = linearize(photographs)
     assert done.code == BAD_INPUT
-    assert "was begun with another lut" in done.err
+    assert "was begun with another --lut" in done.err
     assert tree(tmp_path / "out") == before
 
 
@@ -114,8 +115,34 @@ def test_a_lut_that_has_changed_is_read_again(linearize, photographs, look, tmp_
     linearize(photographs, "--lut", lut)
     before = read_image(tmp_path / "out" / "a.exr")
     write_lut(lut, inverse_response_lut(ResponseCurve.gamma()), overwrite=True)
+    (tmp_path / "out" / "b.exr").unlink()
+    files = tree(tmp_path / "out")
+    done = linearize(photographs, "--lut", lut)  # else b.exr would have another response than a.exr
+    assert (done.code, "was begun when the LUT, or the camera, of that name held another" in done.err) == (2, True)
+    assert tree(tmp_path / "out") == files
     assert linearize(photographs, "--lut", lut, "--overwrite").code == 0
     assert np.abs(read_image(tmp_path / "out" / "a.exr") - before).max() > 0.01
+
+
+@pytest.mark.parametrize("command", ["estimate", "linearize"])
+def test_so_is_a_camera_that_has_changed(crfnet, fixed_model, photographs, own_cameras, tmp_path, command):
+    own_cameras.mkdir(exist_ok=True)
+    options = ("--each", "--camera", "mine", "--workers", "1", "--model", fixed_model, "--out", tmp_path / "out")
+    options = (*options, "--no-sheet", "--no-linear") if command == "estimate" else options
+
+    def run_with(camera):
+        shutil.copy(SHIPPED / camera, own_cameras / "mine.json")
+        document = json.loads((own_cameras / "mine.json").read_text())
+        (own_cameras / "mine.json").write_text(json.dumps(document | {"name": "mine"}))
+        return crfnet(command, photographs, *options)
+
+    first, second = sorted(path.name for path in SHIPPED.glob("*.json"))[:2]
+    try:
+        assert [run_with(first).code, run_with(first).code] == [0, 0]
+        done = run_with(second)
+    finally:
+        (own_cameras / "mine.json").unlink()
+    assert (done.code, "was begun when the LUT, or the camera, of that name held another" in done.err) == (2, True)
 
 
 def test_two_of_one_name_are_refused(linearize, photographs, tmp_path):

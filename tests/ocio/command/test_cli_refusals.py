@@ -62,6 +62,9 @@ BAD_ESTIMATES = {
     "huge exposure": ["{plate}", "--exposure", "1e6"],
     "unknown option": ["{plate}", "--nonsense"],
     "no photograph": [],
+    "an empty name for the output": ["{plate}", "--out", ""],
+    "workers without --each": ["{plate}", "--workers", "2"],
+    "a scheduler without --each": ["{plate}", "--scheduler", "tcp://127.0.0.1:1"],
 }
 
 BAD_LINEARIZES = {
@@ -77,6 +80,9 @@ BAD_LINEARIZES = {
     "frames of a file": ["{plate}", "--lut", "{in}/good.spi1d", "--frames", "1-2"],
     "bad frames": ["{in}/a.%04d.jpg", "--lut", "{in}/good.spi1d", "--frames", "one"],
     "bad output": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{out}/plate.png"],
+    "an empty name for the output": ["{plate}", "--lut", "{in}/good.spi1d", "--out", ""],
+    "workers without --each": ["{plate}", "--lut", "{in}/good.spi1d", "--workers", "2"],
+    "a pattern for a single file": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{out}/a.%04d.exr"],
     "output below a file": ["{plate}", "--lut", "{in}/good.spi1d", "--out", "{in}/file/a.exr"],
     "onto itself": ["{in}/linear.exr", "--lut", "{in}/good.spi1d", "--out", "{in}/linear.exr", "--overwrite"],
 }
@@ -117,6 +123,16 @@ def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, 
     assert done.err.count("\n") == 1
     assert tree(tmp_path) == before
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize(
+    ("name", "words"),
+    [("none.jpg", "none.jpg: there is no such file; check the name"), (".", "is a folder; give one photograph")],
+)
+def test_what_is_no_photograph_is_said_before_the_output_is_looked_at(crfnet, look, tmp_path, name, words):
+    """Else a user adds --overwrite to a line about files that exist, and has replaced nothing."""
+    done = crfnet("estimate", tmp_path / name, "--out", look)
+    assert (done.code, words in done.err, "--overwrite" in done.err) == (BAD_INPUT, True, False)
 
 
 @pytest.mark.parametrize("folder", ["$HOME", "projects$", "a%b%"])

@@ -55,6 +55,23 @@ def test_output_names_that_cannot_be_are_refused(tmp_path, out, target, message)
     assert tree(out) == {}
 
 
+def test_one_frame_of_a_sequence_needs_a_number_too(tmp_path, out):
+    with pytest.raises(PlateError, match="one name for a frame of a sequence; put its number into it, as in"):
+        linearize(write_sequence(tmp_path, (1,)), out / "a.exr", LUT)
+
+
+def test_a_finished_plate_of_another_size_is_that_of_another_plate(tmp_path, out):
+    linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
+    before, (height, width) = tree(out), SMALL.shape[:2]
+    other = write_image(tmp_path / "b.png", SMALL[:, 1:, :3])
+    words = f"is there already, with {width} x {height} pixels, not {width - 1} x {height}; .* add --overwrite"
+    with pytest.raises(PlateError, match=words):
+        linearize(other, out / "a.exr", LUT)
+    assert tree(out) == before
+    linearize(other, out / "a.exr", LUT, overwrite=True)
+    assert tree(out) != before
+
+
 @pytest.mark.parametrize(
     ("plate", "target"), [("a.exr", "a.exr"), ("a.#.exr", "a.%04d.exr"), ("a.#.exr", "./b/../a.@.exr")]
 )
