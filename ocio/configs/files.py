@@ -34,8 +34,10 @@ def load_config(path: str | Path) -> OCIO.Config:
     Raises
     ------
     ConfigError
-        If OpenColorIO refuses it.
+        If there is none, or OpenColorIO refuses it.
     """
+    if not os.path.lexists(path):
+        raise ConfigError(f"{path}: there is no such config; check the name")
     try:
         return OCIO.Config.CreateFromFile(str(path))
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:

@@ -103,13 +103,20 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     Raises
     ------
     ConfigError, LutError, PlateError
-        If the files cannot be written, or OpenColorIO converts otherwise than the LUTs.
+        If `base` has a plate's colour space already, which OpenColorIO would prefer; the files cannot be written; or
+        OpenColorIO converts otherwise than the LUTs.
     """
     target = target.resolve()
     merge_file = target.with_suffix(".ociom")
     check_config_folder(target.parent)
     if target == base.path:
         raise ConfigError(f"{target}: is the config to merge with; choose another name for the overlay")
+    for look in looks:
+        if base.config.getColorSpace(look.space.name) is not None:
+            raise ConfigError(
+                f"{base.name}: has a colour space {look.space.name!r}, which would win over that of the overlay; take it"
+                " out (crfnet config remove), or put the plate into a copy of this config (crfnet config add --out)"
+            )
     config, added = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Look]()
     for look in looks:
         space = own_space(config, look, target, {name: str(other.source) for name, other in added.items()})

@@ -107,7 +107,7 @@ def test_the_printed_merge_line_works(crfnet, folder, tmp_path):
         (("add", "--base", STUDIO, "--out", "{out}", "{look}", "--rule", ""), "PATTERN is empty"),
         (("overlay", "--base", STUDIO, "{look}"), "the following arguments are required: --out"),
         (("remove", STUDIO, "CRF a"), "is built into OpenColorIO and cannot be changed"),
-        (("list", "nowhere.ocio"), "nowhere.ocio: OpenColorIO refuses this config"),
+        (("list", "nowhere.ocio"), "nowhere.ocio: there is no such config; check the name"),
         ((), "the following arguments are required: ACTION"),
     ],
 )

@@ -110,10 +110,13 @@ class TestLoading:
         with pytest.raises(ConfigError, match="has no role nonsense; use another config"):
             role_name(folder / "config.ocio", "nonsense")
 
-    @pytest.mark.parametrize("text", [None, "", "no config"])
+    def test_a_config_that_is_not_there_is_named(self, tmp_path):
+        with pytest.raises(ConfigError, match="there is no such config; check the name"):
+            load_config(tmp_path / "config.ocio")
+
+    @pytest.mark.parametrize("text", ["", "no config"])
     def test_what_is_no_config_is_refused(self, tmp_path, text):
-        if text is not None:
-            (tmp_path / "config.ocio").write_text(text)
+        (tmp_path / "config.ocio").write_text(text)
         with pytest.raises(ConfigError, match="OpenColorIO refuses this config") as caught:
             load_config(tmp_path / "config.ocio")
         assert "\n" not in str(caught.value)

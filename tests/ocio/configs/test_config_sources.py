@@ -125,7 +125,7 @@ class TestBlender:
     [
         ("nowhere", "nowhere: is no config, no built-in config's name, and no Blender with one; built in are ocio://"),
         ("ocio://nowhere", r"ocio://nowhere: is not built into this OpenColorIO \(.*\); known are ocio://default"),
-        ("nowhere.ocio", r"nowhere\.ocio: OpenColorIO refuses this config"),
+        ("nowhere.ocio", r"nowhere\.ocio: there is no such config; check the name"),
     ],
 )
 def test_anything_else_is_refused(name, message, tmp_path, monkeypatch):

@@ -18,7 +18,7 @@ from ocio.configs.studio.sources import find_config
 from ocio.luts.lut1d import inverse_response_lut
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
-from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, space_of, write_look
+from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 
 EVERY_SPACE = (OCIO.SEARCH_REFERENCE_SPACE_ALL, OCIO.COLORSPACE_ALL)
 
@@ -132,3 +132,13 @@ def test_the_studios_config_is_not_replaced(tmp_path):
     with pytest.raises(ConfigError, match="is the config to merge with; choose another name for the overlay"):
         overlay(path, write_look(tmp_path / "look"), path, overwrite=True)
     assert path.read_bytes() == before
+
+
+def test_a_base_that_has_the_plate_already_is_refused(tmp_path):
+    """The merger would keep the base's, with another response."""
+    base = add(STUDIO, write_look(tmp_path / "a"), tmp_path / "show" / "studio.ocio").config
+    before = tree(tmp_path)
+    with pytest.raises(ConfigError, match=rf"has a colour space '{NAME}', which would win .*crfnet config remove"):
+        overlay(base, write_look(tmp_path / "a", lut=OTHER_LUT), tmp_path / "show" / "overlay.ocio")
+    assert listed(tmp_path / "show") == ["studio.ocio", "studio_camera_response"]
+    assert tree(tmp_path / "show") == {name[5:]: text for name, text in before.items() if name.startswith("show/")}
