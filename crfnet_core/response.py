@@ -95,6 +95,14 @@ class ResponseCurve(EqualByFields):
         return cls((strict - strict[0]) / (strict[-1] - strict[0]))
 
     @classmethod
+    def restored(cls, samples: ArrayLike) -> ResponseCurve:
+        """Return the response whose samples a document holds; of rounded ones, the nearest as `from_samples` has it."""
+        try:
+            return cls(np.asarray(samples, dtype=np.float64))
+        except CurveError:
+            return cls.from_samples(samples)
+
+    @classmethod
     def gamma(cls, exponent: float = 2.2) -> ResponseCurve:
         """Return the power law f(E) = E ** (1 / exponent), what people guess without an estimate.
 

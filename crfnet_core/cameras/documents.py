@@ -83,7 +83,7 @@ def read_calibration(path: Path) -> MeasuredResponse:
         used = [frame for frame in frames if frame["used"]]
         iso = _sensitivities({round(frame["iso"]) for frame in used if frame["iso"]})
         return MeasuredResponse(
-            curve=ResponseCurve.from_samples(document["response"]["brightness"]),
+            curve=ResponseCurve.restored(document["response"]["brightness"]),
             shape_stops=_deviation(document["shape_uncertainty_stops"]),
             scale_stops=_deviation(document["scale_uncertainty_stops"]),
             source=f"{len(used)} exposures",

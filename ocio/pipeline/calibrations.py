@@ -136,7 +136,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
         return response_of_lut(read_response(path).lut)
     try:
         samples = read_json(path)["response"]["brightness"]
-        return ResponseCurve.from_samples(samples)
+        return ResponseCurve.restored(samples)
     except OSError as problem:
         raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem
     except (KeyError, OverflowError, TypeError, ValueError, CurveError) as problem:

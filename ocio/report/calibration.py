@@ -11,6 +11,7 @@ import numpy as np
 from crfnet_core.calibration import Calibration, Comparison, FrameReport
 from crfnet_core.metadata.devices import camera_name
 from crfnet_core.metrics import brightness_percent
+from crfnet_core.types import plain_values
 from ocio.output_files import OutputFiles
 from ocio.report.documents import file_names, rounded
 
@@ -79,7 +80,7 @@ def calibration_document(
         "warnings": list(calibration.warnings),
         "comparison": None if comparison is None else _parts(vars(comparison)),
         "weights": rounded(calibration.weights),
-        "response": {"brightness": rounded(calibration.curve.brightness)},
+        "response": {"brightness": plain_values(calibration.curve.brightness)},
         "color_space": files.color_space,
         "files": file_names(files),
     }

@@ -111,6 +111,13 @@ def test_the_constructor_only_takes_strict_samples():
         ResponseCurve(np.linspace(0, 1, 10))
 
 
+def test_a_stored_response_comes_back_and_a_rounded_one_nearly():
+    curve = ResponseCurve.gamma(2.2)
+    assert ResponseCurve.restored(curve.brightness.tolist()) == curve
+    rounded = ResponseCurve.restored(np.round(curve.brightness, 2))
+    assert np.abs(rounded.brightness - curve.brightness).max() < 0.01
+
+
 def test_a_gamma_is_positive():
     with pytest.raises(CurveError, match="above 0"):
         ResponseCurve.gamma(0)

@@ -114,8 +114,8 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     for look in looks:
         if base.config.getColorSpace(look.space.name) is not None:
             raise ConfigError(
-                f"{base.name}: has a colour space {look.space.name!r}, which would win over that of the overlay; take it"
-                " out (crfnet config remove), or put the plate into a copy of this config (crfnet config add --out)"
+                f"{base.name}: has a colour space {look.space.name!r}, which would win over that of the overlay;"
+                " take it out (crfnet config remove), or add the plate to a copy of it (crfnet config add --out)"
             )
     config, added = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Look]()
     for look in looks:

@@ -8,8 +8,10 @@ import pytest
 from crfnet_core.metrics import shape_error
 from crfnet_core.response import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
+from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.response import response_of_lut
 from ocio.luts.spi1d import read_spi1d
+from ocio.pipeline.calibrations import response_to_compare
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
@@ -82,7 +84,10 @@ def test_the_document_says_all(camera):
     assert 0 < found["scale_uncertainty_stops"] < 0.3
     parts = found["uncertainty_parts"]["shape"]
     assert found["shape_uncertainty_stops"] == pytest.approx(np.linalg.norm([*parts.values()]), abs=1e-4)
-    assert len(found["response"]["brightness"]) == 1024
+    curve = response_to_compare(camera[0] / "eos20d.json")
+    assert curve.brightness.tolist() == found["response"]["brightness"], "to the last bit"
+    lut = read_spi1d(camera[0] / "eos20d.spi1d")
+    np.testing.assert_allclose(lut.values, inverse_response_lut(curve).values, rtol=1e-7)
     assert len(found["weights"]) == 11
     assert [frame["name"] for frame in found["frames"]] == [f"stack_{i:02d}.png" for i in range(6)]
     assert all(frame["used"] and len(frame["offsets_stops"]) == 3 for frame in found["frames"])
