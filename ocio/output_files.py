@@ -10,8 +10,8 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crfnet_core.errors import CRFNetError, PlateError
-from crfnet_core.files import atomic_write, cut_to_bytes
+from crfnet_core.errors import PlateError
+from crfnet_core.files import cut_to_bytes
 from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
@@ -280,21 +280,4 @@ def output_folder(folder: Path) -> Iterator[None]:
         for path in made:
             with suppress(OSError):
                 path.rmdir()
-        raise
-
-
-@contextmanager
-def as_before_on_failure(paths: Iterable[Path]) -> Iterator[None]:
-    """Run a block; if it fails or is cancelled, give each of `paths` its earlier content, or remove it if it is new."""
-    earlier = {path: path.read_bytes() if path.is_file() else None for path in paths}
-    try:
-        yield
-    except BaseException:
-        for path, content in earlier.items():
-            with suppress(OSError, CRFNetError):
-                if content is None:
-                    path.unlink(missing_ok=True)
-                    continue
-                with atomic_write(path, overwrite=True) as temporary:
-                    temporary.write_bytes(content)
         raise

@@ -11,8 +11,8 @@ from pathlib import Path
 
 from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, file_sha256, read_json
+from ocio.configs.undo import as_before_on_failure
 from ocio.defaults import CONFIG_NAME
-from ocio.output_files import as_before_on_failure
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"
@@ -89,7 +89,7 @@ def backed_up(config: Path, record: InstallationRecord | None) -> Iterator[str |
     """Copy a config that somebody else wrote, and yield the copy's file name; if the block fails, remove the copy.
 
     If the config is as the record says, nothing is copied, and the name is that in the record. It is None if there is
-    no earlier config.
+    no earlier config. A ConfigError if there are `MAX_BACKUPS` copies.
     """
     if not config.exists():
         yield None
@@ -99,7 +99,9 @@ def backed_up(config: Path, record: InstallationRecord | None) -> Iterator[str |
         return
     numbered = (NUMBERED_BACKUP.format(config.stem, number) for number in range(2, MAX_BACKUPS + 1))
     names = (BACKUP_NAME.format(config.stem), *numbered)
-    name = next(name for name in names if not config.with_name(name).exists())
+    name = next((name for name in names if not config.with_name(name).exists()), None)
+    if name is None:
+        raise ConfigError(f"{config}: has {MAX_BACKUPS} backups already; move some elsewhere")
     with as_before_on_failure([config.with_name(name)]):
         shutil.copy2(config, config.with_name(name))
         yield name

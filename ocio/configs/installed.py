@@ -1,13 +1,14 @@
 """A plate's colour space in the config that a program reads at its start, and the way back.
 
-Beside the config lies a folder of our own, `FOLDER`, with the LUTs and a record of what was done. A config that does
-not match the record was written by somebody else: it is copied to a backup before the colour space is added to it.
+Beside the config lies a folder of our own, `FOLDER`, with the LUTs and a record. A config that does not match the
+record was written by somebody else: it is copied to a backup before the colour space is added to it.
 """
 
 from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -22,6 +23,7 @@ from ocio.configs.installation_record import (
     check_is_ours,
     digest,
     files_in,
+    own_folder,
     read_record,
     record_file,
     write_record,
@@ -35,10 +37,11 @@ from ocio.configs.plate_color_space import (
     without_plate_rules,
 )
 from ocio.configs.reference_space import lut_file_of
+from ocio.configs.undo import as_before_on_failure
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import as_before_on_failure, check_config_folder, distinct_names, output_folder
+from ocio.output_files import check_config_folder, distinct_names, output_folder
 
 
 @dataclass(frozen=True)
@@ -72,7 +75,7 @@ class Restored:
     config : Path
         The config.
     is_removed : bool
-        Whether it is gone, because there was none before ours; otherwise the earlier one is back.
+        Whether it is gone, as there was none before ours; otherwise the earlier one is back.
     """
 
     config: Path
@@ -162,26 +165,41 @@ def restore(folder: Path) -> Restored:
         check_is_ours(folder, record)
     try:
         if record.backup:
-            (folder / record.backup).replace(config)
-            _take_out_all(config)
+            _put_back(config, folder / record.backup)
         else:
             config.unlink(missing_ok=True)
-        for name in (FOLDER,) if record.backup else (FOLDER, *record.folders):
-            shutil.rmtree(folder / name, ignore_errors=True)
-        _remove_if_empty(folder)
+            for name in (FOLDER, *record.folders):
+                shutil.rmtree(folder / name, ignore_errors=True)
+            _remove_if_empty(folder)
     except OSError as problem:
         raise ConfigError(f"{config}: cannot be restored ({problem.strerror}); check the folder") from problem
     return Restored(config, is_removed=not record.backup)
 
 
-def _take_out_all(config: Path) -> None:
-    """Take our colour spaces out of a config: an earlier one has some if it was ours, and somebody changed it."""
-    loaded = load_config(config)
-    ours = [space.getName() for space in loaded.getColorSpaces() if _installed_lut(space)]
-    for name in ours:
-        loaded = without_plate_color_space(loaded, name)
-    if ours:
+def _put_back(config: Path, backup: Path) -> None:
+    """Put an earlier config back, without our colour spaces; then remove our record, and LUTs that it does not name."""
+    luts = _installed_luts(config).values()
+    if ours := _installed_luts(backup):
+        loaded = load_config(backup)
+        for name in ours:
+            loaded = without_plate_color_space(loaded, name)
         write_config(config, loaded, check={}, overwrite=True)
+        backup.unlink()
+    else:
+        backup.replace(config)
+    named = config.read_bytes()
+    for path in (record_file(config), *(config.parent / lut for lut in luts if lut.encode() not in named)):
+        path.unlink(missing_ok=True)
+    _remove_if_empty(own_folder(config))
+
+
+def _installed_luts(config: Path) -> dict[str, str]:
+    """Return the LUT of each colour space of ours in a config, by its name; none if OpenColorIO cannot read it."""
+    with suppress(ConfigError):
+        return {
+            space.getName(): lut for space in load_config(config).getColorSpaces() if (lut := _installed_lut(space))
+        }
+    return {}
 
 
 def installed_color_spaces(folder: Path) -> tuple[str, ...]:

@@ -32,10 +32,11 @@ from ocio.configs.studio.looks import Look
 from ocio.configs.studio.plates import Changed, checked_target, plate_in_config, plates_in_config
 from ocio.configs.studio.rules import PlateRules
 from ocio.configs.studio.sources import ConfigSource, is_blender_config
+from ocio.configs.undo import as_before_on_failure
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import as_before_on_failure, output_folder
+from ocio.output_files import output_folder
 
 
 @dataclass(frozen=True, kw_only=True)

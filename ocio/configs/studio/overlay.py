@@ -24,8 +24,9 @@ from ocio.configs.studio.additions import own_space
 from ocio.configs.studio.looks import Look
 from ocio.configs.studio.plates import PlateInConfig, plates_in_config
 from ocio.configs.studio.sources import ConfigSource
+from ocio.configs.undo import as_before_on_failure
 from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import as_before_on_failure, check_config_folder, output_folder
+from ocio.output_files import check_config_folder, output_folder
 
 #: The config without plates.
 TEMPLATE = """\
@@ -111,28 +112,29 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
     check_config_folder(target.parent)
     if target == base.path:
         raise ConfigError(f"{target}: is the config to merge with; choose another name for the overlay")
-    for look in looks:
-        if base.config.getColorSpace(look.space.name) is not None:
-            raise ConfigError(
-                f"{base.name}: has a colour space {look.space.name!r}, which would win over that of the overlay;"
-                " take it out (crfnet config remove), or add the plate to a copy of it (crfnet config add --out)"
-            )
     config, added = OCIO.Config.CreateFromStream(TEMPLATE), dict[str, Look]()
     for look in looks:
         space = own_space(config, look, target, {name: str(other.source) for name, other in added.items()})
         config = add_plate_color_space(config, space)
         added[space.name] = look
+    for name in added:
+        if base.config.getColorSpace(name) is not None:
+            raise ConfigError(
+                f"{base.name}: has a colour space {name!r}, which would win over that of the overlay; take it out"
+                " (crfnet config remove), or add the plate to a copy of the config (crfnet config add --out)"
+            )
     plates = plates_in_config(config)
     files = {target.parent / plate.lut_file: added[plate.name].lut for plate in plates}
     text = MERGE.format(base=_quoted(base.name), overlay=_quoted(target.name))
-    with output_folder(own_folder(target)), as_before_on_failure([*files, target, merge_file]):
+    with output_folder(own_folder(target)):
         for path in (target, merge_file):
             check_target(path, overwrite=overwrite, error=ConfigError)
-        for path, lut in files.items():
-            write_spi1d(path, lut, overwrite=overwrite)
-        check_in_ap0(config, target.parent, added)
-        write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=overwrite)
-        atomic_write_text(merge_file, text, overwrite=overwrite, error=ConfigError)
+        with as_before_on_failure([*files, target, merge_file]):
+            for path, lut in files.items():
+                write_spi1d(path, lut, overwrite=overwrite)
+            check_in_ap0(config, target.parent, added)
+            write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=overwrite)
+            atomic_write_text(merge_file, text, overwrite=overwrite, error=ConfigError)
     return Overlay(target, merge_file, tuple(plates))
 
 

@@ -21,6 +21,7 @@ from ocio.configs.installation_record import (
 from ocio.configs.plate_color_space import without_plate_color_space
 from ocio.configs.studio.plates import Changed, PlateInConfig, checked_target, plates_in_config
 from ocio.configs.studio.sources import ConfigSource, is_blender_config
+from ocio.configs.undo import as_before_on_failure
 
 
 def remove_plates(source: ConfigSource, names: Sequence[str]) -> Changed:
@@ -60,23 +61,38 @@ def _write_less(
         target.with_name(earlier).replace(target)
         backup, is_recorded = None, False
     else:
-        with backed_up(target, record) as backup:
-            write_config(target, config, check={}, overwrite=True)
-        is_recorded = bool(kept or backup) or is_blender_config(target)
+        is_ours = bool(kept) or is_blender_config(target)
+        backup, is_recorded = _write_config(target, config, plates, record, is_ours=is_ours)
     unused = {plate.lut_file for plate in plates} - {plate.lut_file for plate in kept}
     for lut_file in unused:
         if lut_file.startswith(f"{folder.name}/"):
             (target.parent / lut_file).unlink(missing_ok=True)
-    if is_recorded:
-        names = {plate.name for plate in plates}
-        identities = {name: plate for name, plate in (record.plates if record else {}).items() if name not in names}
-        folder.mkdir(exist_ok=True)
-        write_record(target, InstallationRecord(digest(target), backup, record.folders if record else (), identities))
-    elif folder.is_dir():
+    if not is_recorded and folder.is_dir():
         record_file(target).unlink(missing_ok=True)
         if not any(folder.iterdir()):
             folder.rmdir()
     return backup
+
+
+def _write_config(
+    target: Path,
+    config: OCIO.Config,
+    plates: Sequence[PlateInConfig],
+    record: InstallationRecord | None,
+    *,
+    is_ours: bool,
+) -> tuple[str | None, bool]:
+    """Write a config without plates; return the backup's name, and whether there is a record: ours and backups have."""
+    with as_before_on_failure([target, record_file(target)]), backed_up(target, record) as backup:
+        write_config(target, config, check={}, overwrite=True)
+        is_recorded = is_ours or backup is not None
+        if is_recorded:
+            names = {plate.name for plate in plates}
+            identities = {name: plate for name, plate in (record.plates if record else {}).items() if name not in names}
+            own_folder(target).mkdir(exist_ok=True)
+            folders = record.folders if record else ()
+            write_record(target, InstallationRecord(digest(target), backup, folders, identities))
+    return backup, is_recorded
 
 
 def _is_without_plates(backup: Path) -> bool:

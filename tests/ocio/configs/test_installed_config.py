@@ -206,23 +206,6 @@ def test_what_was_written_goes_again_after_a_failure(folder, base, monkeypatch):
     assert not folder.exists()
 
 
-@pytest.mark.parametrize("step", ["write_config", "write_record"])
-@pytest.mark.parametrize("is_changed", [False, True])
-def test_a_failure_leaves_the_earlier_lut_and_config(folder, base, monkeypatch, step, is_changed):
-    install(folder, base, SPACE, LUT, plate=PLATE)
-    if is_changed:
-        (folder / CONFIG_NAME).write_text((folder / CONFIG_NAME).read_text() + "\n# mine\n")
-    before = tree(folder)
-
-    def fail(*arguments, **options):
-        raise ConfigError("the disk is full")
-
-    monkeypatch.setattr(installed, step, fail)
-    with pytest.raises(ConfigError, match="the disk is full"):
-        install(folder, base, SPACE, OTHER_LUT, plate=PLATE)
-    assert tree(folder) == before
-
-
 def test_a_name_that_the_config_uses_is_refused(folder, base):
     with pytest.raises(ConfigError, match="choose another name"):
         install(folder, base, PlateColorSpace("sRGB", "plate.spi1d"), LUT, plate=PLATE)

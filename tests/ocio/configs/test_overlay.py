@@ -134,6 +134,14 @@ def test_the_studios_config_is_not_replaced(tmp_path):
     assert path.read_bytes() == before
 
 
+def test_a_base_that_has_the_new_name_of_a_plate_is_refused(tmp_path):
+    """The second plate of a name is called after its folder."""
+    base = add(STUDIO, write_look(tmp_path / "c", ["plate01 (b).jpg"]), tmp_path / "show" / "studio.ocio").config
+    looks = [*read_looks(write_look(tmp_path / "a")), *read_looks(write_look(tmp_path / "b", lut=OTHER_LUT))]
+    with pytest.raises(ConfigError, match=r"has a colour space 'CRF plate01 \(b\)'"):
+        write_overlay(find_config(str(base)), tmp_path / "overlay.ocio", looks)
+
+
 def test_a_base_that_has_the_plate_already_is_refused(tmp_path):
     """The merger would keep the base's, with another response."""
     base = add(STUDIO, write_look(tmp_path / "a"), tmp_path / "show" / "studio.ocio").config

@@ -8,6 +8,7 @@ from crfnet_core.errors import ConfigError
 from ocio.configs.installed import install, restore
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
+from ocio.configs.studio import removal
 from ocio.configs.studio.plates import plates_in_config
 from ocio.configs.studio.removal import remove_plates
 from ocio.configs.studio.sources import find_config
@@ -51,6 +52,20 @@ class TestRemoving:
         add(studio, write_look(tmp_path / "two", ["b.jpg"]))
         remove_plates(find_config(str(studio)), [NAME, "CRF b"])
         assert plates_in_config(loaded(studio)) == []
+
+    @pytest.mark.parametrize("step", ["write_config", "write_record"])
+    def test_a_failure_leaves_everything_as_it_was(self, studio, small_look, tmp_path, monkeypatch, step):
+        add(studio, small_look)
+        add(studio, write_look(tmp_path / "two", ["b.jpg"]))
+        before = tree(studio.parent)
+
+        def fail(*arguments, **options):
+            raise ConfigError("the disk is full")
+
+        monkeypatch.setattr(removal, step, fail)
+        with pytest.raises(ConfigError, match="the disk is full"):
+            remove_plates(find_config(str(studio)), [NAME])
+        assert tree(studio.parent) == before
 
     def test_a_config_that_was_made_for_the_plates_stays(self, small_look, tmp_path):
         add(STUDIO, small_look, tmp_path / "show" / "config.ocio", has_views=True)
