@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, Parser, add_action, add_command, add_model
+from ocio.arguments.parts import Commands, Parser, add_action, add_command, add_model, written_path
 
 EXAMPLES = """examples:
   crfnet camera add "A7 III" IMG_1.jpg IMG_2.jpg               one response for all plates; more may be added later
@@ -49,7 +49,10 @@ def _add_export(actions: Commands) -> None:
     parser = add_action(actions, "export", "write the response of a camera to a file")
     parser.add_argument("name", metavar="NAME", help="the camera")
     parser.add_argument(
-        "out", type=Path, metavar="OUT", help="a LUT or a file that crfnet convert writes, or .json to hand it on"
+        "out",
+        type=written_path,
+        metavar="OUT",
+        help="a LUT or a file that crfnet convert writes, or .json to hand it on",
     )
     add_model(parser)
     parser.add_argument("--overwrite", action="store_true", help="replace a file that is already there")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, Parser, add_action, add_command
+from ocio.arguments.parts import Commands, Parser, add_action, add_command, written_path
 
 EXAMPLES = """examples:
   crfnet config add --base /studio/config.ocio look                       into that config; a backup is kept
@@ -70,5 +70,5 @@ def _add_looks(parser: argparse.ArgumentParser, *, base: str) -> None:
 
 def _add_out(parser: argparse.ArgumentParser, *, required: bool, words: str) -> None:
     """Add --out and --overwrite."""
-    parser.add_argument("--out", type=Path, required=required, metavar="FILE", help=words)
+    parser.add_argument("--out", type=written_path, required=required, metavar="FILE", help=words)
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")

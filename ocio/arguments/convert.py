@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_json
+from ocio.arguments.parts import Commands, add_command, add_json, written_path
 
 EXAMPLES = """examples:
   crfnet convert look/plate01.spi1d response.npy               for OpenCV's createMergeDebevec
@@ -21,7 +21,7 @@ def add(commands: Commands) -> None:
     """Add `crfnet convert`."""
     parser = add_command(commands, "convert", "convert a camera response between LUTs and other programs", EXAMPLES)
     parser.add_argument("source", type=Path, metavar="SOURCE", help="the response or its inverse; see below")
-    parser.add_argument("out", type=Path, metavar="OUT", help="file to be written; its suffix names the format")
+    parser.add_argument("out", type=written_path, metavar="OUT", help="file to be written; its suffix names the format")
     parser.add_argument("--curve", default="", metavar="NAME", help="of several curves (DoRF) or images (Hugin)")
     parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values instead")
     parser.add_argument("--overwrite", action="store_true", help="replace, or change in place, what is already there")

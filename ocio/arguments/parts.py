@@ -145,7 +145,7 @@ def count(text: str) -> int:
 def written_path(text: str) -> Path:
     """Return the path in `text`, which must not be empty, as an unset variable of a shell is."""
     if not text:
-        raise argparse.ArgumentTypeError("is empty; give a name, or . for the present folder")
+        raise argparse.ArgumentTypeError("is empty; give a name, or . for the current folder")
     return Path(text)
 
 

@@ -8,7 +8,14 @@ from pathlib import Path
 
 from crfnet_core.calibration import calibrate_stack, parse_times, read_times
 from ocio import pipeline, report
-from ocio.commands.printing import prepare_matplotlib, print_json, print_left, print_lines, progress_bar
+from ocio.commands.printing import (
+    prepare_matplotlib,
+    print_dropped,
+    print_json,
+    print_left,
+    print_lines,
+    progress_bar,
+)
 from ocio.options import OutputOptions
 
 
@@ -27,12 +34,14 @@ def run(arguments: argparse.Namespace) -> None:
     document = pipeline.write_calibration(plan, found, comparison)
     left = [path.name for path in plan.left]
     if arguments.json:
-        print_json(document | ({"left": left} if left else {}))
+        earlier = {"left": left, "dropped": list(plan.dropped)}
+        print_json(document | {name: names for name, names in earlier.items() if names})
         return
     print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
     print_left(left, "this calibration")
+    print_dropped(plan.files.config, plan.dropped)
 
 
 def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:

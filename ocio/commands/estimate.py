@@ -15,7 +15,14 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import read_metadata
 from ocio import pipeline, report
 from ocio.commands.options import check_each, estimate_options, plate_arguments, plate_options
-from ocio.commands.printing import prepare_matplotlib, print_json, print_left, print_lines, progress_bar
+from ocio.commands.printing import (
+    prepare_matplotlib,
+    print_dropped,
+    print_json,
+    print_left,
+    print_lines,
+    progress_bar,
+)
 from ocio.defaults import ESTIMATES
 from ocio.movies.source import movie_of
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
@@ -47,8 +54,9 @@ def run(arguments: argparse.Namespace) -> None:
         )
     document = pipeline.write_outputs(plan, estimated)
     if arguments.json:
-        left = {"left": [path.name for path in plan.left]} if plan.left else {}
-        print_json({"folder": str(arguments.out), "estimates": [document], **left})
+        earlier = {"left": [path.name for path in plan.left], "dropped": list(plan.dropped)}
+        found = {name: names for name, names in earlier.items() if names}
+        print_json({"folder": str(arguments.out), "estimates": [document], **found})
     else:
         _print_estimate(estimated, document, plan)
 
@@ -86,7 +94,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
     print_left([path.name for path in plan.left], "this estimate")
-    _print_dropped(plan)
+    print_dropped(files.config, plan.dropped)
     print_lines([""])
     plate = estimated.plates[0]
     if movie_of(plate):
@@ -96,19 +104,6 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
     print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
     photo = estimated.paths[0]
     print_lines(f"  {line}" for line in report.oiiotool_lines(photo, files, document, alpha=read_metadata(photo).alpha))
-
-
-def _print_dropped(plan: OutputPlan) -> None:
-    """Warn of the colour spaces of other plates that the folder's config had before, and how they come back."""
-    if plan.dropped:
-        config, first = plan.files.config, plan.dropped[0]
-        names = f'"{first}"' + (f" and {len(plan.dropped) - 1} more" if plan.dropped[1:] else "")
-        print_lines(
-            [
-                f"Warning: {config.name} was replaced, and does not have {names} any more; crfnet config add --base"
-                f" {shlex.quote(str(config))} LOOK puts a plate back, by its JSON."
-            ]
-        )
 
 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import os
+import shlex
 import sys
 import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
+from pathlib import Path
 from typing import Any
 
 from tqdm import tqdm
@@ -49,6 +51,18 @@ def print_left(left: Sequence[str], what: str) -> None:
         more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
         names = ", ".join(left[:MOST_NAMES]) + more
         print_lines([f"Warning: left from an earlier run, and not part of {what}: {names}; remove them."])
+
+
+def print_dropped(config: Path, names: Sequence[str]) -> None:
+    """Warn of the colour spaces of other plates that a replaced config had, and say how they come back."""
+    if names:
+        which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
+        print_lines(
+            [
+                f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
+                f" {shlex.quote(str(config))} LOOK puts a plate back, by its JSON."
+            ]
+        )
 
 
 @contextmanager

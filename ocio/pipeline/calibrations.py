@@ -21,7 +21,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.response import response_of_lut
 from ocio.options import OutputOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.folders import left_files
+from ocio.pipeline.folders import dropped_spaces, left_files
 from ocio.report import calibration_document, calibration_provenance
 from ocio.staging import staged_files
 
@@ -42,6 +42,8 @@ class CalibrationPlan:
         Whether existing files may be replaced.
     left : tuple of Path
         Files of an earlier run with other options that stay there, although they are not of this calibration.
+    dropped : tuple of str
+        Colour spaces of other plates in the config that is replaced.
     """
 
     files: OutputFiles
@@ -49,6 +51,7 @@ class CalibrationPlan:
     lut_length: int
     overwrite: bool = False
     left: tuple[Path, ...] = ()
+    dropped: tuple[str, ...] = ()
 
 
 def plan_calibration(
@@ -86,7 +89,8 @@ def plan_calibration(
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
     left = left_files(files, [stem], is_measured=True)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, left)
+    dropped = dropped_spaces(files)
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, left, dropped)
 
 
 def write_calibration(

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping, Sequence
-from contextlib import suppress
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -169,7 +168,10 @@ def _check_absent(paths: Iterable[Path]) -> None:
 
 
 def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
-    """Write a config into each folder, with the colour spaces of all its photographs whose LUT is there."""
+    """Write a config into each folder, with the colour spaces of all its photographs whose LUT is there.
+
+    A photograph whose LUT is damaged counts as failed.
+    """
     folders: dict[Path, dict[Path, tuple[OutputFiles, PhotographRecord]]] = {}
     for record in manifest.records.values():
         folder = out / record.folder
@@ -183,9 +185,12 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
             continue
         spaces, check = [], {}
         for own, record in written.values():
-            with suppress(LutError):  # a LUT that was damaged since gets no colour space
+            try:
                 check[own.color_space] = read_lut(own.spi1d).channels[0]
                 spaces.append(_color_space(own, record, output_space))
+            except LutError as problem:  # damaged since: the next run estimates it again
+                manifest.add(replace(record, error=str(problem)))
+        manifest.rewrite(manifest.records)
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
 
 

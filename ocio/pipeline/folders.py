@@ -86,7 +86,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
-    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos), _dropped_spaces(files))
+    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos), dropped_spaces(files))
 
 
 def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool = False) -> tuple[Path, ...]:
@@ -112,13 +112,13 @@ def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool 
     return tuple(path for path in there if not path.with_suffix(".json").exists())
 
 
-def _dropped_spaces(files: OutputFiles) -> tuple[str, ...]:
+def dropped_spaces(files: OutputFiles) -> tuple[str, ...]:
     """Return the colour spaces of other plates in the config that is there; none if it cannot be read."""
     if not files.config.exists():
         return ()
     try:
         plates = plates_in_config(OCIO.Config.CreateFromFile(str(files.config)))
-    except OCIO.Exception:
+    except (OCIO.Exception, OCIO.ExceptionMissingFile, UnicodeError):  # a name, or the error's text, may be no UTF-8
         return ()
     return tuple(plate.name for plate in plates if plate.name != files.color_space)
 

@@ -9,18 +9,19 @@ import pytest
 from crfnet_core.posterior import Verdict
 from ocio.defaults import ESTIMATES
 from ocio.pipeline import PhotographRecord
+from tests.helpers.looks import write_look
 from tests.helpers.schemas import problems_by, read_schema
 from tests.helpers.stacks import StackOptions, light_of, make_stack
 
 
 @pytest.fixture(scope="module")
 def calibration(crfnet, root, true_response, tmp_path_factory):
-    """What `crfnet calibrate` prints and writes: a LUT is compared, and a sheet of an earlier run is there."""
+    """What `crfnet calibrate` prints and writes: a LUT is compared; a sheet and a plate of an earlier run are there."""
     folder = tmp_path_factory.mktemp("calibration")
     light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::4, ::4]
     frames = make_stack(folder, light, true_response, StackOptions(frames=6, quality=0))
     lut = root / "docs" / "sample" / "plate.spi1d"
-    (folder / "camera").mkdir()
+    write_look(folder / "camera", ["b.jpg"])
     (folder / "camera" / "a.json").write_text("{}")
     (folder / "camera" / "a_sheet.png").touch()
     given = ("--out", folder / "camera", "--name", "a", "--compare", lut, "--no-sheet", "--overwrite", "--json")
@@ -50,7 +51,7 @@ def test_what_calibrate_prints_and_writes(calibration):
     printed, written = calibration
     assert problems(printed) == []
     assert problems(written) == []
-    assert printed == written | {"left": ["a_sheet.png"]}
+    assert printed == written | {"left": ["a_sheet.png"], "dropped": ["CRF b"]}
     assert printed["comparison"] is not None
 
 

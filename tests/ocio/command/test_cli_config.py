@@ -100,6 +100,7 @@ def test_the_printed_merge_line_works(crfnet, folder, tmp_path):
     [
         (("add", "--base", STUDIO, "{look}"), "is built into OpenColorIO and cannot be changed; add --out FILE.ocio"),
         (("add", "--base", "nowhere", "{look}"), "nowhere: is no config, no built-in config's name, and no Blender"),
+        (("add", "--base", STUDIO, "--out", "", "{look}"), "is empty; give a name, or . for the current folder"),
         (("add", "--base", STUDIO, "--out", "{out}", "{out}"), "is no document of crfnet estimate"),
         (("add", "{look}"), "the following arguments are required: --base"),
         (("add", "--base", STUDIO, "--out", "{out}", "{look}", "{look2}", "--rule", "a"), "are for one plate"),

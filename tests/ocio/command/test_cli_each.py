@@ -205,13 +205,17 @@ def test_what_is_another_json_is_no_manifest(estimate, photographs, tmp_path, te
     assert (done.code, "is no manifest" in done.err, done.err.count("\n")) == (BAD_INPUT, True, 1)
 
 
-def test_a_lut_that_was_damaged_since_costs_only_its_colour_space(estimate, photographs, tmp_path):
+def test_a_lut_that_was_damaged_since_is_named_and_estimated_again(estimate, photographs, tmp_path):
     estimate(photographs, *QUICK)
     (tmp_path / "out" / "a.spi1d").write_text("no LUT")
     shutil.copy(photographs / "a.jpg", photographs / "c.jpg")
+    done = estimate(photographs, *QUICK)
+    assert done.code == BAD_INPUT
+    assert "a.spi1d: " in done.err
+    config = tmp_path / "out" / "config.ocio"
+    assert [f"name: CRF {stem}\n" in config.read_text() for stem in ("a", "b", "c")] == [False, True, True]
     assert estimate(photographs, *QUICK).code == 0
-    config = (tmp_path / "out" / "config.ocio").read_text()
-    assert [f"name: CRF {stem}\n" in config for stem in ("a", "b", "c")] == [False, True, True]
+    assert "name: CRF a\n" in config.read_text()
 
 
 def test_a_crowded_folder_gets_no_config(estimate, photographs, tmp_path, monkeypatch):

@@ -2,6 +2,8 @@
 
 import json
 
+import pytest
+
 from ocio.commands.printing import print_left
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed
@@ -52,12 +54,25 @@ def test_color_spaces_that_a_replaced_config_no_longer_has_are_named(estimate, c
     assert crfnet("config", "add", "--base", out / "config.ocio", out / "plate.json").code == 0
     config = loaded(out / "config.ocio")
     assert {"CRF plate", "CRF other"} < set(config.getColorSpaceNames())
+    printed = estimate(other, "--no-linear", "--overwrite", "--json").out
+    assert json.loads(printed)["dropped"] == ["CRF plate"]
 
 
-def test_a_config_that_nobody_can_read_is_replaced(estimate, plate, tmp_path):
+@pytest.mark.parametrize("content", [b"no config", b"ocio_profile_version: \xe4\xff", b"\xff\xfe\0\1", b""])
+def test_a_config_that_nobody_can_read_is_replaced(estimate, plate, tmp_path, content):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / "config.ocio").write_text("no config")
+    (tmp_path / "out" / "config.ocio").write_bytes(content)
+    done = estimate(plate, "--no-linear", "--overwrite")
+    assert (done.code, done.err) == (0, "")
+    assert "CRF plate" in loaded(tmp_path / "out" / "config.ocio").getColorSpaceNames()
+
+
+def test_a_config_with_names_that_are_not_utf_8_is_replaced(estimate, plate, tmp_path):
+    estimate(plate, "--no-linear")
+    config = tmp_path / "out" / "config.ocio"
+    config.write_bytes(config.read_bytes().replace(b"CRF plate", b"CRF pl\xe4te"))
     assert estimate(plate, "--no-linear", "--overwrite").code == 0
+    assert "CRF plate" in loaded(config).getColorSpaceNames()
 
 
 def test_of_many_files_that_no_longer_fit_the_first_are_named(capsys):
