@@ -86,7 +86,7 @@ def estimate_response(
         If there is no photograph, one is smaller than a window, something else is given, or a file names an encoding
         with a published curve.
     PriorError
-        If the prior is none.
+        If `prior` is no `Prior`.
     """
     if prior is not None and not isinstance(prior, Prior):
         raise PriorError(f"a {type(prior).__name__} is no Prior; Prior.load makes one of a name or a file")

@@ -8,7 +8,7 @@ from itertools import pairwise
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
-from crfnet_core.calibration.exposures import LEAST_RANGE, Exposures
+from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measurement import Measurement
 from crfnet_core.errors import CalibrationError, beside_limits
@@ -74,12 +74,12 @@ def check_range(exposures: Exposures) -> None:
     CalibrationError
         If they span less than `LEAST_RANGE` stops, or two neighbours are more than `LARGEST_STEP` stops apart.
     """
-    if exposures.range < LEAST_RANGE:
+    if exposures.range < LEAST_RANGE - ROUNDING:
         raise CalibrationError(
             f"the exposures span {beside_limits(exposures.range, LEAST_RANGE)} stops, by EXIF or --times; a stack needs"
             f" {LEAST_RANGE:g} or more, from nearly nothing white to nearly everything white"
         )
-    if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP:
+    if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP + ROUNDING:
         raise CalibrationError(
             f"two neighbouring exposures are {beside_limits(step, LARGEST_STEP)} stops apart, by EXIF or --times; check"
             " the times, or take frames one or two stops apart"

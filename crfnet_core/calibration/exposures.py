@@ -19,6 +19,9 @@ from crfnet_core.types import Float64Array
 #: Stops that the exposures of a stack have to span.
 LEAST_RANGE = 2.0
 
+#: Stops that sums and differences of exposures may be off by: 1/1000 to 1/250 s may come to 1.9999999999999991.
+ROUNDING = 1e-6
+
 #: Steps of a camera to a stop -> the largest distance in stops between a label and the exposure that it stands for:
 #: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
 LABEL_ERRORS = {3: 0.13, 2: 0.18}

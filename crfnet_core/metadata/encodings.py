@@ -26,7 +26,11 @@ FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
 _UNSPECIFIC_TRANSFERS = ("", "Undefined", "User defined")
 
 #: Words in lower case of an ICC profile's description, or of DPX's transfer characteristic, that mean linear values.
-_LINEAR = r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|(?<![a-z0-9])g10\b|gamma ?1\.0\b"
+#: RED's Log3G10 is log.
+_LINEAR = r"\blinear\b|\bacescg\b|\baces ?2065|\bscene[- ]?ref|(?<!log3)g10\b|gamma ?1\.0\b"
+
+#: Words that mean log values of whatever version, beside those of which `profile_transfer` knows the encoding.
+_LOG = r"\b[scvnf]-?log(?![a-z])|\blog ?c|log3g"
 
 #: What `profile_transfer` names beside log: encodings for a display.
 _FOR_DISPLAYS = ("PQ", "HLG")
@@ -34,9 +38,11 @@ _FOR_DISPLAYS = ("PQ", "HLG")
 
 def encoding_of(metadata: FileMetadata) -> Encoding:
     """Return what the profile, or DPX's transfer characteristic, says of the code values."""
-    if re.search(_LINEAR, metadata.profile.casefold()):
+    profile = metadata.profile.casefold()
+    if re.search(_LINEAR, profile):
         return Encoding.LINEAR
-    if profile_transfer(metadata.profile) not in ("", *_FOR_DISPLAYS):
+    transfer = profile_transfer(profile)
+    if transfer not in _FOR_DISPLAYS and (transfer or re.search(_LOG, profile)):
         return Encoding.LOG
     return FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN)
 

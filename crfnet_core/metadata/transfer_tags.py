@@ -11,28 +11,29 @@ from crfnet_core.metadata.color_tags import ColorTags
 DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 
 #: Words of an ICC profile's description, in lower case -> the encoding that it names. What is more special comes first.
+#: A name may end at an underscore, which is no end of a word to `\b`.
 PROFILE_TRANSFERS = (
     (r"\bs-?log ?3", "Sony S-Log3"),
     (r"\bs-?log ?2", "Sony S-Log2"),
-    (r"\bs-?log\b", "Sony S-Log"),
+    (r"\bs-?log(?![a-z0-9])", "Sony S-Log"),
     (r"\blog ?c ?4", "ARRI LogC4"),
     (r"\blog ?c(?: ?3)?(?![a-z0-9])", "ARRI LogC3"),
     (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
     (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
-    (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
+    (r"\b(?:canon|c)-? ?log(?![a-z0-9])", "Canon Log"),
     (r"\bv-?log", "Panasonic V-Log"),
     (r"log3g10", "RED Log3G10"),
     (r"log3g12", "RED Log3G12"),
-    (r"\bd-?log\b", "DJI D-Log"),
+    (r"\bd-?log(?![a-z0-9])", "DJI D-Log"),
     (r"\bapple ?log", "Apple Log"),
     (r"\bf-?log ?2", "Fujifilm F-Log2"),
-    (r"\bf-?log\b", "Fujifilm F-Log"),
+    (r"\bf-?log(?![a-z0-9])", "Fujifilm F-Log"),
     (r"\bn-?log", "Nikon N-Log"),
     (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
     (r"\bcineon|\bprinting density", "Cineon log"),
     (r"\blogarithmic", "log"),
-    (r"\bpq\b|\bst ?2084", "PQ"),
-    (r"\bhlg\b|\bhybrid log", "HLG"),
+    (r"\bpq(?![a-z0-9])|\bst ?2084", "PQ"),
+    (r"\bhlg(?![a-z0-9])|\bhybrid log", "HLG"),
 )
 
 #: ffmpeg writes this into every DPX, and Blender into every one that it does not write as log, whatever the frame is.

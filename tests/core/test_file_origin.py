@@ -8,6 +8,7 @@ from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file
 from crfnet_core.metadata.encodings import Encoding
 from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
 from crfnet_core.metadata.origin import picture_shape
+from crfnet_core.metadata.transfer_tags import profile_transfer
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
@@ -132,12 +133,39 @@ def test_developed_from_a_raw_file_or_not(fields, is_developed):
         ("REDWideGamutRGB Log3G10", "TIFF", Encoding.LOG),
         ("REDWideGamutRGB Log3G12", "TIFF", Encoding.LOG),
         ("LogC_EI800", "TIFF", Encoding.LOG),
-        ("Slogan", "TIFF", Encoding.UNKNOWN),
+        *(
+            (name, "TIFF", Encoding.LOG)
+            for name in ("S-Log1", "S-Log_S-Gamut", "C-Log1", "C-Log_x", "FLog_x", "LogC2", "ARRI LogCv2", "Log3G")
+        ),
+        ("BMDFilm", "TIFF", Encoding.LOG),
+        ("Log3G10", "TIFF", Encoding.LOG),
+        ("AdobeRGBg10", "TIFF", Encoding.LINEAR),
+        ("ProPhotog10", "TIFF", Encoding.LINEAR),
+        ("slogan", "TIFF", Encoding.UNKNOWN),
         ("Rec. 2100 PQ", "TIFF", Encoding.UNKNOWN),
+        ("Rec.2100 Hybrid Log curve", "TIFF", Encoding.UNKNOWN),
     ],
 )
 def test_encoding_by_profile(profile, file_format, encoding):
     assert origin(profile=profile, file_format=file_format).encoding is encoding
+
+
+@pytest.mark.parametrize(
+    ("profile", "transfer"),
+    [
+        ("S-Log_S-Gamut", "Sony S-Log"),
+        ("C-Log_x", "Canon Log"),
+        ("FLog_x", "Fujifilm F-Log"),
+        ("D-Log_x", "DJI D-Log"),
+        ("Rec2100 PQ_x", "PQ"),
+        ("Rec2100 HLG_x", "HLG"),
+        ("C-Log1", ""),  # a version whose curve is not known
+        ("LogC2", ""),
+        ("slogan", ""),
+    ],
+)
+def test_a_name_of_an_encoding_may_end_at_an_underscore(profile, transfer):
+    assert profile_transfer(profile) == transfer
 
 
 @pytest.mark.parametrize(

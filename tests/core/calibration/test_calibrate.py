@@ -104,6 +104,23 @@ def test_a_frame_that_shows_something_else_is_left_out(stack, true_response):
     assert shape_error(true_response, found.curve) < SHAPE
 
 
+@pytest.mark.parametrize(("frames", "left_out"), [(8, 1), (9, 2)])
+def test_the_frames_that_remain_may_span_two_stops(stack, true_response, frames, left_out):
+    """Seven frames a third of a stop apart, after which one or two show something else."""
+    kept = frames - left_out
+    found = calibrate_stack(stack(frames=frames, step=1, shifts=[(0, 0)] * kept + [(100, 150), (45, 105)][:left_out]))
+    assert [frame.is_used for frame in found.frames] == [True] * kept + [False] * left_out
+    assert shape_error(true_response, found.curve) < 2 * found.uncertainty.shape_stops
+
+
+def test_the_frames_that_remain_may_span_one_stop(stack, true_response):
+    seconds = 2.0 ** np.array([0, 1 / 3, 2 / 3, 1, 2])
+    paths = stack(frames=5, step=1, mistimed=[0, 0, 0, 0, 2 / 3], shifts=[(0, 0)] * 4 + [(100, 150)])
+    found = calibrate_stack(paths, seconds=seconds.tolist())
+    assert [frame.is_used for frame in found.frames] == [True] * 4 + [False]
+    assert shape_error(true_response, found.curve) < 2 * found.uncertainty.shape_stops
+
+
 def test_without_white_the_scale_is_said_to_be_a_guess(stack, true_response):
     found = calibrate_stack(stack(brightest=97, ceiling=0.5))
     assert not found.reaches_white

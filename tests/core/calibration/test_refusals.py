@@ -4,6 +4,8 @@ import numpy as np
 import pytest
 
 from crfnet_core.calibration import calibrate_stack
+from crfnet_core.calibration.checks import check_range
+from crfnet_core.calibration.exposures import ExposureLabel, stack_exposures
 from crfnet_core.errors import CalibrationError, PhotoError
 from tests.helpers.images import write_image
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
@@ -100,8 +102,16 @@ def test_a_stack_whose_only_other_exposure_shows_another_scene_is_refused(tmp_pa
         light = np.kron(np.exp2(rng.uniform(-6, 0, (30, 40, 1))), np.ones((16, 16, 3))) * time * 54
         codes = 255 * np.minimum(light, 1) ** (1 / 2.2) + np.random.default_rng(i).normal(0, 0.4, light.shape)
         paths.append(write_image(tmp_path / f"{i}.png", np.rint(codes).clip(0, 255).astype(np.uint8)))
-    with pytest.raises(CalibrationError, match=r"do not fit the others \(1 of 6\), the exposures span 0\.\d\d stops;"):
+    with pytest.raises(
+        CalibrationError, match=r"do not fit the others \(1 of 6\), the exposures span 0\.\d\d stops; these need 0\.9 "
+    ):
         calibrate_stack(paths, seconds=seconds)
+
+
+def test_exposures_at_the_limits_are_not_refused():
+    """Of exactly two stops, or six between neighbours: their differences come to a little less, or more."""
+    for seconds in (1 / 1000, 1 / 800, 1 / 640, 1 / 250), (1 / 640, 0.1, 0.3, 6):
+        check_range(stack_exposures([ExposureLabel(time, 8.0, 100.0) for time in seconds]))
 
 
 def test_frames_that_were_rendered_each_on_its_own_are_refused(stack, tmp_path):
