@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from enum import Enum
 
 import bpy
 
@@ -14,21 +15,30 @@ from .plates import Datablock, datablock_of_node, shown_by_node
 PLATE = "camera_response_of"
 
 
+class _Way(Enum):
+    """How a path comes to a node."""
+
+    LINKED = "the path has not entered the tree of the node"
+    ENTERED = "the path has entered the tree of the node from a node that holds it"
+    LEFT = "the path has left the tree that the node holds"
+
+
 def nodes_behind(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
-    """Yield every node that the outputs of a node lead to, nearest first.
+    """Yield every other node that the outputs of a node lead to, nearest first.
 
     Where the links enter a node group, the nodes in it follow; where they leave the tree of the node, the nodes behind
-    every node that holds this tree. A tree that was entered is not left so, as other nodes that hold it, such as those
-    of another scene, are not behind this one.
+    every node that holds this tree. A path that entered a tree does not leave it so, as other nodes that hold it, such
+    as those of another scene, are not behind this one; another path may, such as that through two nodes of one group.
     """
-    seen, waiting = {_key(node)}, [node]
-    entered: set[bpy.types.NodeTree] = set()
-    left: set[bpy.types.NodeTree] = set()
+    yielded, seen, waiting = {_key(node)}, set(), [(node, _Way.LINKED)]
     while waiting:
-        for follower in _followers(waiting.pop(0), entered, left):
-            if _key(follower) not in seen:
-                seen.add(_key(follower))
-                waiting.append(follower)
+        for follower, way in _followers(*waiting.pop(0)):
+            if (_key(follower), way) in seen:
+                continue
+            seen.add((_key(follower), way))
+            waiting.append((follower, way))
+            if _key(follower) not in yielded:
+                yielded.add(_key(follower))
                 yield follower
 
 
@@ -88,23 +98,20 @@ def _title(node: bpy.types.Node) -> str:
     return node.label or node.name
 
 
-def _followers(
-    node: bpy.types.Node, entered: set[bpy.types.NodeTree], left: set[bpy.types.NodeTree]
-) -> Iterator[bpy.types.Node]:
+def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node, _Way]]:
     """Yield the nodes that a node is linked to, and those where its links enter or leave a node group.
 
-    A tree that was left is not entered, and the other way round; the trees are added to the two sets.
+    A path does not leave a tree that it entered, nor enter at once the tree that it left.
     """
     for output in node.outputs:
         for link in output.links:
-            yield link.to_node
-    if node.type == "GROUP" and node.node_tree is not None and node.node_tree not in left:
-        entered.add(node.node_tree)
-        yield from (inner for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
-    if node.type == "GROUP_OUTPUT" and node.id_data not in entered:
-        left.add(node.id_data)
+            yield link.to_node, _Way.ENTERED if way is _Way.ENTERED else _Way.LINKED
+    if node.type == "GROUP" and node.node_tree is not None and way is not _Way.LEFT:
+        yield from ((inner, _Way.ENTERED) for inner in node.node_tree.nodes if inner.type == "GROUP_INPUT")
+    if node.type == "GROUP_OUTPUT" and way is not _Way.ENTERED:
         for tree in compositor_trees():
-            yield from (outer for outer in tree.nodes if getattr(outer, "node_tree", None) == node.id_data)
+            holders = (outer for outer in tree.nodes if getattr(outer, "node_tree", None) == node.id_data)
+            yield from ((outer, _Way.LEFT) for outer in holders)
 
 
 def _key(node: bpy.types.Node) -> tuple[int, str]:

@@ -68,3 +68,52 @@ def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):
     tree.links.new(source.outputs["Image"], holders[0].inputs[0])
     assert set(nodes_behind(source)) == {holders[0], viewers[0], start, blur, end}
     assert set(nodes_behind(blur)) == {end, *holders, *viewers}  # from inside, it is every holder
+
+
+def chained_groups(tree):
+    """Return a node group, and two nodes of a tree that hold it: output A of the first is linked to B of the second."""
+    mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
+    for in_out in ("INPUT", "OUTPUT"):
+        for name in "AB":
+            mine.interface.new_socket(name, in_out=in_out, socket_type="NodeSocketColor")
+    first, second = (tree.nodes.new("CompositorNodeGroup") for _ in range(2))
+    first.node_tree = second.node_tree = mine
+    tree.links.new(first.outputs["A"], second.inputs["B"])
+    return mine, first, second
+
+
+def test_what_the_second_of_two_chained_nodes_holds_is_behind_what_the_first_holds(addon, tree):
+    from blender_addon.scene.node_links import nodes_behind
+
+    mine, first, second = chained_groups(tree)
+    start, before, behind, end = (
+        mine.nodes.new(kind)
+        for kind in ("NodeGroupInput", "CompositorNodeBlur", "CompositorNodeBlur", "NodeGroupOutput")
+    )
+    mine.links.new(before.outputs[0], end.inputs["A"])
+    mine.links.new(start.outputs["B"], behind.inputs["Image"])
+    mine.links.new(behind.outputs[0], end.inputs["B"])
+    assert set(nodes_behind(before)) == {end, first, second, start, behind}
+    assert set(nodes_behind(behind)) == {end, first, second, start}
+    tree.links.remove(second.inputs["B"].links[0])
+    assert set(nodes_behind(before)) == {end, first, second}
+
+
+def test_code_values_are_linearized_in_the_second_of_two_chained_nodes(image, tree):
+    from blender_addon.scene.node_links import without_group
+
+    apply_nodes(image)
+    (group,) = groups(tree)
+    source = next(link.from_node for link in tree.links if link.to_node == group)
+    mine, *_ = chained_groups(tree)
+    start, shown, linearized, end = (
+        mine.nodes.new(kind)
+        for kind in ("NodeGroupInput", "CompositorNodeImage", "CompositorNodeGroup", "NodeGroupOutput")
+    )
+    shown.image, linearized.node_tree = source.image, group.node_tree
+    mine.links.new(shown.outputs["Image"], end.inputs["A"])
+    mine.links.new(start.outputs["B"], linearized.inputs["Image"])
+    mine.links.new(linearized.outputs["Image"], end.inputs["B"])
+    assert without_group(image) == ""
+    mine.links.remove(linearized.inputs["Image"].links[0])
+    assert "without the node group" in without_group(image)
