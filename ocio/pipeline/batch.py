@@ -51,11 +51,14 @@ class Task(ABC):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """What all tasks of a manifest have in common, ready for JSON; also which response a stored camera has now."""
+        """The options that all tasks of a manifest have in common."""
         chosen = {**asdict(self.options), **asdict(self.plates)}
+        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")}
+
+    def response_identity(self) -> str | None:
+        """Return which response all tasks of a manifest have now: the stored camera's; None if each has its own."""
         stored = load_camera_response(self.options)
-        response = response_lut(stored).identity if stored else None
-        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")} | {RESPONSE: response}
+        return response_lut(stored).identity if stored else None
 
 
 AnyTask = TypeVar("AnyTask", bound=Task)
@@ -116,8 +119,8 @@ def run_tasks(
         If the manifest is of other settings or has files of these names for other photographs, or a process dies; not
         if a photograph is bad.
     """
-    settings = {name: str(value) if isinstance(value, Path) else value for name, value in tasks[0].settings.items()}
-    manifest = Manifest(path, settings, overwrite=tasks[0].plates.overwrite)
+    chosen = {name: str(value) if isinstance(value, Path) else value for name, value in tasks[0].settings.items()}
+    manifest = Manifest(path, chosen | {RESPONSE: tasks[0].response_identity()}, overwrite=tasks[0].plates.overwrite)
     _check_owners(tasks, manifest)
     todo = [task for task in tasks if not _is_done(task, manifest)]
     before = len(tasks) - len(todo)

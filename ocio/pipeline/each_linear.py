@@ -19,7 +19,7 @@ from ocio.output_files import output_folder, plain_stem
 from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
 from ocio.pipeline.estimates import estimate_frames, response_lut
 from ocio.pipeline.loading import load_camera_response
-from ocio.pipeline.manifest import RESPONSE, PhotographRecord
+from ocio.pipeline.manifest import PhotographRecord
 from ocio.pipeline.photographs import without_outputs
 from ocio.plates.frames import FrameSequence
 from ocio.plates.linear import linearize_plates
@@ -47,9 +47,12 @@ class LinearTask(Task):
 
     @property
     def settings(self) -> dict[str, Any]:
-        """The file of the response, too, and which response it holds now."""
-        held = {RESPONSE: read_response(self.lut).lut.identity} if self.lut else {}
-        return {"lut": self.lut, **super().settings, **held}
+        """The file of the response, too."""
+        return {"lut": self.lut, **super().settings}
+
+    def response_identity(self) -> str | None:
+        """Return which response the file holds now, if there is one."""
+        return read_response(self.lut).lut.identity if self.lut else super().response_identity()
 
 
 def plan_each_linear(

@@ -205,7 +205,7 @@ def _setting_words(name: str, settings: Mapping[str, Any]) -> str:
         return f"{'with' if value == stands_for else 'without'} {option}"
     option = OPTIONS.get(name, "--" + name.replace("_", "-"))
     if name in ("exposure", "gray"):
-        value = settings.get("exposure") if settings.get("gray") is None else f"gray={settings['gray']:g}"
+        value = settings.get("exposure") if settings.get("gray") is None else f"gray={settings['gray']}"
     return f"with another {option} ({'none' if value is None else value})"
 
 

@@ -4,6 +4,7 @@ import dataclasses
 import errno
 import json
 import shutil
+from pathlib import Path
 
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -279,3 +280,13 @@ def test_a_worker_reads_a_prior_anew(fixed_model, tmp_path):
     again, after = network_and_prior(options)
     assert again is network
     assert (before.evidence, after.evidence) == (1.0, 0.5)
+
+
+def test_only_the_response_of_a_task_is_read_from_files(plate, tmp_path):
+    lut = tmp_path / "gone.spi1d"
+    (task,) = pipeline.plan_each_linear(
+        tmp_path / "out", {plate: Path()}, EstimateOptions(camera="gone"), PlateOptions(), lut
+    )
+    assert (task.settings["lut"], task.settings["camera"]) == (lut, "gone")
+    with pytest.raises(CRFNetError, match=r"gone\.spi1d"):
+        task.response_identity()

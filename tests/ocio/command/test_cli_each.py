@@ -197,6 +197,17 @@ def test_a_damaged_manifest_is_refused_in_one_line(estimate, photographs, tmp_pa
     assert tree(tmp_path / "out") == before
 
 
+@pytest.mark.parametrize("gray", ["x", "x\ny", [0.18], {}, pytest.param(10**400, id="huge"), True])
+def test_damaged_settings_of_a_manifest_are_refused_in_one_line(estimate, photographs, tmp_path, gray):
+    estimate(photographs / "a.jpg", *QUICK)
+    path = tmp_path / "out" / ESTIMATES
+    settings, record = path.read_text().splitlines()
+    path.write_text(json.dumps({"settings": json.loads(settings)["settings"] | {"gray": gray}}) + f"\n{record}\n")
+    done = estimate(photographs / "a.jpg", *QUICK)
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+    assert f"{path}: was begun with another --exposure (gray=" in done.err
+
+
 @pytest.mark.parametrize("text", ["[]", '{"settings": 1}', '{"settings": {}}\n[]', "[" * 200000])
 def test_what_is_another_json_is_no_manifest(estimate, photographs, tmp_path, text):
     (tmp_path / "out").mkdir()
