@@ -97,7 +97,7 @@ def test_a_flat_window_has_a_finite_answer(network, level):
 
 def test_a_model_is_found_by_its_name_or_its_folder(copied):
     assert model_folder() == DEFAULT_MODEL
-    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.3") == MODELS / "crfnet2017-1.3"
+    assert model_folder("crfnet2017") == model_folder("crfnet2017-1.4") == MODELS / "crfnet2017-1.4"
     assert model_folder(copied) == copied
     assert model_folder("nonesuch").name == "nonesuch"
 
@@ -105,7 +105,7 @@ def test_a_model_is_found_by_its_name_or_its_folder(copied):
 def test_the_paper_s_network_runs_by_name(windows):
     network = ResponseNetwork.load("crfnet2017")
     found = predictions(network, windows)
-    assert network.config.name == "crfnet2017-1.3"
+    assert network.config.name == "crfnet2017-1.4"
     assert locations(found).shape == (3, 5)
     assert found.pooled is None
     for evidence in found.windows:

@@ -176,4 +176,4 @@ def test_the_command_line_says_what_is_measured(fixed_model, tmp_path):
     quick = parsed(["--quick", "--out", str(tmp_path), "--model", str(fixed_model), "crfnet2017"]).settings
     assert quick.protocols == ("p0", "p3")
     assert (quick.photographs, quick.stress_photographs, quick.workers, quick.seed) == (40, 5, 2, 2017)
-    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-1.3"]
+    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-1.4"]
