@@ -46,6 +46,14 @@ def load_config(path: str | Path) -> OCIO.Config:
         ) from None
 
 
+def loaded_or_empty(path: Path) -> OCIO.Config:
+    """Return the config in a file; an empty one if there is none, or OpenColorIO refuses it."""
+    try:
+        return load_config(path)
+    except ConfigError:
+        return OCIO.Config()
+
+
 def role_name(path: str | Path, role: str) -> str:
     """Return the name of the colour space that has a role in a config file.
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import shutil
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
@@ -82,6 +82,13 @@ def write_record(config: Path, record: InstallationRecord) -> None:
 def record_file(config: Path) -> Path:
     """Return the file of the record beside a config."""
     return own_folder(config) / RECORD_NAME
+
+
+def remove_record(config: Path) -> None:
+    """Remove the record beside a config, and our folder if nothing else is in it."""
+    record_file(config).unlink(missing_ok=True)
+    with suppress(OSError):
+        own_folder(config).rmdir()
 
 
 @contextmanager

@@ -8,14 +8,13 @@ from __future__ import annotations
 
 import shutil
 from collections.abc import Mapping
-from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from ocio.configs.files import load_config, write_config
+from ocio.configs.files import load_config, loaded_or_empty, write_config
 from ocio.configs.installation_record import (
     FOLDER,
     InstallationRecord,
@@ -23,9 +22,9 @@ from ocio.configs.installation_record import (
     check_is_ours,
     digest,
     files_in,
-    own_folder,
     read_record,
     record_file,
+    remove_record,
     write_record,
 )
 from ocio.configs.lut_folders import copied_lut_folders
@@ -178,28 +177,24 @@ def restore(folder: Path) -> Restored:
 
 def _put_back(config: Path, backup: Path) -> None:
     """Put an earlier config back, without our colour spaces; then remove our record, and LUTs that it does not name."""
-    luts = _installed_luts(config).values()
-    if ours := _installed_luts(backup):
-        loaded = load_config(backup)
+    replaced, earlier = map(loaded_or_empty, (config, backup))
+    if ours := _installed_luts(earlier):
         for name in ours:
-            loaded = without_plate_color_space(loaded, name)
-        write_config(config, loaded, check={}, overwrite=True)
+            earlier = without_plate_color_space(earlier, name)
+        write_config(config, earlier, check={}, overwrite=True)
         backup.unlink()
     else:
         backup.replace(config)
     named = config.read_bytes()
-    for path in (record_file(config), *(config.parent / lut for lut in luts if lut.encode() not in named)):
-        path.unlink(missing_ok=True)
-    _remove_if_empty(own_folder(config))
+    for lut in _installed_luts(replaced).values():
+        if lut.encode() not in named:
+            (config.parent / lut).unlink(missing_ok=True)
+    remove_record(config)
 
 
-def _installed_luts(config: Path) -> dict[str, str]:
-    """Return the LUT of each colour space of ours in a config, by its name; none if OpenColorIO cannot read it."""
-    with suppress(ConfigError):
-        return {
-            space.getName(): lut for space in load_config(config).getColorSpaces() if (lut := _installed_lut(space))
-        }
-    return {}
+def _installed_luts(config: OCIO.Config) -> dict[str, str]:
+    """Return the LUT of each colour space of ours in a config, by its name, in its order."""
+    return {space.getName(): lut for space in config.getColorSpaces() if (lut := _installed_lut(space))}
 
 
 def installed_color_spaces(folder: Path) -> tuple[str, ...]:
@@ -215,7 +210,7 @@ def installed_color_spaces(folder: Path) -> tuple[str, ...]:
     config = folder / CONFIG_NAME
     if read_record(config) is None or not config.exists():
         return ()
-    return tuple(space.getName() for space in load_config(config).getColorSpaces() if _installed_lut(space))
+    return tuple(_installed_luts(load_config(config)))
 
 
 def missing_color_spaces(folder: Path, base: Path) -> tuple[str, ...]:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any, NoReturn
 
 import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import ArrayLike, NDArray
 
+from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.luts.lut1d import inverse_response_lut
@@ -40,3 +42,8 @@ def rule_names(config: OCIO.Config) -> list[str]:
     """Return the names of the file rules, the first one first."""
     rules = config.getFileRules()
     return [rules.getName(index) for index in range(rules.getNumEntries())]
+
+
+def disk_is_full(*_arguments: Any, **_options: Any) -> NoReturn:
+    """In the place of a step that writes."""
+    raise ConfigError("the disk is full")

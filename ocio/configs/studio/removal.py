@@ -8,7 +8,7 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import ConfigError
-from ocio.configs.files import load_config, write_config
+from ocio.configs.files import loaded_or_empty, write_config
 from ocio.configs.installation_record import (
     InstallationRecord,
     backed_up,
@@ -16,6 +16,7 @@ from ocio.configs.installation_record import (
     own_folder,
     read_record,
     record_file,
+    remove_record,
     write_record,
 )
 from ocio.configs.plate_color_space import without_plate_color_space
@@ -67,10 +68,8 @@ def _write_less(
     for lut_file in unused:
         if lut_file.startswith(f"{folder.name}/"):
             (target.parent / lut_file).unlink(missing_ok=True)
-    if not is_recorded and folder.is_dir():
-        record_file(target).unlink(missing_ok=True)
-        if not any(folder.iterdir()):
-            folder.rmdir()
+    if not is_recorded:
+        remove_record(target)
     return backup
 
 
@@ -97,7 +96,4 @@ def _write_config(
 
 def _is_without_plates(backup: Path) -> bool:
     """Return whether a backup is there and has no plates: one of a config that was ours, and was changed, has some."""
-    try:
-        return backup.is_file() and not plates_in_config(load_config(backup))
-    except ConfigError:
-        return True  # no config, but a file that was replaced
+    return backup.is_file() and not plates_in_config(loaded_or_empty(backup))

@@ -14,7 +14,7 @@ from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
 from ocio.luts.lut1d import inverse_response_lut
-from tests.helpers.configs import converted, loaded
+from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import STUDIO, add
 
@@ -22,10 +22,6 @@ PLATE = "/shot/plate.png"
 SPACE = PlateColorSpace("CRF plate", "plate.spi1d")
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
 OTHER_LUT = inverse_response_lut(ResponseCurve.gamma(1.8))
-
-
-def fail(*arguments, **options):
-    raise ConfigError("the disk is full")
 
 
 def test_a_lut_that_the_earlier_config_names_stays(folder, base):
@@ -59,7 +55,7 @@ def test_a_failure_to_restore_can_be_repeated(folder, base, monkeypatch):
     install(folder, base, SPACE, LUT, plate=PLATE)
     before = tree(folder)
     with monkeypatch.context() as patched:
-        patched.setattr(installed, "write_config", fail)
+        patched.setattr(installed, "write_config", disk_is_full)
         with pytest.raises(ConfigError, match="the disk is full"):
             restore(folder)
     assert tree(folder) == before
@@ -73,7 +69,7 @@ def test_a_failure_leaves_links_and_permissions(folder, base, tmp_path, monkeypa
     config.write_text(portable_config([]).serialize())
     config.chmod(0o640)
     (folder / CONFIG_NAME).symlink_to(config)
-    monkeypatch.setattr(installed, "write_record", fail)
+    monkeypatch.setattr(installed, "write_record", disk_is_full)
     with pytest.raises(ConfigError, match="the disk is full"):
         install(folder, base, SPACE, LUT, plate=PLATE)
     assert (folder / CONFIG_NAME).is_symlink()
@@ -88,7 +84,7 @@ def test_a_failure_leaves_the_earlier_lut_and_config(folder, base, monkeypatch, 
     if is_changed:
         (folder / CONFIG_NAME).write_text((folder / CONFIG_NAME).read_text() + "\n# mine\n")
     before = tree(folder)
-    monkeypatch.setattr(installed, step, fail)
+    monkeypatch.setattr(installed, step, disk_is_full)
     with pytest.raises(ConfigError, match="the disk is full"):
         install(folder, base, SPACE, OTHER_LUT, plate=PLATE)
     assert tree(folder) == before

@@ -13,7 +13,7 @@ from ocio.configs.reference_space import REC709_TO_AP0
 from ocio.configs.studio import additions
 from ocio.configs.studio.aces_check import check_in_ap0
 from ocio.configs.studio.plates import plates_in_config
-from tests.helpers.configs import converted, loaded
+from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look
 
@@ -182,10 +182,7 @@ class TestAddingElsewhere:
         studio.write_text(studio.read_text() + "\n# mine\n")
         before = tree(studio.parent)
 
-        def fail(*arguments, **options):
-            raise ConfigError("the disk is full")
-
-        monkeypatch.setattr(additions, step, fail)
+        monkeypatch.setattr(additions, step, disk_is_full)
         with pytest.raises(ConfigError, match="the disk is full"):
             add(studio, write_look(small_look, lut=OTHER_LUT))
         assert tree(studio.parent) == before

@@ -12,7 +12,7 @@ from ocio.configs.studio import removal
 from ocio.configs.studio.plates import plates_in_config
 from ocio.configs.studio.removal import remove_plates
 from ocio.configs.studio.sources import find_config
-from tests.helpers.configs import converted, loaded
+from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, write_look
 
@@ -59,10 +59,7 @@ class TestRemoving:
         add(studio, write_look(tmp_path / "two", ["b.jpg"]))
         before = tree(studio.parent)
 
-        def fail(*arguments, **options):
-            raise ConfigError("the disk is full")
-
-        monkeypatch.setattr(removal, step, fail)
+        monkeypatch.setattr(removal, step, disk_is_full)
         with pytest.raises(ConfigError, match="the disk is full"):
             remove_plates(find_config(str(studio)), [NAME])
         assert tree(studio.parent) == before
