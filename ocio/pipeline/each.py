@@ -172,6 +172,7 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
 
     A photograph whose LUT is damaged counts as failed.
     """
+    damaged: list[PhotographRecord] = []
     folders: dict[Path, dict[Path, tuple[OutputFiles, PhotographRecord]]] = {}
     for record in manifest.records.values():
         folder = out / record.folder
@@ -189,9 +190,11 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
                 check[own.color_space] = read_lut(own.spi1d).channels[0]
                 spaces.append(_color_space(own, record, output_space))
             except LutError as problem:  # damaged since: the next run estimates it again
-                manifest.add(replace(record, error=str(problem)))
-        manifest.rewrite(manifest.records)
+                damaged.append(replace(record, error=str(problem)))
         write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
+    if damaged:
+        manifest.records |= {record.photograph: record for record in damaged}
+        manifest.rewrite(manifest.records)
 
 
 def _color_space(files: OutputFiles, record: PhotographRecord, output_space: str) -> PlateColorSpace:
