@@ -166,13 +166,14 @@ def _code_values(picture: _Picture, kind: str, properties: HeifProperties) -> Co
     samples, channels = picture.samples, picture.samples.shape[2]
     header = _header(picture, properties)
     has_alpha = channels in (2, 4)
-    alpha = {(True, False): "straight", (True, True): "multiplied"}.get((has_alpha, picture.is_associated), "")
+    is_associated = picture.is_associated and has_alpha
+    alpha = ("multiplied" if is_associated else "straight") if has_alpha else ""
     metadata = replace(metadata_of_header(header, kind), has_gain_map=properties.has_gain_map, alpha=alpha)
     return CodeValues(
         codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
         alpha=samples[..., -1] if has_alpha else None,
         bit_depth=picture.bit_depth,
-        is_associated=picture.is_associated and has_alpha,
+        is_associated=is_associated,
         header=header,
         metadata=metadata,
     )
