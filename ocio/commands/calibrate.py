@@ -8,14 +8,7 @@ from pathlib import Path
 
 from crfnet_core.calibration import calibrate_stack, parse_times, read_times
 from ocio import pipeline, report
-from ocio.commands.printing import (
-    prepare_matplotlib,
-    print_dropped,
-    print_json,
-    print_left,
-    print_lines,
-    progress_bar,
-)
+from ocio.commands.printing import prepare_matplotlib, print_earlier, print_json, print_lines, progress_bar
 from ocio.options import OutputOptions
 
 
@@ -32,16 +25,13 @@ def run(arguments: argparse.Namespace) -> None:
         found = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
     comparison = found.compare(other) if other else None
     document = pipeline.write_calibration(plan, found, comparison)
-    left = [path.name for path in plan.left]
     if arguments.json:
-        earlier = {"left": left, "dropped": list(plan.dropped)}
-        print_json(document | {name: names for name, names in earlier.items() if names})
+        print_json(document | plan.earlier.document)
         return
     print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
-    print_left(left, "this calibration")
-    print_dropped(plan.files.config, plan.dropped)
+    print_earlier(plan.earlier.document, plan.files.config, "this calibration")
 
 
 def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:

@@ -12,17 +12,9 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_metadata
 from ocio import pipeline, report
 from ocio.commands.options import check_each, estimate_options, plate_arguments, plate_options
-from ocio.commands.printing import (
-    prepare_matplotlib,
-    print_dropped,
-    print_json,
-    print_left,
-    print_lines,
-    progress_bar,
-)
+from ocio.commands.printing import prepare_matplotlib, print_earlier, print_json, print_left, print_lines, progress_bar
 from ocio.defaults import ESTIMATES
 from ocio.movies.source import movie_of
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
@@ -54,9 +46,7 @@ def run(arguments: argparse.Namespace) -> None:
         )
     document = pipeline.write_outputs(plan, estimated)
     if arguments.json:
-        earlier = {"left": [path.name for path in plan.left], "dropped": list(plan.dropped)}
-        found = {name: names for name, names in earlier.items() if names}
-        print_json({"folder": str(arguments.out), "estimates": [document], **found})
+        print_json({"folder": str(arguments.out), "estimates": [document], **plan.earlier.document})
     else:
         _print_estimate(estimated, document, plan)
 
@@ -93,8 +83,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
         *report.offer_lines(estimated.offers),
     ]
     print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
-    print_left([path.name for path in plan.left], "this estimate")
-    print_dropped(files.config, plan.dropped)
+    print_earlier(plan.earlier.document, files.config, "this estimate")
     print_lines([""])
     plate = estimated.plates[0]
     if movie_of(plate):
@@ -102,8 +91,8 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
         print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
         return
     print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
-    photo = estimated.paths[0]
-    print_lines(f"  {line}" for line in report.oiiotool_lines(photo, files, document, alpha=read_metadata(photo).alpha))
+    photo, alpha = estimated.paths[0], estimated.alphas[0]
+    print_lines(f"  {line}" for line in report.oiiotool_lines(photo, files, document, alpha=alpha))
 
 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:

@@ -53,9 +53,10 @@ def print_left(left: Sequence[str], what: str) -> None:
         print_lines([f"Warning: left from an earlier run, and not part of {what}: {names}; remove them."])
 
 
-def print_dropped(config: Path, names: Sequence[str]) -> None:
-    """Warn of the colour spaces of other plates that a replaced config had, and say how they come back."""
-    if names:
+def print_earlier(earlier: Mapping[str, Sequence[str]], config: Path, what: str) -> None:
+    """Warn of what `ocio.pipeline.folders.EarlierRun.document` names; say how the colour spaces of plates come back."""
+    print_left(earlier.get("left", ()), what)
+    if names := earlier.get("dropped"):
         which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
         print_lines(
             [

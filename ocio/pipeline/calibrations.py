@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
@@ -21,7 +21,7 @@ from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.response import response_of_lut
 from ocio.options import OutputOptions
 from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.folders import dropped_spaces, left_files
+from ocio.pipeline.folders import EarlierRun
 from ocio.report import calibration_document, calibration_provenance
 from ocio.staging import staged_files
 
@@ -40,18 +40,15 @@ class CalibrationPlan:
         Entries of the LUTs.
     overwrite : bool
         Whether existing files may be replaced.
-    left : tuple of Path
-        Files of an earlier run with other options that stay there, although they are not of this calibration.
-    dropped : tuple of str
-        Colour spaces of other plates in the config that is replaced.
+    earlier : EarlierRun
+        What an earlier run has left in the folder.
     """
 
     files: OutputFiles
     config: OCIO.Config
     lut_length: int
     overwrite: bool = False
-    left: tuple[Path, ...] = ()
-    dropped: tuple[str, ...] = ()
+    earlier: EarlierRun = field(default_factory=EarlierRun)
 
 
 def plan_calibration(
@@ -88,9 +85,8 @@ def plan_calibration(
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
-    left = left_files(files, [stem], is_measured=True)
-    dropped = dropped_spaces(files)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, left, dropped)
+    earlier = EarlierRun.in_folder(files, [stem], is_measured=True)
+    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, earlier)
 
 
 def write_calibration(

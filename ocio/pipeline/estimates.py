@@ -52,6 +52,8 @@ class PhotographEstimate:
         The response that they have in common.
     plates : tuple of PlateSource
         For each of `paths`, what becomes its linear plate: the photograph, or the first frame of the movie analysed.
+    alphas : tuple of str
+        How the colours of each of `plates` are stored beside alpha: see `crfnet_core.metadata.FileMetadata.alpha`.
     offers : tuple of CameraAnswer
         Stored cameras of the first photograph's make and model, if none was asked for.
     """
@@ -63,6 +65,7 @@ class PhotographEstimate:
     stride: int
     estimate: ResponseEstimate
     plates: tuple[PlateSource, ...]
+    alphas: tuple[str, ...]
     offers: tuple[CameraAnswer, ...] = ()
 
     @property
@@ -160,6 +163,7 @@ def estimate_photographs(
         stride=_stride(kept.facts[0]),
         estimate=estimate,
         plates=tuple(kept.plates),
+        alphas=tuple(kept.alphas),
         offers=tuple(offered_cameras(estimate, kept.settings[0], prior=prior)) if is_offering else (),
     )
 
@@ -174,7 +178,7 @@ class _Kept:
         Of each photograph, and of each frame of a movie.
     previews : list of ndarray
         That of the first photograph.
-    tags, plates : list
+    tags, plates, alphas : list
         Of each file.
     """
 
@@ -183,6 +187,7 @@ class _Kept:
     previews: list[Float32Array] = field(default_factory=list)
     tags: list[ColorTags] = field(default_factory=list)
     plates: list[PlateSource] = field(default_factory=list)
+    alphas: list[str] = field(default_factory=list)
 
     def reading(self, paths: Sequence[Path], frames: str | None) -> Iterator[Photo]:
         """Yield the photographs, and the chosen frames of movies; one is in memory at a time."""
@@ -196,6 +201,7 @@ class _Kept:
                 if index == 0:
                     self.tags.append(photo.metadata.color if photo.metadata else ColorTags())
                     self.plates.append(plate)
+                    self.alphas.append(photo.metadata.alpha if photo.metadata else "")
                 yield photo
 
 

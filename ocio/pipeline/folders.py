@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict, dataclass, replace
+from contextlib import suppress
+from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
-
-import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.metadata.color_tags import REC709
-from ocio.configs.files import write_config
+from ocio.configs.files import loaded_or_empty, write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.plates import plates_in_config
@@ -31,6 +30,33 @@ from ocio.report import estimate_document
 from ocio.staging import staged_files
 
 
+@dataclass(frozen=True)
+class EarlierRun:
+    """What an earlier run has left in the folder of an estimate or a measurement.
+
+    Parameters
+    ----------
+    left : tuple of Path
+        Files of other options that stay there, although they are not of this run: see `left_files`.
+    dropped : tuple of str
+        Colour spaces of other plates in the config that is replaced, which it will not have any more.
+    """
+
+    left: tuple[Path, ...] = ()
+    dropped: tuple[str, ...] = ()
+
+    @classmethod
+    def in_folder(cls, files: OutputFiles, photos: Sequence[Path], *, is_measured: bool = False) -> EarlierRun:
+        """Return what is there before the files are written; the arguments are those of `left_files`."""
+        return cls(left_files(files, photos, is_measured=is_measured), _dropped_spaces(files))
+
+    @property
+    def document(self) -> dict[str, list[str]]:
+        """The names for JSON; what there is none of is absent."""
+        names = {"left": [path.name for path in self.left], "dropped": list(self.dropped)}
+        return {name: entries for name, entries in names.items() if entries}
+
+
 @dataclass(frozen=True, eq=False)
 class OutputPlan:
     """What will be written into one folder, checked before any work is done; see `plan_outputs`.
@@ -45,18 +71,15 @@ class OutputPlan:
         How the linear plates are written; `overwrite` holds for every file.
     lut_length : int
         Entries of the LUTs.
-    left : tuple of Path
-        Files of an earlier run with other options that stay there, although they are not of this estimate.
-    dropped : tuple of str
-        Colour spaces of other plates in the config that is replaced, which it will not have any more.
+    earlier : EarlierRun
+        What an earlier run has left in the folder.
     """
 
     files: OutputFiles
     space: PlateColorSpace
     plates: PlateOptions
     lut_length: int
-    left: tuple[Path, ...] = ()
-    dropped: tuple[str, ...] = ()
+    earlier: EarlierRun = field(default_factory=EarlierRun)
 
 
 def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, outputs: OutputOptions) -> OutputPlan:
@@ -86,7 +109,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
     space = files.plate_color_space(photos[0])
     portable_config([space])
-    return OutputPlan(files, space, plates, outputs.lut_length, left_files(files, photos), dropped_spaces(files))
+    return OutputPlan(files, space, plates, outputs.lut_length, EarlierRun.in_folder(files, photos))
 
 
 def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool = False) -> tuple[Path, ...]:
@@ -112,15 +135,12 @@ def left_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool 
     return tuple(path for path in there if not path.with_suffix(".json").exists())
 
 
-def dropped_spaces(files: OutputFiles) -> tuple[str, ...]:
+def _dropped_spaces(files: OutputFiles) -> tuple[str, ...]:
     """Return the colour spaces of other plates in the config that is there; none if it cannot be read."""
-    if not files.config.exists():
-        return ()
-    try:
-        plates = plates_in_config(OCIO.Config.CreateFromFile(str(files.config)))
-    except (OCIO.Exception, OCIO.ExceptionMissingFile, UnicodeError):  # a name, or the error's text, may be no UTF-8
-        return ()
-    return tuple(plate.name for plate in plates if plate.name != files.color_space)
+    with suppress(UnicodeError):  # a name, or the error's text, may be no UTF-8
+        plates = plates_in_config(loaded_or_empty(files.config))
+        return tuple(plate.name for plate in plates if plate.name != files.color_space)
+    return ()
 
 
 def write_outputs(plan: OutputPlan, estimated: PhotographEstimate) -> dict[str, Any]:
