@@ -1,11 +1,60 @@
-"""The errors that this project raises for a user's mistake; every message is one line that says what to do.
+"""The errors and notices of this project: a code, and the facts of the case.
 
-`beside_limits` and `one_line` are for the numbers and the foreign texts in these lines.
+The code that finds a problem states both and no sentence: ``raise PhotoError("too_small", path=path, width=64)``. Each
+sentence stands once, in `crfnet_core.messages`, and `str` fills it in. An interface that can say more, such as which of
+its options helps, looks the code up in a table of its own.
 """
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+
+from crfnet_core.messages import SENTENCES
 
 
 class CRFNetError(Exception):
-    """Base of every error that a caller can fix: bad input, a bad file, a bad option."""
+    """Base of every error that a caller can fix: bad input, a bad file, a bad option.
+
+    Parameters
+    ----------
+    code : str
+        Names the problem: a key of `sentences`.
+    **facts : object
+        What the sentence names, such as the path, the value found and the value needed.
+    """
+
+    #: The sentences of all codes; a package that adds codes overrides it with its own table.
+    sentences: Mapping[str, str] = SENTENCES
+
+    def __init__(self, code: str, /, **facts: object) -> None:
+        super().__init__(code)
+        self.code = code
+        self.facts = facts
+
+    def __str__(self) -> str:
+        """Return the sentence of the code, on one line."""
+        return filled(self.sentences.get(self.code, self.code), self.facts)
+
+
+@dataclass(frozen=True)
+class Notice:
+    """A finding that is no error, such as a reason to doubt an estimate: a code and its facts, as of `CRFNetError`."""
+
+    code: str
+    facts: Mapping[str, object] = field(default_factory=dict)
+
+    def __str__(self) -> str:
+        """Return the sentence of the code, on one line."""
+        return filled(SENTENCES.get(self.code, self.code), self.facts)
+
+
+def filled(sentence: str, facts: Mapping[str, object]) -> str:
+    """Return a sentence with the facts in its braces; line breaks and control characters of foreign texts are gone."""
+    if not facts:
+        return sentence
+    plain = {name: fact if isinstance(fact, int | float) else one_line(str(fact)) for name, fact in facts.items()}
+    return sentence.format(**plain)
 
 
 class PhotoError(CRFNetError):
@@ -34,18 +83,6 @@ class CalibrationError(CRFNetError):
 
 class CameraError(CRFNetError):
     """A camera that is not in the library, or cannot be read from it, kept in it or used."""
-
-
-class LutError(CRFNetError):
-    """A lookup table that is malformed or cannot be written."""
-
-
-class ConfigError(CRFNetError):
-    """An OpenColorIO config that does not load, validate or convert as it should."""
-
-
-class PlateError(CRFNetError):
-    """A plate or frame sequence that cannot be found, read or written."""
 
 
 def beside_limits(value: float, *limits: float) -> str:

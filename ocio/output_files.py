@@ -10,11 +10,11 @@ from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crfnet_core.errors import PlateError
 from crfnet_core.files import cut_to_bytes
 from ocio.configs.file_rules import linear_patterns, plate_pattern
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import PlateError
 from ocio.luts.files import WRITERS
 from ocio.options import OutputOptions
 

@@ -19,7 +19,6 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 
-from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
@@ -27,6 +26,7 @@ from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array
 from crfnet_core.windows import Window
+from ocio.errors import PlateError
 from ocio.report import agreeing, basis, curve_error_words, shape_error_words
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.

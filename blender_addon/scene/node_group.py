@@ -16,11 +16,11 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core import ResponseCurve
-from crfnet_core.errors import ConfigError
 from crfnet_core.types import Float64Array
 from ocio.configs.files import role_name
 from ocio.configs.reference_space import LINEAR_REC709
 from ocio.defaults import LUT_LENGTH
+from ocio.errors import ConfigError
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.output_files import distinct_names
 

@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.image_io import read_metadata
 from crfnet_core.recognition import tag_refusal
 from ocio.configs.files import load_config
+from ocio.errors import ConfigError
 
 from .errors import AddonError
 from .job import Job, Plate

@@ -8,7 +8,6 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import ConfigError
 from ocio.commands.printing import print_json, print_lines
 from ocio.configs.studio.additions import AdditionOptions, add_looks
 from ocio.configs.studio.looks import Look, read_looks
@@ -17,6 +16,7 @@ from ocio.configs.studio.plates import Changed, PlateInConfig, plates_in_config
 from ocio.configs.studio.removal import remove_plates
 from ocio.configs.studio.sources import find_config
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError
 
 
 def run(arguments: argparse.Namespace) -> None:

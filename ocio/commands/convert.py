@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from crfnet_core.errors import LutError
 from ocio.commands.printing import print_json, print_lines
+from ocio.errors import LutError
 from ocio.interchange.files import read_response, write_response
 from ocio.luts.files import WRITERS, write_lut
 from ocio.luts.forward import forward_lut

@@ -6,12 +6,13 @@ import argparse
 from dataclasses import asdict
 from pathlib import Path
 
-from crfnet_core.errors import CameraError, PlateError
+from crfnet_core.errors import CameraError
 from crfnet_core.estimate import ResponseEstimate
 from ocio import pipeline, report
 from ocio.commands.options import check_each, estimate_options, plate_options
 from ocio.commands.printing import print_json, print_lines, progress_bar
 from ocio.defaults import PLATES
+from ocio.errors import PlateError
 from ocio.interchange.files import read_response
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.files import READERS

@@ -9,10 +9,10 @@ from contextlib import contextmanager, suppress
 from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, file_sha256, read_json
 from ocio.configs.undo import as_before_on_failure
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"

@@ -13,7 +13,6 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.files import load_config, loaded_or_empty, write_config
 from ocio.configs.installation_record import (
     FOLDER,
@@ -38,6 +37,7 @@ from ocio.configs.plate_color_space import (
 from ocio.configs.reference_space import lut_file_of
 from ocio.configs.undo import as_before_on_failure
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d
 from ocio.output_files import check_config_folder, distinct_names, output_folder

@@ -10,11 +10,12 @@ from pathlib import PurePosixPath, PureWindowsPath
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.errors import one_line
 from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
 from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules
 from ocio.configs.plate_views import add_plate_views, plate_views, remove_plate_views
 from ocio.configs.reference_space import linear_space_name, matrix_transform, rec709_to_reference
+from ocio.errors import ConfigError
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"

@@ -8,7 +8,6 @@ from importlib.resources import files
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     DISPLAY_P3,
@@ -21,6 +20,7 @@ from crfnet_core.metadata.color_tags import (
 from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
 from ocio.configs.plate_views import add_plate_views
 from ocio.configs.reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
+from ocio.errors import ConfigError
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"

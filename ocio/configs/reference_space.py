@@ -5,7 +5,6 @@ from __future__ import annotations
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
@@ -17,6 +16,7 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
 )
 from crfnet_core.types import Float64Array
+from ocio.errors import ConfigError
 
 #: Names and aliases of linear Rec.709 in common configs, the most specific first.
 LINEAR_REC709 = (

@@ -15,10 +15,10 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.response import SAMPLES
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.interchange.response_file import ResponseFile, from_curve
 from ocio.luts.response import brightness_samples
 from ocio.luts.rgb_lut import AnyLut

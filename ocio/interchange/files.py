@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.interchange.dorf import read_dorf, write_dorf
 from ocio.interchange.hugin import read_hugin, write_hugin
 from ocio.interchange.opencv import read_opencv, write_opencv

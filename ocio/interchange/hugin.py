@@ -18,9 +18,9 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.emor import EmorBasis
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.interchange.response_file import ResponseFile, from_curve
 from ocio.luts.response import brightness_samples
 from ocio.luts.rgb_lut import AnyLut

@@ -16,9 +16,9 @@ from tokenize import TokenError
 
 import numpy as np
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write, atomic_write_text, read_bytes
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.interchange.calibration import CODES, calibrated_response, codes_table
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.rgb_lut import AnyLut

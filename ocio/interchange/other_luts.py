@@ -11,8 +11,8 @@ from pathlib import Path
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import LutError
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.interchange.response_file import ResponseFile, described, from_lut
 from ocio.luts.agreement import opencolorio_steps
 from ocio.luts.lut1d import MAX_LENGTH, strictly_increasing

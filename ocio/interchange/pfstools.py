@@ -12,9 +12,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.interchange.calibration import CODES, calibrated_response, codes_table
 from ocio.interchange.response_file import ResponseFile
 from ocio.luts.rgb_lut import AnyLut

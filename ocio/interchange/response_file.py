@@ -8,10 +8,11 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.errors import CurveError, LutError
+from crfnet_core.errors import CurveError
 from crfnet_core.response import ResponseCurve
 from crfnet_core.types import Float64Array
 from ocio.defaults import LUT_LENGTH
+from ocio.errors import LutError
 from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
 from ocio.luts.response import is_forward
 from ocio.luts.rgb_lut import AnyLut, lut_of_channels

@@ -7,8 +7,9 @@ from pathlib import Path
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import LutError, one_line
+from crfnet_core.errors import one_line
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.luts.rgb_lut import AnyLut
 
 #: Largest difference of an entry, relative to it, and of an end of the domain, relative to the domain: of float32.

@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from pathlib import Path
 from xml.etree import ElementTree
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
+from ocio.errors import LutError
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText, table_rows
 

@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import atomic_write_text
+from ocio.errors import LutError
 from ocio.luts.rgb_lut import AnyLut
 from ocio.luts.text import LutText, table_rows
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.luts.agreement import check_agreement
 from ocio.luts.clf import read_clf, write_clf
 from ocio.luts.cube import read_cube, write_cube

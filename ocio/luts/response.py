@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from crfnet_core.errors import LutError
 from crfnet_core.response import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.rgb_lut import AnyLut, RgbLut1D
 

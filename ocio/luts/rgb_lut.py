@@ -9,8 +9,8 @@ from typing import TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.errors import LutError
 from crfnet_core.types import Float64Array
+from ocio.errors import LutError
 from ocio.luts.lut1d import Lut1D, clean_comments, table_identity
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.errors import LutError
 from crfnet_core.files import read_bytes
+from ocio.errors import LutError
 from ocio.luts.lut1d import first_fault, single_precision
 from ocio.luts.rgb_lut import AnyLut, lut_of_columns
 

@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crfnet_core.errors import PlateError
 from crfnet_core.photo import Photo
+from ocio.errors import PlateError
 from ocio.movies.conversion import alpha_of, rgb_codes, upright
 from ocio.movies.decoding import decoded
 from ocio.movies.header import frame_header, movie_metadata

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crfnet_core.errors import PlateError
 from crfnet_core.image_io import MAX_PIXELS
 from crfnet_core.metadata.cicp import cicp_tags
 from crfnet_core.metadata.color_tags import ColorTags
+from ocio.errors import PlateError
 from ocio.movies.color import Coding
 from ocio.movies.conversion import bit_depth
 from ocio.movies.index import FrameIndex, read_index

@@ -10,10 +10,11 @@ from functools import lru_cache
 from pathlib import Path
 from typing import Any, TypeVar
 
-from crfnet_core.errors import CRFNetError, PhotoError, PlateError, one_line
+from crfnet_core.errors import CRFNetError, PhotoError, one_line
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress, cores, show_progress
+from ocio.errors import PlateError
 from ocio.options import EstimateOptions, PlateOptions
 from ocio.output_files import check_targets, plain_stem
 from ocio.pipeline.estimates import response_lut

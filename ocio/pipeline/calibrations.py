@@ -10,11 +10,12 @@ from typing import Any
 import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
-from crfnet_core.errors import CalibrationError, CurveError, PlateError
+from crfnet_core.errors import CalibrationError, CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.response import ResponseCurve
 from ocio.configs.files import write_config
 from ocio.configs.portable import portable_config
+from ocio.errors import PlateError
 from ocio.interchange.files import read_response
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import inverse_response_lut

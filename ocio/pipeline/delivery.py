@@ -6,11 +6,11 @@ from collections.abc import Iterator, Sequence
 from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
-from crfnet_core.errors import PlateError
 from crfnet_core.files import check_target
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
+from ocio.errors import PlateError
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.output_files import OutputFiles, check_config_folder, check_folder, output_folder

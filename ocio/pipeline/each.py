@@ -8,12 +8,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import LutError, PlateError
 from crfnet_core.types import Progress
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import ESTIMATES
+from ocio.errors import LutError, PlateError
 from ocio.luts.files import read_lut
 from ocio.options import EstimateOptions, OutputOptions, PlateOptions
 from ocio.output_files import OutputFiles, output_folder

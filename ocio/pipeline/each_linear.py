@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.types import Progress
 from ocio.defaults import PLATES
+from ocio.errors import PlateError
 from ocio.interchange.files import read_response
 from ocio.luts.rgb_lut import AnyLut
 from ocio.movies.library import is_movie

@@ -8,7 +8,6 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
-from crfnet_core.errors import PlateError
 from crfnet_core.estimate import ResponseEstimate, estimate_response
 from crfnet_core.metadata import Device
 from crfnet_core.metadata.color_tags import ColorTags
@@ -18,6 +17,7 @@ from crfnet_core.posterior import Prior
 from crfnet_core.response_estimate import CameraAnswer
 from crfnet_core.types import Float32Array, Progress
 from ocio.defaults import LUT_LENGTH
+from ocio.errors import PlateError
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.movies.library import is_movie
 from ocio.movies.source import PlateSource, file_source, movie_of, photographs_of

@@ -9,13 +9,13 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import PlateError
 from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.metadata.color_tags import REC709
 from ocio.configs.files import loaded_or_empty, write_config
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.plates import plates_in_config
+from ocio.errors import PlateError
 from ocio.luts.files import write_lut
 from ocio.luts.forward import forward_lut
 from ocio.options import OutputOptions, PlateOptions

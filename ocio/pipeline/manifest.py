@@ -10,10 +10,11 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.errors import PhotoError, PlateError
+from crfnet_core.errors import PhotoError
 from crfnet_core.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text, parse_json
 from crfnet_core.metadata.color_tags import Primaries
+from ocio.errors import PlateError
 from ocio.plates.light import PlateLight
 from ocio.plates.primaries import PlatePrimaries
 from ocio.report import result_line

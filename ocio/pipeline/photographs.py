@@ -7,9 +7,9 @@ from collections.abc import Iterable, Mapping, Sequence
 from functools import lru_cache
 from pathlib import Path
 
-from crfnet_core.errors import PlateError
 from crfnet_core.files import read_json
 from crfnet_core.image_io import PHOTOGRAPH_SUFFIXES
+from ocio.errors import PlateError
 from ocio.output_files import SHEET_ENDING
 
 

@@ -11,8 +11,8 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import PlateError
 from ocio.defaults import FRAMES_ANALYZED
+from ocio.errors import PlateError
 from ocio.plates.frame_files import FrameLoader, read_frame
 from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from ocio.plates.frame_pattern import FramePattern, listed

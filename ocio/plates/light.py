@@ -9,9 +9,9 @@ from typing import Any
 
 import OpenImageIO as oiio
 
-from crfnet_core.errors import PlateError
 from crfnet_core.image_io import oiio_message
 from crfnet_core.metadata.color_tags import ColorTags
+from ocio.errors import PlateError
 from ocio.luts.exposure import anchored_exposure
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions

@@ -15,10 +15,11 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.errors import CRFNetError, PlateError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, check_target, temporary_stem
 from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
+from ocio.errors import PlateError
 from ocio.luts.rgb_lut import AnyLut
 from ocio.options import PlateOptions
 from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr

@@ -10,8 +10,9 @@ from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.frame_files import frames_of, read_plate_frame
 from blender_addon.work.job import ApplyMode
-from crfnet_core.errors import ConfigError, CRFNetError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.response import ResponseCurve
+from ocio.errors import ConfigError
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.plates.frames import find_frames

@@ -4,8 +4,9 @@ import stat
 
 import pytest
 
-from crfnet_core.errors import CRFNetError, LutError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.files import LONGEST_NAME, atomic_write, cut_to_bytes
+from ocio.errors import LutError
 
 
 def test_a_file_takes_its_name_when_it_is_whole(tmp_path):

@@ -9,9 +9,9 @@ import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
 from ocio.configs.plate_color_space import PlateColorSpace
+from ocio.errors import ConfigError
 from ocio.luts.lut1d import inverse_response_lut
 
 #: A plate's colour space, and a LUT for it that goes beyond [0, 1].

@@ -10,11 +10,12 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import CRFNetError, PhotoError, PlateError, PriorError
+from crfnet_core.errors import CRFNetError, PhotoError, PriorError
 from crfnet_core.posterior import Family
 from crfnet_core.response import ResponseCurve
 from ocio import pipeline
 from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
+from ocio.errors import PlateError
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.rgb_lut import RgbLut1D

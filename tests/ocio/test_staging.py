@@ -3,7 +3,7 @@ from pathlib import Path
 
 import pytest
 
-from crfnet_core.errors import PlateError
+from ocio.errors import PlateError
 from ocio.staging import STALE_SECONDS, staged_files
 
 

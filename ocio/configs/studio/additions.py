@@ -12,7 +12,6 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import (
@@ -33,6 +32,7 @@ from ocio.configs.studio.plates import Changed, checked_target, plate_in_config,
 from ocio.configs.studio.rules import PlateRules
 from ocio.configs.studio.sources import ConfigSource, is_blender_config
 from ocio.configs.undo import as_before_on_failure
+from ocio.errors import ConfigError
 from ocio.luts.files import read_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import write_spi1d

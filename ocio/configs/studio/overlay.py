@@ -14,7 +14,6 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.files import atomic_write_text, check_target
 from ocio.configs.files import write_config
 from ocio.configs.installation_record import own_folder
@@ -25,6 +24,7 @@ from ocio.configs.studio.looks import Look
 from ocio.configs.studio.plates import PlateInConfig, plates_in_config
 from ocio.configs.studio.sources import ConfigSource
 from ocio.configs.undo import as_before_on_failure
+from ocio.errors import ConfigError
 from ocio.luts.spi1d import write_spi1d
 from ocio.output_files import check_config_folder, output_folder
 

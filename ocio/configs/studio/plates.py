@@ -8,13 +8,13 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.file_rules import LINEAR_SUFFIX, file_rules
 from ocio.configs.files import plate_exposure
 from ocio.configs.plate_color_space import FAMILY
 from ocio.configs.plate_views import plate_views
 from ocio.configs.reference_space import lut_file_of
 from ocio.configs.studio.sources import ConfigSource
+from ocio.errors import ConfigError
 from ocio.output_files import check_config_folder
 
 

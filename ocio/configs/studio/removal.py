@@ -7,7 +7,6 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.files import loaded_or_empty, write_config
 from ocio.configs.installation_record import (
     InstallationRecord,
@@ -23,6 +22,7 @@ from ocio.configs.plate_color_space import without_plate_color_space
 from ocio.configs.studio.plates import Changed, PlateInConfig, checked_target, plates_in_config
 from ocio.configs.studio.sources import ConfigSource, is_blender_config
 from ocio.configs.undo import as_before_on_failure
+from ocio.errors import ConfigError
 
 
 def remove_plates(source: ConfigSource, names: Sequence[str]) -> Changed:

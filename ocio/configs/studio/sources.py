@@ -9,9 +9,10 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import ConfigError, one_line
+from crfnet_core.errors import one_line
 from ocio.configs.files import load_config
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError
 
 #: How OpenColorIO marks the names of built-in configs.
 BUILT_IN = "ocio://"

@@ -10,11 +10,11 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 import pytest
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response import ResponseCurve
 from ocio.arguments.parts import BAD_INPUT
 from ocio.commands import printing
+from ocio.errors import ConfigError
 from ocio.luts.spi1d import read_spi1d
 from ocio.pipeline import folders
 from tests.helpers.folders import listed, tree

@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.sources import built_in_names, find_config, is_blender_config
+from ocio.errors import ConfigError
 
 
 @pytest.fixture

@@ -6,7 +6,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crfnet_core.errors import ConfigError, PlateError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
 from ocio.configs.installation_record import FOLDER, RECORD_NAME
@@ -14,6 +13,7 @@ from ocio.configs.installed import install, installed_color_spaces, restore, uni
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError, PlateError
 from ocio.luts.lut1d import inverse_response_lut
 from ocio.luts.spi1d import read_spi1d, write_spi1d
 from tests.helpers.configs import converted, loaded, rule_names

@@ -5,7 +5,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
 from ocio.configs import installed
 from ocio.configs.installation_record import FOLDER
@@ -13,6 +12,7 @@ from ocio.configs.installed import install, installed_color_spaces, restore
 from ocio.configs.plate_color_space import PlateColorSpace
 from ocio.configs.portable import portable_config
 from ocio.defaults import CONFIG_NAME
+from ocio.errors import ConfigError
 from ocio.luts.lut1d import inverse_response_lut
 from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from crfnet_core.errors import ConfigError
 from ocio.configs.studio.looks import read_looks
+from ocio.errors import ConfigError
 
 
 @pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", 5, None])

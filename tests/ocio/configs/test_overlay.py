@@ -8,13 +8,13 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.response import ResponseCurve
 from ocio.configs.portable import portable_config
 from ocio.configs.reference_space import REC709_TO_AP0
 from ocio.configs.studio.looks import read_looks
 from ocio.configs.studio.overlay import write_overlay
 from ocio.configs.studio.sources import find_config
+from ocio.errors import ConfigError
 from ocio.luts.lut1d import inverse_response_lut
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree

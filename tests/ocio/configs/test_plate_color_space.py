@@ -4,12 +4,12 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.metadata.color_tags import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, conversion_matrix
 from ocio.configs.files import write_config
 from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
 from ocio.configs.portable import portable_config
 from ocio.configs.reference_space import REC709_TO_AP0
+from ocio.errors import ConfigError
 from ocio.luts.files import write_lut
 from tests.helpers.configs import LUT, REC709_TO_AP1, SPACE, converted, loaded, rule_names
 

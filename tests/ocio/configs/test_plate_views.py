@@ -6,7 +6,6 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import ConfigError
 from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
 from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space, without_plate_color_space
 from ocio.configs.plate_views import (
@@ -20,6 +19,7 @@ from ocio.configs.plate_views import (
     view_names,
 )
 from ocio.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
+from ocio.errors import ConfigError
 from ocio.luts.files import write_lut
 from tests.helpers.configs import loaded
 from tests.helpers.looks import LUT

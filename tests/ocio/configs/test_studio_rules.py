@@ -6,11 +6,11 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import ConfigError, LutError
 from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, Primaries
 from ocio.configs.portable import portable_config
 from ocio.configs.studio.looks import read_looks
 from ocio.defaults import ESTIMATES
+from ocio.errors import ConfigError, LutError
 from ocio.luts.files import write_lut
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.rgb_lut import RgbLut1D

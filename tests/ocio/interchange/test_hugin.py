@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
+from ocio.errors import LutError
 from ocio.interchange.files import read_response, write_response
 from ocio.interchange.hugin import hugin_parameters, hugin_response
 from ocio.luts.lut1d import inverse_response_lut

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.interchange.files import read_response, write_response
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
 

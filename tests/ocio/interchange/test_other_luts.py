@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.interchange.files import READABLE, read_response, write_response
 from ocio.luts.files import write_lut
 from ocio.luts.forward import forward_lut

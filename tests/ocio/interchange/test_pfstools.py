@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.interchange.files import read_response, write_response
 
 #: From linear sRGB to XYZ (IEC 61966-2-1), in which PFS streams are.

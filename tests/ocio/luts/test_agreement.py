@@ -5,7 +5,7 @@ import os
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.interchange.files import read_response
 from ocio.luts.files import WRITERS, read_lut, write_lut
 from ocio.luts.lut1d import Lut1D

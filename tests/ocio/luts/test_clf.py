@@ -4,7 +4,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.luts.clf import read_clf, write_clf
 from ocio.luts.lut1d import Lut1D
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.luts.cube import read_cube, write_cube
 from ocio.luts.lut1d import Lut1D
 

@@ -7,9 +7,9 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.errors import LutError
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response import ResponseCurve
+from ocio.errors import LutError
 from ocio.luts.files import read_lut, write_lut
 from ocio.luts.forward import LENGTHS, forward_lut, round_trip_error
 from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing

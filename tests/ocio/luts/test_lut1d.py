@@ -7,9 +7,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
 from ocio.defaults import LUT_LENGTH
+from ocio.errors import LutError
 from ocio.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
 
 EXTENDED = (-0.125, 1.125)

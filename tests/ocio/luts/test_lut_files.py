@@ -12,8 +12,8 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
+from ocio.errors import LutError
 from ocio.luts.files import READERS, WRITERS, read_lut, write_lut
 from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
 

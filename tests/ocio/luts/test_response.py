@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import LutError
 from crfnet_core.response import ResponseCurve
+from ocio.errors import LutError
 from ocio.luts.lut1d import Lut1D, inverse_response_lut
 from ocio.luts.response import response_of_lut
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.errors import LutError
+from ocio.errors import LutError
 from ocio.luts.lut1d import Lut1D
 from ocio.luts.spi1d import read_spi1d, write_spi1d
 

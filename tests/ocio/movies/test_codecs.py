@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.errors import PlateError
+from ocio.errors import PlateError
 from ocio.movies.frames import WHITE, MovieFrames
 from ocio.movies.stream import read_stream
 from tests.helpers.movies import CODECS, ffmpeg_frames, make_movie

@@ -7,9 +7,9 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from crfnet_core.errors import PlateError
 from crfnet_core.metadata import cicp, file_origin
 from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags
+from ocio.errors import PlateError
 from ocio.movies import log_tags
 from ocio.movies.frames import MovieFrames
 from ocio.movies.header import frame_header, movie_metadata

@@ -5,7 +5,7 @@ import sys
 import numpy as np
 import pytest
 
-from crfnet_core.errors import PlateError
+from ocio.errors import PlateError
 from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from ocio.plates.frame_pattern import FramePattern
 from ocio.plates.frames import FrameSequence, find_frames, sample_frames

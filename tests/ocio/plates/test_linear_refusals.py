@@ -6,8 +6,9 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from crfnet_core.errors import PhotoError, PlateError
+from crfnet_core.errors import PhotoError
 from crfnet_core.image_io import read_codes
+from ocio.errors import PlateError
 from ocio.plates import exr, linear
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image

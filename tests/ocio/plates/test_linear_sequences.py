@@ -11,9 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet_core.errors import PlateError
 from crfnet_core.files import LONGEST_NAME, atomic_write
 from crfnet_core.image_io import read_photo
+from ocio.errors import PlateError
 from ocio.luts.lut1d import Lut1D
 from ocio.plates import linear
 from ocio.plates.parallel import finished

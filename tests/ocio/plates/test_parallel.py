@@ -5,7 +5,7 @@ from contextlib import closing
 
 import pytest
 
-from crfnet_core.errors import PlateError
+from ocio.errors import PlateError
 from ocio.plates.parallel import finished
 
 
