@@ -64,8 +64,9 @@ blender-pictures: $(if $(BLENDER),$(WINDOW)/ready)  ## the pictures of the panel
 check: $(DEV)/ready  ## format, lint, types and layers
 	$(DEV)/bin/ruff format --check .
 	$(DEV)/bin/ruff check .
-	$(DEV)/bin/mypy
-	$(DEV)/bin/lint-imports
+	@mkdir -p build/names && ln -sfn ../../ocio build/names/crfnet  # the folder ocio under the name that it is installed as
+	MYPYPATH=build/names $(DEV)/bin/mypy
+	PYTHONPATH=build/names $(DEV)/bin/lint-imports
 
 format: $(DEV)/ready  ## let ruff format and mend what it can
 	$(DEV)/bin/ruff format .

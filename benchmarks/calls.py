@@ -12,8 +12,8 @@ import OpenImageIO as oiio
 
 from benchmarks.costs import Figure, cost_of_call, cost_of_command, medians, ratio
 from benchmarks.pictures import made, make_photograph
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core import ResponseCurve, ResponseNetwork, estimate_response, read_photo
-from ocio.luts.lut1d import inverse_response_lut
 
 #: Rows, columns and channels of a 4K frame, and of the photograph.
 FRAME, PHOTOGRAPH = (2160, 3840, 3), (4000, 6000, 3)

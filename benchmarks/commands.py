@@ -11,10 +11,10 @@ from pathlib import Path
 
 from benchmarks.costs import Cost, Figure, cost_of_command, medians, ratio
 from benchmarks.pictures import made, make_frames, make_photograph, make_small_photographs
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core import ResponseCurve
 from crfnet_core.types import cores
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import inverse_response_lut
 
 #: Photographs of `crfnet estimate --each`, and frames of `crfnet linearize`.
 PHOTOGRAPHS, FRAMES = 100, 100

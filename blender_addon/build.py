@@ -3,7 +3,7 @@
 
 Needs only the standard library and pip. The wheels that wheels.sha256 lists are downloaded and kept in build/wheels, so
 the next build needs no network. The same sources give the same bytes: the members of a zip are sorted by name,
-uncompressed, and all of one date; the wheel of `crfnet_core` and `ocio` is built by the setuptools of wheels.sha256,
+uncompressed, and all of one date; the wheel of `crfnet_core` and `crfnet` is built by the setuptools of wheels.sha256,
 from a folder that holds nothing else.
 """
 
@@ -142,7 +142,7 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
 
 
 def build_own_wheel(version: str, cache: Path) -> Path:
-    """Build the wheel that holds `crfnet_core` and `ocio`, beside the downloads, and return its path.
+    """Build the wheel that holds `crfnet_core` and `crfnet`, beside the downloads, and return its path.
 
     The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
     and OpenColorIO, and the add-on does not import what only the command needs (tqdm, shtab, matplotlib).

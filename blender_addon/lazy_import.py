@@ -14,7 +14,7 @@ import bpy
 from .work.errors import AddonError
 
 #: What comes as wheels with the add-on, and what comes with Blender.
-_IN_WHEELS = ("crfnet_core", "ocio", "onnxruntime", "platformdirs")
+_IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "platformdirs")
 _IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 
@@ -24,7 +24,7 @@ def load(module: str) -> ModuleType:
     Parameters
     ----------
     module : str
-        As for `importlib.import_module`: ``".work.run"`` is the add-on's own, ``"ocio.configs.installed"`` is not.
+        As for `importlib.import_module`: ``".work.run"`` is the add-on's own, ``"crfnet.configs.installed"`` is not.
 
     Raises
     ------

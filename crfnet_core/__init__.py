@@ -1,24 +1,16 @@
 """Estimate a camera's response from one photograph, with numpy and onnxruntime.
 
-analysis             what the network reads in each photograph
-estimate             the method on one screen: photographs in, response and uncertainty out
-response_estimate    what comes out, and the same as a document for JSON
-calibration          the response measured from an exposure stack instead
-cameras              responses of one's cameras, kept to be used again
-photo, image_io      a photograph's code values, of a file or an array, and the one reader of image files
-metadata             what a file says of how its photograph was made, and of its primaries
-colorimetry          from chromaticities to matrices
-recognition          log footage, limited range and tags: what is no photograph of a camera
-windows              the windows of a photograph that are analysed
-statistics           what is counted in a window
-network              the trained network: its folder, its inputs and predictions, pooling
-posterior            from the network's evidence and the metadata to the response, its uncertainty and the verdict
-emor                 the empirical model of response: weights to curve, curve to weights
-response             a strictly monotone response and its inverse
-transfer_functions   sRGB and Rec.709, to compare with
-metrics              how far an estimate is from the truth
-files                write a file whole or not at all
-errors, types        the errors that a user can fix; names of array types
+estimate       the method: photographs in, response and uncertainty out
+photograph     a photograph's code values and metadata, and the one reader of image files
+statistics     the windows of a photograph, and what is counted in them
+network        the trained network: its folder, its inputs and predictions, pooling
+posterior      from the network's evidence and the metadata to the response, its uncertainty and the verdict
+response       a monotone response and its inverse, EMoR, metrics
+calibration    the response measured from an exposure stack instead
+library        responses of one's cameras, kept to be used again
+colorimetry    from chromaticities to matrices
+files          write a file whole or not at all
+errors, types  the errors that a user can fix; names of array types. messages has the sentences of the errors
 
 The names below are the public interface: see docs/API.md. docs/METHOD.md explains the steps and their equations.
 Each is imported when it is first used, so that `import crfnet_core` waits neither for NumPy nor for onnxruntime.
@@ -29,15 +21,15 @@ from importlib.util import find_spec
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from crfnet_core.emor import EmorBasis
     from crfnet_core.errors import CRFNetError
-    from crfnet_core.estimate import ResponseEstimate, WindowEstimate, estimate_response
-    from crfnet_core.image_io import read_photo
-    from crfnet_core.metrics import estimation_error, linearization_error
+    from crfnet_core.estimate.estimate import ResponseEstimate, WindowEstimate, estimate_response
     from crfnet_core.network import ModelConfig, ResponseNetwork
-    from crfnet_core.photo import Photo
-    from crfnet_core.response import ResponseCurve
-    from crfnet_core.windows import Window, select_windows
+    from crfnet_core.photograph.image_io import read_photo
+    from crfnet_core.photograph.photo import Photo
+    from crfnet_core.response.curve import ResponseCurve
+    from crfnet_core.response.emor import EmorBasis
+    from crfnet_core.response.metrics import estimation_error, linearization_error
+    from crfnet_core.statistics.windows import Window, select_windows
 
 __all__ = [
     "CRFNetError",
@@ -56,26 +48,29 @@ __all__ = [
     "select_windows",
 ]
 
-#: The module of each public name that is not in `crfnet_core.estimate`.
+#: The module of each public name.
 _MODULES = {
     "CRFNetError": "errors",
-    "EmorBasis": "emor",
+    "EmorBasis": "response.emor",
     "ModelConfig": "network",
-    "Photo": "photo",
-    "ResponseCurve": "response",
+    "Photo": "photograph.photo",
+    "ResponseCurve": "response.curve",
     "ResponseNetwork": "network",
-    "Window": "windows",
-    "estimation_error": "metrics",
-    "linearization_error": "metrics",
-    "read_photo": "image_io",
-    "select_windows": "windows",
+    "ResponseEstimate": "estimate.result",
+    "Window": "statistics.windows",
+    "WindowEstimate": "estimate.result",
+    "estimate_response": "estimate.estimate",
+    "estimation_error": "response.metrics",
+    "linearization_error": "response.metrics",
+    "read_photo": "photograph.image_io",
+    "select_windows": "statistics.windows",
 }
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name, or a module of this package, when it is first used (PEP 562)."""
     if name in __all__:
-        found = getattr(import_module(f"{__name__}.{_MODULES.get(name, 'estimate')}"), name)
+        found = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
         globals()[name] = found
         return found
     if not name.startswith("_") and find_spec(f"{__name__}.{name}"):

@@ -17,10 +17,10 @@ import PyOpenColorIO as OCIO
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+from crfnet.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from crfnet.luts.exposure import anchored_exposure
 from crfnet_core import Photo, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.types import Float32Array
-from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ocio.luts.exposure import anchored_exposure
 
 ROOT = Path(__file__).resolve().parents[1]
 PHOTO = ROOT / "tests" / "data" / "plate.jpg"

@@ -17,7 +17,7 @@ import numpy as np
 from matplotlib import image
 from numpy.typing import NDArray
 
-from ocio.cli import main
+from crfnet.cli.main import main
 
 ROOT = Path(__file__).resolve().parents[1]
 PHOTO = ROOT / "tests" / "data" / "plate.jpg"

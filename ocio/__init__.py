@@ -1,20 +1,66 @@
-"""LUT files, OpenColorIO configs and linear plates from an estimated camera response; the command `crfnet`.
+"""CRF-net for compositors: a camera's response from one photograph, as LUTs, an OpenColorIO config and linear plates.
 
-cli           the command: exit codes and error lines
-arguments     the arguments of its subcommands, which need no numpy
-commands      the work of its subcommands: arguments to options, pipeline, output
-interruption  signals that end a run
-streams       what the command prints to
-defaults      constants that several modules share
-options       typed options of the pipeline
+This folder is installed as the package `crfnet`: studios call packages of their own `ocio`.
+
+cli           the command `crfnet`, also as `python -m crfnet`
 pipeline      the one way from photographs to files, for the command and for the add-on
-output_files  which files an estimate writes, and whether they may be written
-staging       a set of files that appears whole or not at all
-report        estimates and files in words, as JSON, and as provenance
-sheet         an estimate as a picture; calibration_sheet a measured response
-luts          the LUT, and its file formats
-interchange   responses in the files of other programs
-configs       OpenColorIO configs with a plate's colour space
+report        estimates and files in words, as JSON, and as pictures
+configs       OpenColorIO configs with a plate's color space
 plates        frame sequences, and linear EXR files made of them
 movies        movies as sources of frames
+luts          the LUT, and its file formats
+interchange   responses in the files of other programs
+output_files  which files an estimate writes, and whether they may be written
+staging       a set of files that appears whole or not at all
+options       typed options of the pipeline
+defaults      constants that several modules share
+errors        the errors of this package; messages has their sentences
+
+The names below are the public interface of `crfnet_core`, imported when they are first used: see docs/API.md.
 """
+
+from typing import TYPE_CHECKING, Any
+
+import crfnet_core
+
+if TYPE_CHECKING:
+    from crfnet_core import (
+        CRFNetError,
+        EmorBasis,
+        ModelConfig,
+        Photo,
+        ResponseCurve,
+        ResponseEstimate,
+        ResponseNetwork,
+        Window,
+        WindowEstimate,
+        estimate_response,
+        estimation_error,
+        linearization_error,
+        read_photo,
+        select_windows,
+    )
+
+__all__ = [
+    "CRFNetError",
+    "EmorBasis",
+    "ModelConfig",
+    "Photo",
+    "ResponseCurve",
+    "ResponseEstimate",
+    "ResponseNetwork",
+    "Window",
+    "WindowEstimate",
+    "estimate_response",
+    "estimation_error",
+    "linearization_error",
+    "read_photo",
+    "select_windows",
+]
+
+
+def __getattr__(name: str) -> Any:
+    """Import a public name when it is first used (PEP 562)."""
+    if name in __all__:
+        return getattr(crfnet_core, name)
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -15,7 +15,7 @@ WINDOWS = 10
 #: The packaged priors, as in `crfnet_core.posterior`; the first is the default.
 PRIORS = ("camera", "any")
 
-#: What a person may say took a photograph: kinds as in `crfnet_core.metadata.Device`, or a camera of another kind.
+#: Devices that a user may state: kinds of `crfnet_core.photograph.metadata.Device`, or another one.
 DEVICES = ("phone", "compact", "camera", "other")
 
 #: Frames of a sequence from which its one response is estimated.
@@ -35,7 +35,7 @@ MIDDLE_GRAY = 0.18
 GRAY_BRIGHTNESS = 0.4614
 
 #: What may be said of a plate's primaries: the first, the default, goes by the file's tags; the others are the names in
-#: `crfnet_core.metadata.color_tags.PHOTOGRAPHIC`.
+#: `crfnet_core.photograph.metadata.color_tags.PHOTOGRAPHIC`.
 PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
 
 #: The spaces of linear EXR files: linear Rec.709, which is the role scene_linear of the configs that we write (the

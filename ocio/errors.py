@@ -1,7 +1,8 @@
-"""The errors of LUTs, configs and plates: codes and facts, as in `crfnet_core.errors`; sentences in `ocio.messages`."""
+"""The errors of LUTs, configs and plates: codes and facts; `messages` has their sentences."""
 
 from crfnet_core.errors import CRFNetError
-from ocio.messages import SENTENCES
+
+from .messages import SENTENCES
 
 
 class OutputError(CRFNetError):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
-from ocio.defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS, WINDOWS
+from .defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS, WINDOWS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,7 +27,7 @@ class EstimateOptions:
     use_metadata : bool
         Whether what the files say of their making counts.
     device : str or None
-        What took them, one of `ocio.defaults.DEVICES`, as a person knows it; None to go by the files.
+        What took them, one of `crfnet.defaults.DEVICES`, as a person knows it; None to go by the files.
     camera : str or None
         The stored camera whose response is the answer; None to estimate it from the photographs.
     """

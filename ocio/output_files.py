@@ -11,12 +11,13 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.files import cut_to_bytes
-from ocio.configs.file_rules import linear_patterns, plate_pattern
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import PlateError
-from ocio.luts.files import WRITERS
-from ocio.options import OutputOptions
+
+from .configs.file_rules import linear_patterns, plate_pattern
+from .configs.plate_color_space import PlateColorSpace
+from .defaults import CONFIG_NAME
+from .errors import PlateError
+from .luts.files import WRITERS
+from .options import OutputOptions
 
 #: Most bytes of a stem: file systems take 255 for a name, of which suffixes and temporary names need some.
 LONGEST_STEM = 200

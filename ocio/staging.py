@@ -11,7 +11,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
-from ocio.errors import PlateError
+
+from .errors import PlateError
 
 #: Age in seconds from which a temporary folder or file counts as left behind by a killed run.
 STALE_SECONDS = 600

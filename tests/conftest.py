@@ -12,12 +12,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import pytest
 
-from ocio.cli import main
+from crfnet.cli.main import main
 from tests.helpers.images import write_image
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
-    from crfnet_core.response import ResponseCurve
+    from crfnet_core.response.curve import ResponseCurve
 
 
 @dataclass(frozen=True)
@@ -69,7 +69,9 @@ def plate(root) -> Path:
 @pytest.fixture(scope="session")
 def true_response(root) -> "ResponseCurve":
     """The response through which the bundled photograph was made."""
-    from crfnet_core.response import ResponseCurve  # not earlier: in Blender, its own OpenImageIO has to come first
+    from crfnet_core.response.curve import (
+        ResponseCurve,  # not earlier: in Blender, its own OpenImageIO has to come first
+    )
 
     table = np.loadtxt(root / "tests" / "data" / "plate_response.csv", delimiter=",", skiprows=1)
     return ResponseCurve.from_samples(table[:, 1])

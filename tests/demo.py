@@ -6,9 +6,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.metrics import estimation_error, linearization_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 
 ASSETS = Path(__file__).parent / "data"
 

@@ -18,9 +18,9 @@ import numpy as np
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.errors import CalibrationError
-from crfnet_core.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
 DATA = Path(__file__).parent / "data"

@@ -22,9 +22,9 @@ for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
 print(*sys.modules)
 """
 
-PIPELINE = "import sys, ocio.pipeline, ocio.configs.installed; print(*sys.modules)"
+PIPELINE = "import sys, crfnet.pipeline, crfnet.configs.installed; print(*sys.modules)"
 
-START = "import sys, ocio.cli; ocio.cli.build_parser(); print(*sys.modules)"
+START = "import sys, crfnet.cli.main; crfnet.cli.main.build_parser(); print(*sys.modules)"
 
 
 def loaded_by(code, root):

@@ -7,19 +7,19 @@ from string import Formatter
 
 import pytest
 
+import crfnet.messages
 import crfnet_core.messages
-import ocio.messages
+from crfnet.errors import OutputError
 from crfnet_core.errors import CRFNetError, Notice, PhotoError
-from ocio.errors import OutputError
 
 ROOT = Path(__file__).parents[1]
-PACKAGES = {"crfnet_core": crfnet_core.messages.SENTENCES, "ocio": ocio.messages.SENTENCES}
+PACKAGES = {"crfnet_core": crfnet_core.messages.SENTENCES, "ocio": crfnet.messages.SENTENCES}
 
 
 def stated(package):
     """Yield (place, code, names of the facts) of every error and notice that a package makes with a code.
 
-    A sentence in place of a code has spaces; a code that is not a literal, or facts by `**`, cannot be read from the text.
+    A sentence in place of a code has spaces; a code that is not a literal cannot be read from the text.
     """
     for path in sorted((ROOT / package).rglob("*.py")):
         for node in ast.walk(ast.parse(path.read_text("utf-8"))):

@@ -14,7 +14,7 @@ from pathlib import Path
 from benchmarks.hardness.trial import ROOT, Row, Trial
 
 #: The command, which says when it begins.
-RUN = "import sys, ocio.cli; print('ready', flush=True); sys.exit(ocio.cli.main())"
+RUN = "import sys, crfnet.cli.main; print('ready', flush=True); sys.exit(crfnet.cli.main.main())"
 
 SIGNALS = (signal.SIGKILL, signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
 

@@ -49,7 +49,7 @@ def soak(count: int, work: Path) -> Row:
 
 def main(count: int, work: Path) -> None:
     """Estimate the bundled photograph `count` times, through the command's own entry."""
-    from ocio.cli import main as crfnet
+    from crfnet.cli.main import main as crfnet
 
     for _ in range(count):
         arguments = ["estimate", PLATE, "--model", MODEL, "--out", work / "soak", "--overwrite", "--no-sheet"]

@@ -57,7 +57,7 @@ class Trial:
 
     def command(self, out: Path) -> list[str]:
         """Return the command line that writes into a folder."""
-        return [sys.executable, "-m", "ocio.cli", *self.arguments(out)]
+        return [sys.executable, "-m", "crfnet.cli.main", *self.arguments(out)]
 
     def run(self, out: Path) -> subprocess.CompletedProcess[str]:
         """Run it to its end."""

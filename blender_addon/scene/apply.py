@@ -7,7 +7,7 @@ from pathlib import Path
 
 import bpy
 
-from ocio.configs.installed import Installed
+from crfnet.configs.installed import Installed
 
 from ..work.errors import AddonError
 from ..work.job import Job

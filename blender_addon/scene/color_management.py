@@ -11,8 +11,8 @@ import bpy
 from .. import lazy_import
 from ..work.job import CONFIG_VARIABLES
 
-#: The name under which Blender looks for a config. It is `ocio.defaults.CONFIG_NAME` again, because `ocio` comes as a
-#: wheel, and the add-on has to start without it.
+#: The name under which Blender looks for a config. It is
+#: `crfnet.defaults.CONFIG_NAME` again, because `crfnet` comes as a wheel, and the add-on has to start without it.
 CONFIG_NAME = "config.ocio"
 
 
@@ -31,7 +31,7 @@ def data_space() -> str:
     """
     if "Non-Color" in color_spaces():
         return "Non-Color"
-    return lazy_import.load("ocio.configs.files").role_name(running_config(), "data")
+    return lazy_import.load("crfnet.configs.files").role_name(running_config(), "data")
 
 
 def environment_config() -> str:

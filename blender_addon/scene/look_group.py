@@ -12,10 +12,10 @@ from __future__ import annotations
 import bpy
 import numpy as np
 
+from crfnet.errors import ConfigError
 from crfnet_core import ResponseCurve
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
 from crfnet_core.types import Float64Array
-from ocio.errors import ConfigError
 
 from . import stored_estimate
 from .color_management import color_spaces, data_space

@@ -15,14 +15,14 @@ import bpy
 import numpy as np
 import PyOpenColorIO as OCIO
 
+from crfnet.configs.files import role_name
+from crfnet.configs.reference_space import LINEAR_REC709
+from crfnet.defaults import LUT_LENGTH
+from crfnet.errors import ConfigError
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.output_files import distinct_names
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
-from ocio.configs.files import role_name
-from ocio.configs.reference_space import LINEAR_REC709
-from ocio.defaults import LUT_LENGTH
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.output_files import distinct_names
 
 from . import stored_estimate
 from .code_values import alpha_in_compositor

@@ -28,8 +28,8 @@ from .preferences import absolute
 #: What Blender read at its start; set when the add-on is first enabled in a session.
 _read_at_start: str | None = None
 
-#: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `ocio.configs.installation_record`, repeated
-#: because the interface is drawn without `ocio`.
+#: The file that says what was installed: `FOLDER` and `RECORD_NAME` of `crfnet.configs.installation_record`, repeated
+#: because the interface is drawn without `crfnet`.
 RECORD = Path("camera_response", "installed.json")
 
 #: How many letters fit into a line of the preferences.
@@ -56,7 +56,7 @@ class CRF_OT_restore_config(bpy.types.Operator):
         try:
             folder = absolute(self.folder) or color_management.user_folder()
             names = _names(folder)
-            restored = lazy_import.load("ocio.configs.installed").restore(folder)
+            restored = lazy_import.load("crfnet.configs.installed").restore(folder)
         except expected_errors() as problem:
             return failed(self, problem)
         _end_waits(names)
@@ -79,7 +79,7 @@ class CRF_OT_remove_color_space(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Remove it, and report what was done."""
         try:
-            lazy_import.load("ocio.configs.installed").uninstall(color_management.user_folder(), self.color_space)
+            lazy_import.load("crfnet.configs.installed").uninstall(color_management.user_folder(), self.color_space)
         except expected_errors() as problem:
             return failed(self, problem)
         _end_waits((self.color_space,))
@@ -202,7 +202,7 @@ def _installed(folder: Path, _fingerprint: str) -> tuple[str, ...]:
 def _names(folder: Path) -> tuple[str, ...]:
     """Return the names of the color spaces that are installed in a folder; none if it cannot be read."""
     try:
-        return lazy_import.load("ocio.configs.installed").installed_color_spaces(folder)
+        return lazy_import.load("crfnet.configs.installed").installed_color_spaces(folder)
     except expected_errors():
         return ()
 
@@ -219,7 +219,7 @@ def _missing(folder: Path, _fingerprint: str) -> tuple[str, ...]:
     if not (folder / RECORD).is_file() or color_management.environment_config():
         return ()
     try:
-        installed = lazy_import.load("ocio.configs.installed")
+        installed = lazy_import.load("crfnet.configs.installed")
         return installed.missing_color_spaces(folder, color_management.own_config())
     except expected_errors():
         return ()

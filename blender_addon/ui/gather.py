@@ -9,8 +9,8 @@ from typing import Any
 
 import bpy
 
-from crfnet_core.metadata.color_tags import Primaries
-from ocio.options import EstimateOptions
+from crfnet.options import EstimateOptions
+from crfnet_core.photograph.metadata.color_tags import Primaries
 
 from ..scene import color_management, node_group, packed_images, plates, stored_estimate
 from ..work.errors import AddonError

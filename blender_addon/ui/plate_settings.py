@@ -23,14 +23,14 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
-#: What kinds of responses to expect: `ocio.defaults.PRIORS`, or as a file says.
+#: What kinds of responses to expect: `crfnet.defaults.PRIORS`, or as a file says.
 PRIORS = (
     ("camera", "Camera", "Today's phones, compact cameras and cameras with interchangeable lenses, mostly unedited"),
     ("any", "Any Source", "Also film scans, old video cameras and heavily edited pictures, as likely as cameras"),
     ("file", "File", "As a JSON file says"),
 )
 
-#: What took the plate: as its file says, or one of `ocio.defaults.DEVICES`.
+#: What took the plate: as its file says, or one of `crfnet.defaults.DEVICES`.
 DEVICES = (
     ("file", "As the File Says", "Frames and pictures from web pages mostly say nothing: then choose, if you know"),
     ("phone", "Phone", "A phone or a tablet"),
@@ -39,7 +39,7 @@ DEVICES = (
     ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 
-#: Largest exposure in either direction, in stops. It is `ocio.defaults.MAX_EXPOSURE` again, because `ocio` comes as a
+#: Largest exposure in either direction, in stops. It is `crfnet.defaults.MAX_EXPOSURE` again, because it comes as a
 #: wheel, and the add-on has to start without it.
 MAX_EXPOSURE = 15
 
@@ -47,7 +47,7 @@ MAX_EXPOSURE = 15
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 _MODES = {number: name for name, number in _NUMBERS.items()}
 
-#: How the colour spaces of plates are named: `ocio.output_files`, repeated for the same reason.
+#: How the colour spaces of plates are named: `crfnet.output_files`, repeated for the same reason.
 COLOR_SPACE_PREFIX = "CRF "
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
@@ -59,7 +59,7 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
     with suppress(AddonError):
-        found: list[tuple[str, str]] = lazy_import.load("crfnet_core.cameras").listed_cameras(text, models)
+        found: list[tuple[str, str]] = lazy_import.load("crfnet_core.library").listed_cameras(text, models)
         return found
     return []
 

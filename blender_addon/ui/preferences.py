@@ -10,7 +10,7 @@ from ..work.errors import AddonError
 #: The name by which Blender knows the add-on: that of its root package.
 ADDON = __package__.rpartition(".")[0]
 
-#: Entries of LUT files by default. It is `ocio.defaults.LUT_LENGTH` again, because `ocio` comes as a wheel, and the
+#: Entries of LUT files by default. It is `crfnet.defaults.LUT_LENGTH` again, because `crfnet` comes as a wheel, and the
 #: add-on has to start without it.
 LUT_LENGTH = 4081
 

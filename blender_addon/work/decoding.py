@@ -14,8 +14,8 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from crfnet.plates.frames import FrameSequence
 from crfnet_core.types import Progress, show_progress
-from ocio.plates.frames import FrameSequence
 
 from .errors import AddonError
 from .job import CONFIG_VARIABLES, BlenderDecoder, Plate

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate or to undo.
 
-What the metadata of their files says is the estimator's to judge: `crfnet_core.recognition.tag_refusal`.
+What the metadata of their files says is the estimator's to judge: `crfnet_core.photograph.recognition.tag_refusal`.
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ import re
 from collections.abc import Iterable
 from pathlib import Path
 
-from crfnet_core.image_io import read_metadata
-from crfnet_core.recognition import tag_refusal
-from ocio.configs.files import load_config
-from ocio.errors import ConfigError
+from crfnet.configs.files import load_config
+from crfnet.errors import ConfigError
+from crfnet_core.photograph.image_io import read_metadata
+from crfnet_core.photograph.recognition import tag_refusal
 
 from .errors import AddonError
 from .job import Job, Plate

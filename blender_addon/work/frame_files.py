@@ -14,13 +14,13 @@ from typing import TypeAlias
 
 import OpenImageIO as oiio
 
+from crfnet.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags, read_frame
+from crfnet.plates.frame_pattern import FramePattern
+from crfnet.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
+from crfnet.plates.primaries import plate_primaries
 from crfnet_core.errors import CRFNetError
-from crfnet_core.metadata.color_tags import REC709, Primaries
+from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, Uint8Array, counted_from
-from ocio.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags, read_frame
-from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
-from ocio.plates.primaries import plate_primaries
 
 from .decoding import running_decoder
 from .errors import AddonError
@@ -43,7 +43,7 @@ class PlateFrames(FrameSequence):
 
 
 def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -> EncodedFrame:
-    """Return the encoded samples of a frame as `ocio.plates.frame_files.read_frame` does, but for its alpha.
+    """Return the encoded samples of a frame as `crfnet.plates.frame_files.read_frame` does, but for its alpha.
 
     It is taken as by Blender, which does not heed the file: as coverage by which the samples are multiplied (PREMUL) or
     not (STRAIGHT); as data (CHANNEL_PACKED); or not at all (NONE), so that the frame has none.

@@ -13,10 +13,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from crfnet.options import EstimateOptions
     from crfnet_core import ResponseEstimate
-    from crfnet_core.metadata.color_tags import Primaries
+    from crfnet_core.photograph.metadata.color_tags import Primaries
     from crfnet_core.types import Uint8Array
-    from ocio.options import EstimateOptions
 
 #: A file name without suffix, split around its last number, which is the frame number.
 _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")

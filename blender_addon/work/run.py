@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Run a job: estimate the response and write files, through `ocio.pipeline`, the pipeline of the `crfnet` command."""
+"""Run a job: estimate the response and write files, through `crfnet.pipeline`, the pipeline of the `crfnet` command."""
 
 from __future__ import annotations
 
@@ -9,15 +9,8 @@ from dataclasses import dataclass, replace
 from functools import cache, lru_cache, partial
 from pathlib import Path
 
-from crfnet_core import ResponseEstimate
-from crfnet_core.cameras import CameraSettings, offered_cameras
-from crfnet_core.errors import CRFNetError
-from crfnet_core.image_io.file_kinds import file_kind
-from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.posterior import Verdict
-from crfnet_core.types import Progress, show_progress
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.pipeline import (
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.pipeline import (
     anchored_exposure,
     estimate_frames,
     estimate_photographs,
@@ -25,8 +18,15 @@ from ocio.pipeline import (
     load_prior,
     response_lut,
 )
-from ocio.plates.frames import FrameSequence
-from ocio.report import offer_words, verdict_lines
+from crfnet.plates.frames import FrameSequence
+from crfnet.report import offer_words, verdict_lines
+from crfnet_core import ResponseEstimate
+from crfnet_core.errors import CRFNetError
+from crfnet_core.library import CameraSettings, offered_cameras
+from crfnet_core.photograph.image_io.file_kinds import file_kind
+from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
+from crfnet_core.posterior import Verdict
+from crfnet_core.types import Progress, show_progress
 
 from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged

@@ -6,11 +6,11 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ocio.configs.files import load_config
-from ocio.defaults import CONFIG_NAME
-from ocio.output_files import check_folder
-from ocio.plates.frames import FrameSequence
-from ocio.plates.linear import linear_targets
+from crfnet.configs.files import load_config
+from crfnet.defaults import CONFIG_NAME
+from crfnet.output_files import check_folder
+from crfnet.plates.frames import FrameSequence
+from crfnet.plates.linear import linear_targets
 
 from .errors import AddonError
 from .job import WITHOUT_FILES, ApplyMode, Job

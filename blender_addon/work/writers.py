@@ -9,16 +9,16 @@ from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
 
-from crfnet_core.metadata.color_tags import REC709, Primaries
+from crfnet.configs.installed import Installed, install
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.luts.lut1d import Lut1D
+from crfnet.options import OutputOptions, PlateOptions
+from crfnet.output_files import OutputFiles, plain_stem
+from crfnet.pipeline import all_or_none, export_luts
+from crfnet.plates.frames import FrameSequence
+from crfnet.plates.linear import linear_targets, linearize_plates
+from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, counted_from, show_progress
-from ocio.configs.installed import Installed, install
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.luts.lut1d import Lut1D
-from ocio.options import OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles, plain_stem
-from ocio.pipeline import all_or_none, export_luts
-from ocio.plates.frames import FrameSequence
-from ocio.plates.linear import linear_targets, linearize_plates
 
 from .encoding_check import is_said_encoded
 from .errors import AddonError

@@ -9,7 +9,7 @@ from typing import NamedTuple
 import numpy as np
 
 from crfnet_core.errors import CalibrationError
-from crfnet_core.photo import CodeArray
+from crfnet_core.photograph.photo import CodeArray
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
 #: Cells along each side of a block, and blocks along a picture's longer side, about.

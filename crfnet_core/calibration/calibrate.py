@@ -24,12 +24,12 @@ from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_ex
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
 from crfnet_core.calibration.uncertainty import Uncertainty, uncertainty_of
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import CalibrationError
-from crfnet_core.metadata import FileMetadata
-from crfnet_core.metadata.devices import Device, device_of
-from crfnet_core.metrics import estimation_error, linearization_error, scale_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.metadata.devices import Device, device_of
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.types import Float64Array, Progress
 
 #: By how much the cost of exact powers of two may exceed that of the labels as they are.
@@ -77,7 +77,7 @@ class Comparison:
     Parameters
     ----------
     estimation_error, linearization_error, shape_error, scale_error : float
-        See the functions of these names in `crfnet_core.metrics`; E_lin is that of the best exposed frame.
+        See the functions of these names in `crfnet_core.response.metrics`; E_lin is that of the best exposed frame.
     """
 
     estimation_error: float

@@ -12,10 +12,10 @@ from crfnet_core.calibration.exposures import LEAST_RANGE, ROUNDING, Exposures
 from crfnet_core.calibration.frames import LEAST_FRAMES, Frame
 from crfnet_core.calibration.measurement import Measurement
 from crfnet_core.errors import CalibrationError, beside_limits
-from crfnet_core.metadata import file_origin
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
 
 #: Stops between two neighbouring exposures beyond which hardly a surface is seen between black and white in both.

@@ -9,9 +9,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.posterior import ResponseBank
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float64Array
 
 #: log2 of the least and of the largest irradiance, white = 1, and steps to a stop of the table between them.

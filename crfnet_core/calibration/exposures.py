@@ -13,7 +13,7 @@ import numpy as np
 
 from crfnet_core.errors import CalibrationError
 from crfnet_core.files import read_bytes
-from crfnet_core.metadata.header_colors import header_attribute
+from crfnet_core.photograph.metadata.header_colors import header_attribute
 from crfnet_core.types import Float64Array
 
 #: Stops that the exposures of a stack have to span.

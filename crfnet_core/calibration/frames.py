@@ -12,9 +12,9 @@ import numpy as np
 from crfnet_core.calibration.alignment import LONGEST_SIDE, chain_of_shifts, common_area, rank_image
 from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import CalibrationError
-from crfnet_core.image_io import read_codes, read_metadata
-from crfnet_core.metadata import FileMetadata
-from crfnet_core.photo import CodeArray, CodeValues
+from crfnet_core.photograph.image_io import read_codes, read_metadata
+from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.photo import CodeArray, CodeValues
 from crfnet_core.types import Float64Array, Progress, show_progress
 
 #: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
@@ -76,7 +76,7 @@ def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> t
     Parameters
     ----------
     paths : sequence of Path
-        JPEG, HEIC, PNG, TIFF, DPX and other files: see `crfnet_core.image_io.read_photo`.
+        JPEG, HEIC, PNG, TIFF, DPX and other files: see `crfnet_core.photograph.image_io.read_photo`.
     progress : callable, optional
         Called with (done, total) after every frame.
 

@@ -13,7 +13,7 @@ from crfnet_core.calibration.frames import LEAST_FRAMES
 from crfnet_core.calibration.solver import StackFit, fit_stack
 from crfnet_core.calibration.start import best_known_response, rough_irradiance
 from crfnet_core.errors import CalibrationError, beside_limits
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import BoolArray, Float64Array
 
 #: Fits with the anchor corrected in between.

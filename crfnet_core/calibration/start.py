@@ -6,7 +6,7 @@ import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
 from crfnet_core.posterior import ResponseBank
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 
 #: Samples that the known responses are compared on, and the seed of their choice.

@@ -12,8 +12,8 @@ from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
 from crfnet_core.calibration.solver import TIME_DEVIATION
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
 from crfnet_core.types import Float64Array
 
 #: Draws from the posterior of the curve's weights, and their seed.
@@ -36,9 +36,9 @@ class Uncertainty:
     Parameters
     ----------
     shape : dict
-        Parts of the shape's: see `crfnet_core.metrics.shape_error`.
+        Parts of the shape's: see `crfnet_core.response.metrics.shape_error`.
     scale : dict
-        Parts of the scale's: see `crfnet_core.metrics.scale_error`.
+        Parts of the scale's: see `crfnet_core.response.metrics.scale_error`.
     """
 
     shape: dict[str, float]

@@ -9,13 +9,13 @@ from functools import partial
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
 from crfnet_core.network import ResponseNetwork, pooling
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition import Levels, refuse_tagged
 from crfnet_core.posterior import Evidence
-from crfnet_core.recognition import Levels, refuse_tagged
+from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, counted_from
-from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH, Window, cut_windows, select_windows
 
 #: Samples along each side of the thumbnails by which photographs of one scene are recognised.
 THUMBNAIL = 16
@@ -139,7 +139,7 @@ def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin 
         return as_told(file_origin(metadata or FileMetadata()), device)
     except ValueError:
         names = ", ".join(kind.name for kind in Device)
-        raise PhotoError(f"{device!r} is no device; give one of crfnet_core.metadata.Device: {names}") from None
+        raise PhotoError(f"{device!r} is no device; give one of Device: {names}") from None
 
 
 def _thumbnail(pixels: Pixels) -> Float64Array:

@@ -9,12 +9,13 @@ from collections.abc import Iterable, Sequence
 
 import numpy as np
 
-from crfnet_core.analysis import AnalyzedPhotograph, analyze_photographs
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PriorError
-from crfnet_core.metadata import Device, FileOrigin
+from crfnet_core.estimate.analysis import AnalyzedPhotograph, analyze_photographs
+from crfnet_core.estimate.result import ResponseEstimate, WindowEstimate
 from crfnet_core.network import ResponseNetwork, pooling
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.metadata import Device, FileOrigin
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition import Levels, Recognition, log_factor, recognize
 from crfnet_core.posterior import (
     Family,
     Posterior,
@@ -25,10 +26,9 @@ from crfnet_core.posterior import (
     metadata_factors,
     scene_similarities,
 )
-from crfnet_core.recognition import Levels, Recognition, log_factor, recognize
-from crfnet_core.response_estimate import ResponseEstimate, WindowEstimate
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
 from crfnet_core.types import Progress
-from crfnet_core.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
 
 __all__ = ["ResponseEstimate", "WindowEstimate", "editor_warnings", "estimate_of", "estimate_response"]
 
@@ -68,7 +68,7 @@ def estimate_response(
     bank : ResponseBank, optional
         The responses to choose from; by default the packaged ones.
     use_metadata : bool
-        Whether what the files say of their making counts: see `crfnet_core.metadata`.
+        Whether what the files say of their making counts: see `crfnet_core.photograph.metadata`.
     device : Device, optional
         What took them all, where somebody knows, in place of what the files say; UNKNOWN is a camera of another kind.
     windows : int

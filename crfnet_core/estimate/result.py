@@ -14,13 +14,13 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import EstimateError, one_line
-from crfnet_core.metadata import FileOrigin
-from crfnet_core.metrics import brightness_percent
+from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, LikelyKind, Verdict
-from crfnet_core.recognition import Recognition
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import brightness_percent
+from crfnet_core.statistics.windows import Window
 from crfnet_core.types import EqualByFields, Float64Array, plain_values
-from crfnet_core.windows import Window
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.
 SCHEMA_VERSION = 1
@@ -99,7 +99,7 @@ class ResponseEstimate(EqualByFields):
     uncertainty : float
         The expected E_est of this estimate.
     shape_uncertainty : float
-        Its expected shape error, in stops: see `crfnet_core.metrics.shape_error`.
+        Its expected shape error, in stops: see `crfnet_core.response.metrics.shape_error`.
     band : ndarray, float64, shape (2, 1024)
         Lower and upper end of the 90 % credible band around the response.
     families : dict
@@ -117,7 +117,7 @@ class ResponseEstimate(EqualByFields):
     photos : tuple of str
         File names of the photographs.
     recognition : Recognition, optional
-        What the photographs are if they are no pictures as a camera renders them: see `crfnet_core.recognition`.
+        What the photographs are if they are no camera photographs: see `crfnet_core.photograph.recognition`.
     camera : CameraAnswer, optional
         The stored camera whose response this is; None if it is estimated from the photographs alone.
     """

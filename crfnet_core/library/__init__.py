@@ -8,12 +8,12 @@
 - `matching`: the cameras that a photograph's metadata fit.
 """
 
-from crfnet_core.cameras.additions import Addition, add_measured, add_photographs, remove_photographs
-from crfnet_core.cameras.answer import camera_estimate, compared, differences, with_camera
-from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse
-from crfnet_core.cameras.documents import camera_document, read_calibration
-from crfnet_core.cameras.library import DATA_VARIABLE, CameraLibrary, find_camera
-from crfnet_core.cameras.matching import listed_cameras, matching_cameras, offered_cameras
+from crfnet_core.library.additions import Addition, add_measured, add_photographs, remove_photographs
+from crfnet_core.library.answer import camera_estimate, compared, differences, with_camera
+from crfnet_core.library.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse
+from crfnet_core.library.documents import camera_document, read_calibration
+from crfnet_core.library.library import DATA_VARIABLE, CameraLibrary, find_camera
+from crfnet_core.library.matching import listed_cameras, matching_cameras, offered_cameras
 
 __all__ = [
     "DATA_VARIABLE",

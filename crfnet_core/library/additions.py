@@ -6,20 +6,20 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crfnet_core.analysis import analyze_photographs
-from crfnet_core.cameras.camera import (
+from crfnet_core.errors import CameraError, PhotoError
+from crfnet_core.estimate.analysis import analyze_photographs
+from crfnet_core.estimate.estimate import estimate_of
+from crfnet_core.files import file_sha256
+from crfnet_core.library.camera import (
     Camera,
     CameraSettings,
     KeptPhotograph,
     MeasuredResponse,
     checked_name,
 )
-from crfnet_core.cameras.library import CameraLibrary
-from crfnet_core.errors import CameraError, PhotoError
-from crfnet_core.estimate import estimate_of
-from crfnet_core.files import file_sha256
-from crfnet_core.image_io import read_photo
+from crfnet_core.library.library import CameraLibrary
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.types import Progress, show_progress
 
 

@@ -6,14 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 
-from crfnet_core.cameras.camera import Camera, KeptPhotograph, MeasuredResponse
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import CameraError
-from crfnet_core.estimate import editor_warnings, estimate_of
-from crfnet_core.metrics import estimation_error, shape_error
+from crfnet_core.estimate.estimate import editor_warnings, estimate_of
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
+from crfnet_core.library.camera import Camera, KeptPhotograph, MeasuredResponse
 from crfnet_core.posterior import Prior, Verdict
-from crfnet_core.response import ResponseCurve
-from crfnet_core.response_estimate import CameraAnswer, ResponseEstimate
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import estimation_error, shape_error
 from crfnet_core.types import Float64Array
 
 #: Deviations of a normal distribution within which 90 % of it lies.

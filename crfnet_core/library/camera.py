@@ -7,11 +7,11 @@ from collections.abc import Collection, Iterable
 from dataclasses import dataclass, replace
 from functools import cached_property
 
-from crfnet_core.analysis import AnalyzedPhotograph
 from crfnet_core.errors import CameraError
-from crfnet_core.metadata import FileMetadata
-from crfnet_core.metadata.devices import camera_name
-from crfnet_core.response import ResponseCurve
+from crfnet_core.estimate.analysis import AnalyzedPhotograph
+from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.metadata.devices import camera_name
+from crfnet_core.response.curve import ResponseCurve
 
 #: Most characters of a camera's name.
 LONGEST_NAME = 100

@@ -9,16 +9,16 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.analysis import THUMBNAIL, AnalyzedPhotograph
-from crfnet_core.cameras.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse, checked_name
 from crfnet_core.errors import CameraError, CRFNetError, one_line
+from crfnet_core.estimate.analysis import THUMBNAIL, AnalyzedPhotograph
 from crfnet_core.files import read_json
-from crfnet_core.metadata import FileOrigin
+from crfnet_core.library.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse, checked_name
+from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.recognition import Levels
+from crfnet_core.photograph.recognition.levels import BINS
 from crfnet_core.posterior import UNUSUAL, Evidence
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from crfnet_core.recognition import Levels
-from crfnet_core.recognition.levels import BINS
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float64Array, plain_values
 
 #: The version of the document. Entries may be added to it; if one changes its meaning or goes, the version rises.

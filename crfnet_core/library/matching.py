@@ -6,12 +6,12 @@ import math
 from collections.abc import Collection
 from contextlib import suppress
 
-from crfnet_core.cameras.answer import compared
-from crfnet_core.cameras.camera import Camera, CameraSettings
-from crfnet_core.cameras.library import known_cameras
 from crfnet_core.errors import CameraError
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
+from crfnet_core.library.answer import compared
+from crfnet_core.library.camera import Camera, CameraSettings
+from crfnet_core.library.library import known_cameras
 from crfnet_core.posterior import Prior
-from crfnet_core.response_estimate import CameraAnswer, ResponseEstimate
 
 
 def matching_cameras(settings: CameraSettings) -> list[Camera]:

@@ -12,7 +12,7 @@ from typing import Any
 from crfnet_core.errors import ModelError
 from crfnet_core.files import atomic_write_text, read_bytes, read_json
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.statistics.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
 MODELS = Path(__file__).parents[1] / "models"

@@ -14,8 +14,8 @@ from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.statistics.layout import LENGTH
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from crfnet_core.windows import WINDOW_SIZE
 
 #: Shape of a row of each input, and of the outputs: location, factor and log-odds, once or twice.
 INPUT_SHAPES = {"windows": (WINDOW_SIZE, WINDOW_SIZE, 3), "statistics": (LENGTH,)}

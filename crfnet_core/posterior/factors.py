@@ -11,8 +11,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crfnet_core.metadata import Device, FileOrigin
-from crfnet_core.metadata.encodings import Encoding
+from crfnet_core.photograph.metadata import Device, FileOrigin
+from crfnet_core.photograph.metadata.encodings import Encoding
 from crfnet_core.posterior.families import Family
 
 #: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.

@@ -8,12 +8,12 @@ from functools import cached_property
 
 import numpy as np
 
-from crfnet_core.metrics import estimation_error
 from crfnet_core.posterior.evidence import Evidence
 from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.metrics import estimation_error
 from crfnet_core.types import EqualByFields, Float32Array, Float64Array
 
 #: The fraction of the posterior that the band holds at every irradiance.

@@ -8,10 +8,10 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.posterior.families import UNUSUAL, Family
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
 from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.

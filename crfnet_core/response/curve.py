@@ -158,7 +158,7 @@ class ResponseCurve(EqualByFields):
         """Return irradiance g(B) in [0, 1]; B is clipped to [0, 1], and NaN stays NaN.
 
         This is the exact inverse of `forward`. Our LUTs of it have the same values at the codes that they are exact on:
-        see `ocio.luts.lut1d.inverse_response_lut`.
+        see `crfnet.luts.lut1d.inverse_response_lut`.
 
         Parameters
         ----------

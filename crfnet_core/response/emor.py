@@ -9,14 +9,14 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
 from crfnet_core.types import EqualByFields, Float64Array
 
 #: Components of the basis, and so weights of an estimate (CRF-net paper, Sec. 3.1).
 COMPONENTS = 11
 
 #: The packaged basis.
-BASIS_FILE = Path(__file__).with_name("data") / "emor.npz"
+BASIS_FILE = Path(__file__).parents[1] / "data" / "emor.npz"
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,6 +21,6 @@ Source of (ii): Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single
 """
 
 from crfnet_core.statistics.layout import LENGTH, SHAPES, pack, unpack
-from crfnet_core.statistics.window import window_statistics
+from crfnet_core.statistics.window_statistics import window_statistics
 
 __all__ = ["LENGTH", "SHAPES", "pack", "unpack", "window_statistics"]

@@ -12,8 +12,8 @@ from functools import cache
 
 import numpy as np
 
-from crfnet_core.emor import COMPONENTS, EmorBasis
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from crfnet_core.statistics.sampling import CODES
 from crfnet_core.types import Float32Array
 

@@ -1,4 +1,4 @@
-"""The `crfnet` command: exit codes and error lines; `ocio.arguments` parses, `ocio.commands` works."""
+"""The `crfnet` command: exit codes and error lines; `crfnet.cli.arguments` parses, `crfnet.cli.commands` works."""
 
 from __future__ import annotations
 
@@ -9,10 +9,10 @@ from collections.abc import Sequence
 from contextlib import suppress
 from importlib import import_module
 
-from ocio.arguments.command_line import build_parser
-from ocio.arguments.parts import BAD_INPUT
-from ocio.interruption import interruptible
-from ocio.streams import complete_streams, own_stderr
+from .arguments.command_line import build_parser
+from .arguments.parts import BAD_INPUT
+from .interruption import interruptible
+from .streams import complete_streams, own_stderr
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -35,13 +35,13 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
-    """Run the module of the subcommand's name in `ocio.commands` and return the exit code."""
+    """Run the module of the subcommand's name in `crfnet.cli.commands` and return the exit code."""
     # Imported only now, because the core imports numpy and onnxruntime, for which --help must not wait.
     from crfnet_core.errors import CRFNetError
 
     try:
         "".join(argv).encode()  # refuses file names that are not valid Unicode
-        import_module(f"ocio.commands.{arguments.command}").run(arguments)
+        import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
         return _fail(problem)

@@ -14,9 +14,10 @@ from numpy.typing import NDArray
 from crfnet_core.errors import one_line
 from crfnet_core.files import atomic_write
 from crfnet_core.types import Float32Array
-from ocio.configs.reference_space import rec709_to_reference, steps_to_reference
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import Lut1D
+
+from ..errors import ConfigError
+from ..luts.lut1d import Lut1D
+from .reference_space import rec709_to_reference, steps_to_reference
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
 TOLERANCE = 1e-5

@@ -10,9 +10,10 @@ from dataclasses import asdict, dataclass, field
 from pathlib import Path
 
 from crfnet_core.files import atomic_write_text, file_sha256, read_json
-from ocio.configs.undo import as_before_on_failure
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
+
+from ..defaults import CONFIG_NAME
+from ..errors import ConfigError
+from .undo import as_before_on_failure
 
 #: The folder of our own beside a config called `CONFIG_NAME`, and the record in it.
 FOLDER, RECORD_NAME = "camera_response", "installed.json"

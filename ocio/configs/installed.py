@@ -13,8 +13,13 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.files import load_config, loaded_or_empty, write_config
-from ocio.configs.installation_record import (
+from ..defaults import CONFIG_NAME
+from ..errors import ConfigError
+from ..luts.lut1d import Lut1D
+from ..luts.spi1d import write_spi1d
+from ..output_files import check_config_folder, distinct_names, output_folder
+from .files import load_config, loaded_or_empty, write_config
+from .installation_record import (
     FOLDER,
     InstallationRecord,
     backed_up,
@@ -26,21 +31,16 @@ from ocio.configs.installation_record import (
     remove_record,
     write_record,
 )
-from ocio.configs.lut_folders import copied_lut_folders
-from ocio.configs.plate_color_space import (
+from .lut_folders import copied_lut_folders
+from .plate_color_space import (
     FAMILY,
     PlateColorSpace,
     add_plate_color_space,
     without_plate_color_space,
     without_plate_rules,
 )
-from ocio.configs.reference_space import lut_file_of
-from ocio.configs.undo import as_before_on_failure
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_config_folder, distinct_names, output_folder
+from .reference_space import lut_file_of
+from .undo import as_before_on_failure
 
 
 @dataclass(frozen=True)

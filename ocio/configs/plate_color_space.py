@@ -11,11 +11,12 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import one_line
-from crfnet_core.metadata.color_tags import REC709, Primaries, conversion_matrix
-from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules
-from ocio.configs.plate_views import add_plate_views, plate_views, remove_plate_views
-from ocio.configs.reference_space import linear_space_name, matrix_transform, rec709_to_reference
-from ocio.errors import ConfigError
+from crfnet_core.photograph.metadata.color_tags import REC709, Primaries, conversion_matrix
+
+from ..errors import ConfigError
+from .file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules
+from .plate_views import add_plate_views, plate_views, remove_plate_views
+from .reference_space import linear_space_name, matrix_transform, rec709_to_reference
 
 #: The family of every plate's colour space, by which an earlier version of it is recognised.
 FAMILY = "Camera Response"
@@ -39,7 +40,7 @@ class PlateColorSpace:
         OpenColorIO's name of the encoding.
     file_pattern : str or None
         The names of the plate's files with `*`, `?` and `#` for a number, for example "shot_plate01.#.png", for a file
-        rule: see `ocio.configs.file_rules.rule_regex`.
+        rule: see `crfnet.configs.file_rules.rule_regex`.
     exposure : float
         Stops added after the response. They stand in the config as a transform of their own, to be edited there.
     primaries : Primaries

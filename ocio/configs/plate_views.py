@@ -16,9 +16,10 @@ from collections.abc import Mapping, Sequence
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import one_line
-from crfnet_core.metadata.color_tags import REC709
-from ocio.configs.reference_space import matrix_transform, rec709_to_reference, steps_to_reference
-from ocio.errors import ConfigError
+from crfnet_core.photograph.metadata.color_tags import REC709
+
+from ..errors import ConfigError
+from .reference_space import matrix_transform, rec709_to_reference, steps_to_reference
 
 #: The names of the two views and view transforms of a plate's colour space.
 VIEW_NAMES = ("As photographed ({})", "As photographed with roll-off ({})")

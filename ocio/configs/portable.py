@@ -8,7 +8,7 @@ from importlib.resources import files
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.metadata.color_tags import (
+from crfnet_core.photograph.metadata.color_tags import (
     ADOBE_RGB,
     DISPLAY_P3,
     PROPHOTO,
@@ -17,10 +17,11 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
     conversion_matrix,
 )
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
-from ocio.configs.plate_views import add_plate_views
-from ocio.configs.reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
-from ocio.errors import ConfigError
+
+from ..errors import ConfigError
+from .plate_color_space import PlateColorSpace, add_plate_color_space
+from .plate_views import add_plate_views
+from .reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
 
 #: The packaged config without plates; in it, `MATRIX` stands for the matrix `REC709_TO_AP0`.
 TEMPLATE, MATRIX = "portable.ocio", "REC709_TO_AP0"
@@ -79,5 +80,5 @@ def _add_linear_space(config: OCIO.Config, primaries: Primaries) -> None:
 def _template() -> str:
     """Return the text of the packaged config, its matrix filled in as 4 x 4 numbers."""
     rows = [str([*row, 0])[1:-1] for row in REC709_TO_AP0]
-    text = files("ocio.configs").joinpath(TEMPLATE).read_text(encoding="utf-8")
+    text = files("crfnet.configs").joinpath(TEMPLATE).read_text(encoding="utf-8")
     return text.replace(MATRIX, f"[{', '.join(rows)}, 0, 0, 0, 1]")

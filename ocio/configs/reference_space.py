@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.metadata.color_tags import (
+from crfnet_core.photograph.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
     AP1,
@@ -16,7 +16,8 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
 )
 from crfnet_core.types import Float64Array
-from ocio.errors import ConfigError
+
+from ..errors import ConfigError
 
 #: Names and aliases of linear Rec.709 in common configs, the most specific first.
 LINEAR_REC709 = (

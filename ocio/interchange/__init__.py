@@ -7,5 +7,5 @@ pfstools       the .m files of pfshdrcalibrate
 dorf           the text of DoRF, the Database of Response Functions
 hugin          the five EMoR parameters of the images of a Hugin project
 other_luts     LUT formats that OpenColorIO reads: .csp, .3dl, .lut
-files          read or write any of these and the LUT formats of `ocio.luts`, by suffix
+files          read or write any of these and the LUT formats of `crfnet.luts`, by suffix
 """

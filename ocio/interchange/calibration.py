@@ -7,12 +7,13 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.response import nearest_increasing
+from crfnet_core.response.curve import nearest_increasing
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.interchange.response_file import ResponseFile, described
-from ocio.luts.lut1d import MAX_LENGTH, single_precision, strictly_increasing
-from ocio.luts.rgb_lut import AnyLut, lut_of_columns
+
+from ..errors import LutError
+from ..luts.lut1d import MAX_LENGTH, single_precision, strictly_increasing
+from ..luts.rgb_lut import AnyLut, lut_of_columns
+from .response_file import ResponseFile, described
 
 #: Codes of the files that are written, as of pictures of 8 bits.
 CODES = 256

@@ -16,13 +16,14 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.files import atomic_write_text
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.interchange.response_file import ResponseFile, from_curve
-from ocio.luts.response import brightness_samples
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import LutText
+
+from ..errors import LutError
+from ..luts.response import brightness_samples
+from ..luts.rgb_lut import AnyLut
+from ..luts.text import LutText
+from .response_file import ResponseFile, from_curve
 
 _HEADING = re.compile(r"([IEB])\s*=")
 

@@ -5,15 +5,15 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ocio.errors import LutError
-from ocio.interchange.dorf import read_dorf, write_dorf
-from ocio.interchange.hugin import read_hugin, write_hugin
-from ocio.interchange.opencv import read_opencv, write_opencv
-from ocio.interchange.other_luts import read_other_lut
-from ocio.interchange.pfstools import read_pfstools, write_pfstools
-from ocio.interchange.response_file import ResponseFile, described, from_lut
-from ocio.luts.files import WRITERS, read_lut, write_lut
-from ocio.luts.rgb_lut import AnyLut
+from ..errors import LutError
+from ..luts.files import WRITERS, read_lut, write_lut
+from ..luts.rgb_lut import AnyLut
+from .dorf import read_dorf, write_dorf
+from .hugin import read_hugin, write_hugin
+from .opencv import read_opencv, write_opencv
+from .other_luts import read_other_lut
+from .pfstools import read_pfstools, write_pfstools
+from .response_file import ResponseFile, described, from_lut
 
 #: Suffixes of files that may hold several responses; the reader takes the name of one.
 SEVERAL: dict[str, Callable[..., ResponseFile]] = {".txt": read_dorf, ".pto": read_hugin}

@@ -17,14 +17,15 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.files import atomic_write
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.interchange.response_file import ResponseFile, from_curve
-from ocio.luts.response import brightness_samples
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import LutText
+
+from ..errors import LutError
+from ..luts.response import brightness_samples
+from ..luts.rgb_lut import AnyLut
+from ..luts.text import LutText
+from .response_file import ResponseFile, from_curve
 
 #: Hugin's mean, less our mean, and its five components, as weights of our eleven: emor.txt projected on our basis.
 HUGIN_BASIS = (

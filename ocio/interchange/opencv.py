@@ -18,11 +18,12 @@ import numpy as np
 
 from crfnet_core.files import atomic_write, atomic_write_text, read_bytes
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.interchange.calibration import CODES, calibrated_response, codes_table
-from ocio.interchange.response_file import ResponseFile
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import MAX_FILE_SIZE, LutText
+
+from ..errors import LutError
+from ..luts.rgb_lut import AnyLut
+from ..luts.text import MAX_FILE_SIZE, LutText
+from .calibration import CODES, calibrated_response, codes_table
+from .response_file import ResponseFile
 
 _YAML = """%YAML:1.0
 ---

@@ -12,12 +12,13 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.interchange.response_file import ResponseFile, described, from_lut
-from ocio.luts.agreement import opencolorio_steps
-from ocio.luts.lut1d import MAX_LENGTH, strictly_increasing
-from ocio.luts.rgb_lut import lut_of_columns
-from ocio.luts.text import LutText
+
+from ..errors import LutError
+from ..luts.agreement import opencolorio_steps
+from ..luts.lut1d import MAX_LENGTH, strictly_increasing
+from ..luts.rgb_lut import lut_of_columns
+from ..luts.text import LutText
+from .response_file import ResponseFile, described, from_lut
 
 #: What OpenColorIO calls the steps of a file that keep the channels apart.
 _PER_CHANNEL = (OCIO.Lut1DTransform, OCIO.RangeTransform)

@@ -9,13 +9,14 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.errors import CurveError
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float64Array
-from ocio.defaults import LUT_LENGTH
-from ocio.errors import LutError
-from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from ocio.luts.response import is_forward
-from ocio.luts.rgb_lut import AnyLut, lut_of_channels
+
+from ..defaults import LUT_LENGTH
+from ..errors import LutError
+from ..luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from ..luts.response import is_forward
+from ..luts.rgb_lut import AnyLut, lut_of_channels
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import one_line
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.luts.rgb_lut import AnyLut
+
+from ..errors import LutError
+from .rgb_lut import AnyLut
 
 #: Largest difference of an entry, relative to it, and of an end of the domain, relative to the domain: of float32.
 TOLERANCE = 1e-6

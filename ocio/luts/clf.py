@@ -15,9 +15,10 @@ from pathlib import Path
 from xml.etree import ElementTree
 
 from crfnet_core.files import atomic_write_text
-from ocio.errors import LutError
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import LutText, table_rows
+
+from ..errors import LutError
+from .rgb_lut import AnyLut
+from .text import LutText, table_rows
 
 #: The factor of the values in a file, by the bit depth that the file declares.
 DEPTH_SCALES = {"8i": 255, "10i": 1023, "12i": 4095, "16i": 65535, "16f": 1, "32f": 1}

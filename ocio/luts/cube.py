@@ -8,9 +8,10 @@ from __future__ import annotations
 from pathlib import Path
 
 from crfnet_core.files import atomic_write_text
-from ocio.errors import LutError
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.text import LutText, table_rows
+
+from ..errors import LutError
+from .rgb_lut import AnyLut
+from .text import LutText, table_rows
 
 
 def write_cube(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:

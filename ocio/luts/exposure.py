@@ -5,9 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.response import ResponseCurve
-from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ocio.luts.rgb_lut import AnyLut
+from crfnet_core.response.curve import ResponseCurve
+
+from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from .rgb_lut import AnyLut
 
 
 def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from ocio.errors import LutError
-from ocio.luts.agreement import check_agreement
-from ocio.luts.clf import read_clf, write_clf
-from ocio.luts.cube import read_cube, write_cube
-from ocio.luts.rgb_lut import AnyLut
-from ocio.luts.spi1d import read_spi1d, write_spi1d
+from ..errors import LutError
+from .agreement import check_agreement
+from .clf import read_clf, write_clf
+from .cube import read_cube, write_cube
+from .rgb_lut import AnyLut
+from .spi1d import read_spi1d, write_spi1d
 
 #: The reader of each format, by suffix.
 READERS: dict[str, Callable[[str | Path], AnyLut]] = {".spi1d": read_spi1d, ".cube": read_cube, ".clf": read_clf}

@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ocio.luts.lut1d import Lut1D, strictly_increasing
-from ocio.luts.rgb_lut import AnyLut, lut_of_channels
+from .lut1d import Lut1D, strictly_increasing
+from .rgb_lut import AnyLut, lut_of_channels
 
 #: How the comment begins that says that a LUT is an inverse response.
 INVERSE_COMMENT = "Inverse camera response"

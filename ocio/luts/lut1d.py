@@ -9,10 +9,11 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.response import BLOCK, ResponseCurve
+from crfnet_core.response.curve import BLOCK, ResponseCurve
 from crfnet_core.types import EqualByFields, Float64Array
-from ocio.defaults import LUT_LENGTH
-from ocio.errors import LutError
+
+from ..defaults import LUT_LENGTH
+from ..errors import LutError
 
 #: Largest number of entries that every format and host accepts.
 MAX_LENGTH = 65536

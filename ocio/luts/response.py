@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import numpy as np
 
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.rgb_lut import AnyLut, RgbLut1D
+
+from ..errors import LutError
+from .lut1d import Lut1D
+from .rgb_lut import AnyLut, RgbLut1D
 
 #: Largest irradiance of brightness 0, as a part of that of brightness 1.
 MOST_BLACK = 0.01

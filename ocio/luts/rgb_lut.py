@@ -10,8 +10,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.types import Float64Array
-from ocio.errors import LutError
-from ocio.luts.lut1d import Lut1D, clean_comments, table_identity
+
+from ..errors import LutError
+from .lut1d import Lut1D, clean_comments, table_identity
 
 
 @dataclass(frozen=True)

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.files import read_bytes
-from ocio.errors import LutError
-from ocio.luts.lut1d import first_fault, single_precision
-from ocio.luts.rgb_lut import AnyLut, lut_of_columns
+
+from ..errors import LutError
+from .lut1d import first_fault, single_precision
+from .rgb_lut import AnyLut, lut_of_columns
 
 #: Size in bytes of the largest LUT file that is read.
 MAX_FILE_SIZE = 64 * 1024 * 1024

@@ -12,9 +12,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.photo import CodeArray
+from crfnet_core.photograph.photo import CodeArray
 from crfnet_core.types import Float32Array
-from ocio.movies.color import Coding
+
+from .color import Coding
 
 if TYPE_CHECKING:
     from av import VideoFrame

@@ -6,9 +6,9 @@ from collections import deque
 from collections.abc import Iterable, Iterator
 from typing import TYPE_CHECKING
 
-from ocio.movies.index import FrameIndex
-from ocio.movies.library import opened
-from ocio.movies.stream import MovieStream
+from .index import FrameIndex
+from .library import opened
+from .stream import MovieStream
 
 if TYPE_CHECKING:
     from av import VideoFrame

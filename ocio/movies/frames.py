@@ -10,15 +10,16 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from crfnet_core.photo import Photo
-from ocio.errors import PlateError
-from ocio.movies.conversion import alpha_of, rgb_codes, upright
-from ocio.movies.decoding import decoded
-from ocio.movies.header import frame_header, movie_metadata
-from ocio.movies.library import ffmpeg_line
-from ocio.movies.stream import MovieStream, read_stream
-from ocio.plates.frame_files import EncodedFrame, FrameLoader
-from ocio.plates.frame_numbers import format_frames, parse_frames
+from crfnet_core.photograph.photo import Photo
+
+from ..errors import PlateError
+from ..plates.frame_files import EncodedFrame, FrameLoader
+from ..plates.frame_numbers import format_frames, parse_frames
+from .conversion import alpha_of, rgb_codes, upright
+from .decoding import decoded
+from .header import frame_header, movie_metadata
+from .library import ffmpeg_line
+from .stream import MovieStream, read_stream
 
 if TYPE_CHECKING:
     from av import VideoFrame

@@ -6,8 +6,9 @@ from typing import Any
 
 import OpenImageIO as oiio
 
-from crfnet_core.metadata.file_metadata import LONGEST_TEXT, FileMetadata
-from ocio.movies.stream import MovieStream
+from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
+
+from .stream import MovieStream
 
 #: What a movie's frames have as `FileMetadata.file_format`.
 FILE_FORMAT = "movie"

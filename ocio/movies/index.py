@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-from ocio.errors import PlateError
+from ..errors import PlateError
 
 if TYPE_CHECKING:
     from av.container import InputContainer

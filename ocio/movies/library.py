@@ -8,8 +8,9 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from crfnet_core.image_io.file_kinds import AVIF_BRANDS, HEIC_BRANDS
-from ocio.errors import PlateError
+from crfnet_core.photograph.image_io.file_kinds import AVIF_BRANDS, HEIC_BRANDS
+
+from ..errors import PlateError
 
 if TYPE_CHECKING:
     from av.container import InputContainer

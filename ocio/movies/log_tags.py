@@ -15,9 +15,9 @@ import re
 from collections.abc import Iterator, Mapping
 from pathlib import Path
 
-from ocio.movies.library import QUICKTIME_BOXES
+from .library import QUICKTIME_BOXES
 
-#: Texts in a movie, outside of its pictures, or beside it -> the curve, as `crfnet_core.recognition` names it.
+#: Texts in a movie, outside of its pictures, or beside it -> the log curve that they name.
 TEXTS = {
     rb"com\.apple\.rec2020\.apple-log": "Apple Log",
     rb"com\.apple\.apple-wide-gamut\.apple-log": "Apple Log 2",

@@ -7,10 +7,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.types import Float32Array
-from ocio.defaults import FRAMES_ANALYZED
-from ocio.movies.frames import MovieFrames
+
+from ..defaults import FRAMES_ANALYZED
+from .frames import MovieFrames
 
 #: Where in each part of the movie a frame is looked for, in turn.
 PLACES = (0.5, 0.2, 0.8)

@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from pathlib import Path
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.photo import Photo
-from ocio.movies.frames import MovieFrames
-from ocio.movies.library import is_movie
-from ocio.movies.selection import chosen_photos
-from ocio.movies.stream import MovieStream
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.photo import Photo
+
+from ..plates.frames import FrameSequence, find_frames, sample_frames
+from .frames import MovieFrames
+from .library import is_movie
+from .selection import chosen_photos
+from .stream import MovieStream
 
 #: Frames of a movie, the files of a sequence, or a single file: each a `FrameSource`.
 PlateSource = FrameSequence | MovieFrames

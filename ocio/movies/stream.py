@@ -10,16 +10,17 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from crfnet_core.image_io import MAX_PIXELS
-from crfnet_core.metadata.cicp import cicp_tags
-from crfnet_core.metadata.color_tags import ColorTags
-from ocio.errors import PlateError
-from ocio.movies.color import Coding
-from ocio.movies.conversion import bit_depth
-from ocio.movies.index import FrameIndex, read_index
-from ocio.movies.library import ffmpeg_line, opened, undecodable
-from ocio.movies.log_tags import log_curve
-from ocio.movies.timecode import Timecode
+from crfnet_core.photograph.image_io import MAX_PIXELS
+from crfnet_core.photograph.metadata.cicp import cicp_tags
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+
+from ..errors import PlateError
+from .color import Coding
+from .conversion import bit_depth
+from .index import FrameIndex, read_index
+from .library import ffmpeg_line, opened, undecodable
+from .log_tags import log_curve
+from .timecode import Timecode
 
 if TYPE_CHECKING:
     from av import VideoFrame

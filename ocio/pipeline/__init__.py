@@ -14,25 +14,25 @@ delivery   what is made of one LUT: the linear frames of a sequence, or LUT file
 
 Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
 called with (done, total); whatever it raises ends the step, which first removes its unfinished files. To put a colour
-space into the config that a program reads at its start, see `ocio.configs.installed`.
+space into the config that a program reads at its start, see `crfnet.configs.installed`.
 """
 
-from ocio.luts.exposure import anchored_exposure
-from ocio.pipeline.calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
-from ocio.pipeline.delivery import all_or_none, export_luts
-from ocio.pipeline.each import estimate_each, plan_each
-from ocio.pipeline.each_linear import linearize_each, plan_each_linear
-from ocio.pipeline.estimates import (
+from ..luts.exposure import anchored_exposure
+from .calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
+from .delivery import all_or_none, export_luts
+from .each import estimate_each, plan_each
+from .each_linear import linearize_each, plan_each_linear
+from .estimates import (
     PhotographEstimate,
     estimate_frames,
     estimate_photographs,
     response_lut,
     sampled_photographs,
 )
-from ocio.pipeline.folders import OutputPlan, plan_outputs, write_outputs
-from ocio.pipeline.loading import load_camera_response, load_network, load_prior, model_label
-from ocio.pipeline.manifest import PhotographRecord, check_records
-from ocio.pipeline.photographs import find_photographs
+from .folders import OutputPlan, plan_outputs, write_outputs
+from .loading import load_camera_response, load_network, load_prior, model_label
+from .manifest import PhotographRecord, check_records
+from .photographs import find_photographs
 
 __all__ = [
     "CalibrationPlan",

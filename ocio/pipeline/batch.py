@@ -14,14 +14,15 @@ from crfnet_core.errors import CRFNetError, PhotoError, one_line
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress, cores, show_progress
-from ocio.errors import PlateError
-from ocio.options import EstimateOptions, PlateOptions
-from ocio.output_files import check_targets, plain_stem
-from ocio.pipeline.estimates import response_lut
-from ocio.pipeline.loading import load_camera_response, load_network, load_prior
-from ocio.pipeline.manifest import RESPONSE, Manifest, PhotographRecord
-from ocio.pipeline.photographs import check_distinct, fault, is_folder
-from ocio.pipeline.workers import worker_pool
+
+from ..errors import PlateError
+from ..options import EstimateOptions, PlateOptions
+from ..output_files import check_targets, plain_stem
+from .estimates import response_lut
+from .loading import load_camera_response, load_network, load_prior
+from .manifest import RESPONSE, Manifest, PhotographRecord
+from .photographs import check_distinct, fault, is_folder
+from .workers import worker_pool
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -80,7 +81,7 @@ def check_tasks(out: Path, tasks: Sequence[Task], *, shared: Sequence[Path] = ()
     Raises
     ------
     PlateError
-        See `check_distinct` and `ocio.output_files.check_targets`; existing files may be replaced.
+        See `check_distinct` and `crfnet.output_files.check_targets`; existing files may be replaced.
     """
     pairs = [(target, task.photo) for task in tasks if not fault(task.photo) for target in task.targets]
     check_distinct(pairs, remedy="give them to two runs, each with its own --out")

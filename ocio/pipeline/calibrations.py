@@ -12,19 +12,20 @@ import PyOpenColorIO as OCIO
 from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CalibrationError, CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
-from crfnet_core.response import ResponseCurve
-from ocio.configs.files import write_config
-from ocio.configs.portable import portable_config
-from ocio.errors import PlateError
-from ocio.interchange.files import read_response
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.response import response_of_lut
-from ocio.options import OutputOptions
-from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.folders import EarlierRun
-from ocio.report import calibration_document, calibration_provenance
-from ocio.staging import staged_files
+from crfnet_core.response.curve import ResponseCurve
+
+from ..configs.files import write_config
+from ..configs.portable import portable_config
+from ..errors import PlateError
+from ..interchange.files import read_response
+from ..luts.files import write_lut
+from ..luts.lut1d import inverse_response_lut
+from ..luts.response import response_of_lut
+from ..options import OutputOptions
+from ..output_files import OutputFiles, check_outputs, output_folder
+from ..report import calibration_document, calibration_provenance
+from ..staging import staged_files
+from .folders import EarlierRun
 
 
 @dataclass(frozen=True, eq=False)
@@ -131,7 +132,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
     CalibrationError
         If the document cannot be read or holds no response.
     CRFNetError
-        If another file holds none: see `ocio.interchange.files.read_response`.
+        If another file holds none: see `crfnet.interchange.files.read_response`.
     """
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)
@@ -148,6 +149,6 @@ def response_to_compare(path: Path) -> ResponseCurve:
 
 def _write_sheet(path: Path, calibration: Calibration) -> None:
     """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
-    from ocio.calibration_sheet import draw_calibration
+    from ..report.calibration_sheet import draw_calibration
 
     draw_calibration(path, calibration)

@@ -7,14 +7,15 @@ from contextlib import ExitStack, contextmanager
 from pathlib import Path
 
 from crfnet_core.files import check_target
-from ocio.configs.files import write_config
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.errors import PlateError
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D
-from ocio.output_files import OutputFiles, check_config_folder, check_folder, output_folder
-from ocio.staging import staged_files
+
+from ..configs.files import write_config
+from ..configs.plate_color_space import PlateColorSpace
+from ..configs.portable import portable_config
+from ..errors import PlateError
+from ..luts.files import write_lut
+from ..luts.lut1d import Lut1D
+from ..output_files import OutputFiles, check_config_folder, check_folder, output_folder
+from ..staging import staged_files
 
 
 def export_luts(files: OutputFiles, space: PlateColorSpace, lut: Lut1D, *, overwrite: bool = False) -> tuple[Path, ...]:

@@ -9,22 +9,23 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.types import Progress
-from ocio.configs.files import write_config
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.defaults import ESTIMATES
-from ocio.errors import LutError, PlateError
-from ocio.luts.files import read_lut
-from ocio.options import EstimateOptions, OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles, output_folder
-from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
-from ocio.pipeline.estimates import estimate_photographs
-from ocio.pipeline.folders import estimated_light, left_files, with_light, write_estimate
-from ocio.pipeline.loading import load_camera
-from ocio.pipeline.manifest import Manifest, PhotographRecord
-from ocio.pipeline.photographs import without_outputs
-from ocio.plates.linear_space import linear_space
-from ocio.staging import staged_files
+
+from ..configs.files import write_config
+from ..configs.plate_color_space import PlateColorSpace
+from ..configs.portable import portable_config
+from ..defaults import ESTIMATES
+from ..errors import LutError, PlateError
+from ..luts.files import read_lut
+from ..options import EstimateOptions, OutputOptions, PlateOptions
+from ..output_files import OutputFiles, output_folder
+from ..plates.linear_space import linear_space
+from ..staging import staged_files
+from .batch import Task, check_tasks, network_and_prior, run_tasks
+from .estimates import estimate_photographs
+from .folders import estimated_light, left_files, with_light, write_estimate
+from .loading import load_camera
+from .manifest import Manifest, PhotographRecord
+from .photographs import without_outputs
 
 #: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
 #: build it grows with the square.
@@ -121,7 +122,7 @@ def estimate_each(
     tasks : sequence of EstimateTask
         As `plan_each` returns them; at least one.
     workers, scheduler, progress
-        See `ocio.pipeline.batch.run_tasks`.
+        See `crfnet.pipeline.batch.run_tasks`.
 
     Raises
     ------

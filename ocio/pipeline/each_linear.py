@@ -7,22 +7,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.types import Progress
-from ocio.defaults import PLATES
-from ocio.errors import PlateError
-from ocio.interchange.files import read_response
-from ocio.luts.rgb_lut import AnyLut
-from ocio.movies.library import is_movie
-from ocio.options import EstimateOptions, PlateOptions
-from ocio.output_files import output_folder, plain_stem
-from ocio.pipeline.batch import Task, check_tasks, network_and_prior, run_tasks
-from ocio.pipeline.estimates import estimate_frames, response_lut
-from ocio.pipeline.loading import load_camera_response
-from ocio.pipeline.manifest import PhotographRecord
-from ocio.pipeline.photographs import without_outputs
-from ocio.plates.frames import FrameSequence
-from ocio.plates.linear import linearize_plates
+
+from ..defaults import PLATES
+from ..errors import PlateError
+from ..interchange.files import read_response
+from ..luts.rgb_lut import AnyLut
+from ..movies.library import is_movie
+from ..options import EstimateOptions, PlateOptions
+from ..output_files import output_folder, plain_stem
+from ..plates.frames import FrameSequence
+from ..plates.linear import linearize_plates
+from .batch import Task, check_tasks, network_and_prior, run_tasks
+from .estimates import estimate_frames, response_lut
+from .loading import load_camera_response
+from .manifest import PhotographRecord
+from .photographs import without_outputs
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -65,7 +66,7 @@ def plan_each_linear(
     out : Path
         The folder to write to; it need not exist yet.
     photographs : mapping of Path to Path
-        As `ocio.pipeline.photographs.find_photographs` returns them. Those in `out` itself are left out, if a folder
+        As `crfnet.pipeline.photographs.find_photographs` returns them. Those in `out` itself are left out, if a folder
         around it was searched.
     options, plates, lut
         See `LinearTask`.
@@ -110,7 +111,7 @@ def linearize_each(
     tasks : sequence of LinearTask
         As `plan_each_linear` returns them; at least one.
     workers, scheduler, progress
-        See `ocio.pipeline.batch.run_tasks`.
+        See `crfnet.pipeline.batch.run_tasks`.
 
     Raises
     ------

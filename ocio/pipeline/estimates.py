@@ -7,26 +7,27 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from crfnet_core.cameras import CameraSettings, offered_cameras, with_camera
-from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.metadata import Device
-from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.library import CameraSettings, offered_cameras, with_camera
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.metadata import Device
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior
-from crfnet_core.response_estimate import CameraAnswer
 from crfnet_core.types import Float32Array, Progress
-from ocio.defaults import LUT_LENGTH
-from ocio.errors import PlateError
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.movies.library import is_movie
-from ocio.movies.source import PlateSource, file_source, movie_of, photographs_of
-from ocio.options import EstimateOptions
-from ocio.pipeline.loading import load_camera
-from ocio.pipeline.photographs import each_once, is_folder
-from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.frames import find_frames, sample_frames
-from ocio.report import PhotoFacts, provenance
+
+from ..defaults import LUT_LENGTH
+from ..errors import PlateError
+from ..luts.lut1d import Lut1D, inverse_response_lut
+from ..movies.library import is_movie
+from ..movies.source import PlateSource, file_source, movie_of, photographs_of
+from ..options import EstimateOptions
+from ..plates.frame_pattern import FramePattern
+from ..plates.frames import find_frames, sample_frames
+from ..report import PhotoFacts, provenance
+from .loading import load_camera
+from .photographs import each_once, is_folder
 
 #: Longer side in pixels of the photograph as the sheet shows it.
 PREVIEW_SIDE = 960
@@ -53,7 +54,7 @@ class PhotographEstimate:
     plates : tuple of PlateSource
         For each of `paths`, what becomes its linear plate: the photograph, or the first frame of the movie analysed.
     alphas : tuple of str
-        How the colours of each of `plates` are stored beside alpha: see `crfnet_core.metadata.FileMetadata.alpha`.
+        How the colours of each of `plates` are stored beside alpha: see `FileMetadata.alpha`.
     offers : tuple of CameraAnswer
         Stored cameras of the first photograph's make and model, if none was asked for.
     """
@@ -133,7 +134,7 @@ def estimate_photographs(
     ----------
     paths : sequence of Path
         Photographs of one camera with the same settings; at least one. Of a movie, some frames are taken: see
-        `ocio.movies.selection.chosen_photos`.
+        `crfnet.movies.selection.chosen_photos`.
     network : ResponseNetwork
         See `load_network`.
     prior : Prior
@@ -141,7 +142,7 @@ def estimate_photographs(
     options : EstimateOptions
         Windows, seed, and whether metadata counts.
     frames : str or None
-        The frames of a movie to choose from, as in `ocio.plates.frame_numbers.parse_frames`; all by default.
+        The frames of a movie to choose from, as in `crfnet.plates.frame_numbers.parse_frames`; all by default.
     progress : callable or None
         Called with (done, total) after every window.
 
@@ -220,7 +221,7 @@ def estimate_frames(
     Parameters
     ----------
     sequence : PlateSource
-        The frames, or a single file, as `ocio.movies.source.find_source` returns them.
+        The frames, or a single file, as `crfnet.movies.source.find_source` returns them.
     network : ResponseNetwork
         See `load_network`.
     prior : Prior

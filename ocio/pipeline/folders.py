@@ -10,24 +10,25 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.files import atomic_write_text, json_text
-from crfnet_core.metadata.color_tags import REC709
-from ocio.configs.files import loaded_or_empty, write_config
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.configs.studio.plates import plates_in_config
-from ocio.errors import PlateError
-from ocio.luts.files import write_lut
-from ocio.luts.forward import forward_lut
-from ocio.options import OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles, check_outputs, output_folder
-from ocio.pipeline.estimates import PhotographEstimate, response_lut
-from ocio.pipeline.photographs import check_distinct
-from ocio.plates.light import PlateLight
-from ocio.plates.linear import linearize_plates
-from ocio.plates.linear_space import LinearSpace
-from ocio.plates.primaries import PlatePrimaries, common_primaries
-from ocio.report import estimate_document
-from ocio.staging import staged_files
+from crfnet_core.photograph.metadata.color_tags import REC709
+
+from ..configs.files import loaded_or_empty, write_config
+from ..configs.plate_color_space import PlateColorSpace
+from ..configs.portable import portable_config
+from ..configs.studio.plates import plates_in_config
+from ..errors import PlateError
+from ..luts.files import write_lut
+from ..luts.forward import forward_lut
+from ..options import OutputOptions, PlateOptions
+from ..output_files import OutputFiles, check_outputs, output_folder
+from ..plates.light import PlateLight
+from ..plates.linear import linearize_plates
+from ..plates.linear_space import LinearSpace
+from ..plates.primaries import PlatePrimaries, common_primaries
+from ..report import estimate_document
+from ..staging import staged_files
+from .estimates import PhotographEstimate, response_lut
+from .photographs import check_distinct
 
 
 @dataclass(frozen=True)
@@ -209,7 +210,7 @@ def write_estimate(
     Parameters
     ----------
     files : OutputFiles
-        Their names; none of them exists, as in a folder of `ocio.staging.staged_files`.
+        Their names; none of them exists, as in a folder of `crfnet.staging.staged_files`.
     estimated : PhotographEstimate
         The estimate.
     light : PlateLight
@@ -249,6 +250,6 @@ def _write_linear(files: OutputFiles, estimated: PhotographEstimate, light: Plat
 
 def _write_sheet(path: Path, estimated: PhotographEstimate) -> None:
     """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only for it."""
-    from ocio.sheet import draw_sheet
+    from ..report.sheet import draw_sheet
 
     draw_sheet(path, estimated.preview, estimated.estimate, stride=estimated.stride)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crfnet_core.cameras import Camera, camera_estimate, find_camera
-from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.library import Camera, camera_estimate, find_camera
 from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder
 from crfnet_core.posterior import Prior
-from ocio.options import EstimateOptions
+
+from ..options import EstimateOptions
 
 
 def load_network(options: EstimateOptions) -> ResponseNetwork:

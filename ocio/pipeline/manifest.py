@@ -11,15 +11,16 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text, parse_json
-from crfnet_core.metadata.color_tags import Primaries
-from ocio.errors import PlateError
-from ocio.plates.light import PlateLight
-from ocio.plates.primaries import PlatePrimaries
-from ocio.report import result_line
+from crfnet_core.photograph.metadata.color_tags import Primaries
 
-#: Settings that are called otherwise than in `ocio.options` -> the options that people give.
+from ..errors import PlateError
+from ..plates.light import PlateLight
+from ..plates.primaries import PlatePrimaries
+from ..report import result_line
+
+#: Settings that are called otherwise than in `crfnet.options` -> the options that people give.
 OPTIONS = {"device": "--taken-with", "gray": "--exposure", "lut_length": "--length"}
 
 #: The setting that says which response the LUT, or the stored camera, of a run holds; absent in earlier manifests.

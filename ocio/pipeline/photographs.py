@@ -8,9 +8,10 @@ from functools import lru_cache
 from pathlib import Path
 
 from crfnet_core.files import read_json
-from crfnet_core.image_io import PHOTOGRAPH_SUFFIXES
-from ocio.errors import PlateError
-from ocio.output_files import SHEET_ENDING
+from crfnet_core.photograph.image_io import PHOTOGRAPH_SUFFIXES
+
+from ..errors import PlateError
+from ..output_files import SHEET_ENDING
 
 
 def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
@@ -22,7 +23,7 @@ def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
         Files, and folders that are searched with all their subfolders for `PHOTOGRAPH_SUFFIXES`, except names that
         begin with a dot and the sheets of earlier runs. What belongs to a photograph in a subfolder goes into a
         subfolder of the same name. A subfolder that cannot be read stands among the photographs:
-        `ocio.pipeline.batch.run_tasks` records why.
+        `crfnet.pipeline.batch.run_tasks` records why.
 
     Raises
     ------

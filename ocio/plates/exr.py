@@ -10,8 +10,9 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from crfnet_core.image_io import first_line, oiio_message
-from ocio.errors import PlateError
+from crfnet_core.photograph.image_io import first_line, oiio_message
+
+from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
 KEPT_METADATA = (

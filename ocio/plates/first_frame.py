@@ -7,7 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
-from ocio.plates.frame_files import EncodedFrame, FrameLoader, FrameSource
+
+from .frame_files import EncodedFrame, FrameLoader, FrameSource
 
 
 @dataclass(frozen=True, eq=False)

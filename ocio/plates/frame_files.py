@@ -12,11 +12,12 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from crfnet_core.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
-from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.metadata.header_colors import header_color_tags
+from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.header_colors import header_color_tags
 from crfnet_core.types import Float32Array
-from ocio.errors import PlateError
+
+from ..errors import PlateError
 
 #: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
 UNTAGGED = ("", "unknown", "data")

@@ -10,7 +10,7 @@ from collections.abc import Collection, Iterable, Sequence
 from operator import index
 from typing import Any
 
-from ocio.errors import PlateError
+from ..errors import PlateError
 
 #: Frames that a specification, or a sequence including its gaps, may span; more is taken for a mistake.
 MAX_FRAMES = 1_000_000

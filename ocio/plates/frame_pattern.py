@@ -10,7 +10,7 @@ import re
 from dataclasses import dataclass
 from pathlib import Path
 
-from ocio.errors import PlateError
+from ..errors import PlateError
 
 _END = r"--?[0-9]{1,9}(?:x[0-9]{1,9})?"
 

@@ -11,11 +11,11 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ocio.defaults import FRAMES_ANALYZED
-from ocio.errors import PlateError
-from ocio.plates.frame_files import FrameLoader, read_frame
-from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
-from ocio.plates.frame_pattern import FramePattern, listed
+from ..defaults import FRAMES_ANALYZED
+from ..errors import PlateError
+from .frame_files import FrameLoader, read_frame
+from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
+from .frame_pattern import FramePattern, listed
 
 
 @dataclass(frozen=True)

@@ -9,14 +9,15 @@ from typing import Any
 
 import OpenImageIO as oiio
 
-from crfnet_core.image_io import oiio_message
-from crfnet_core.metadata.color_tags import ColorTags
-from ocio.errors import PlateError
-from ocio.luts.exposure import anchored_exposure
-from ocio.luts.rgb_lut import AnyLut
-from ocio.options import PlateOptions
-from ocio.plates.linear_space import LinearSpace, linear_space
-from ocio.plates.primaries import PlatePrimaries, plate_primaries
+from crfnet_core.photograph.image_io import oiio_message
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+
+from ..errors import PlateError
+from ..luts.exposure import anchored_exposure
+from ..luts.rgb_lut import AnyLut
+from ..options import PlateOptions
+from .linear_space import LinearSpace, linear_space
+from .primaries import PlatePrimaries, plate_primaries
 
 #: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and who says so.
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"

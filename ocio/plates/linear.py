@@ -17,21 +17,22 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import atomic_write, check_target, temporary_stem
-from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
-from ocio.errors import PlateError
-from ocio.luts.rgb_lut import AnyLut
-from ocio.options import PlateOptions
-from ocio.plates.exr import SAMPLE_TYPES, linear_header, write_exr
-from ocio.plates.first_frame import FirstFrame, SourceFrame, first_frame
-from ocio.plates.frame_files import EncodedFrame, FrameSource
-from ocio.plates.frame_numbers import format_frames
-from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.frames import FrameSequence
-from ocio.plates.light import PlateLight, check_finished
-from ocio.plates.parallel import finished
-from ocio.plates.primaries import check_same_primaries, plate_primaries
-from ocio.staging import STALE_SECONDS
+
+from ..errors import PlateError
+from ..luts.rgb_lut import AnyLut
+from ..options import PlateOptions
+from ..staging import STALE_SECONDS
+from .exr import SAMPLE_TYPES, linear_header, write_exr
+from .first_frame import FirstFrame, SourceFrame, first_frame
+from .frame_files import EncodedFrame, FrameSource
+from .frame_numbers import format_frames
+from .frame_pattern import FramePattern
+from .frames import FrameSequence
+from .light import PlateLight, check_finished
+from .parallel import finished
+from .primaries import check_same_primaries, plate_primaries
 
 #: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8

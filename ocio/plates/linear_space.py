@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from crfnet_core.metadata.color_tags import AP0, AP1, REC709, Primaries, conversion_matrix
+from crfnet_core.photograph.metadata.color_tags import AP0, AP1, REC709, Primaries, conversion_matrix
 from crfnet_core.types import Float64Array
-from ocio.defaults import OUTPUT_SPACES
-from ocio.errors import PlateError
-from ocio.plates.primaries import PlatePrimaries
+
+from ..defaults import OUTPUT_SPACES
+from ..errors import PlateError
+from .primaries import PlatePrimaries
 
 #: The Color Interop Forum's name of a space that has none, or is not known.
 UNKNOWN = "unknown"

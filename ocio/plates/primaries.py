@@ -6,9 +6,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, ColorTags, Primaries
-from ocio.defaults import PRIMARIES
-from ocio.errors import PlateError
+from crfnet_core.photograph.metadata.color_tags import PHOTOGRAPHIC, REC709, ColorTags, Primaries
+
+from ..defaults import PRIMARIES
+from ..errors import PlateError
 
 #: The source of primaries that the user gave, and of those of a file without tags, which is taken for sRGB.
 CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"

@@ -7,13 +7,13 @@ cameras      stored cameras in words and as JSON
 calibration  a measured response in words, as JSON and as provenance
 """
 
-from ocio.report.calibration import (
+from .calibration import (
     calibration_document,
     calibration_lines,
     calibration_provenance,
     comparison_lines,
 )
-from ocio.report.cameras import (
+from .cameras import (
     camera_line,
     camera_summary,
     disagreement_lines,
@@ -22,9 +22,9 @@ from ocio.report.cameras import (
     photograph_documents,
     photograph_lines,
 )
-from ocio.report.documents import estimate_document, lut_document, model_document, plate_document
-from ocio.report.facts import PhotoFacts, agreeing, basis, curve_error_words, provenance, shape_error_words
-from ocio.report.words import (
+from .documents import estimate_document, lut_document, model_document, plate_document
+from .facts import PhotoFacts, agreeing, basis, curve_error_words, provenance, shape_error_words
+from .words import (
     REMEDIES,
     VERDICTS,
     file_lines,

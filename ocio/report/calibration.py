@@ -9,11 +9,12 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.calibration import Calibration, Comparison, FrameReport
-from crfnet_core.metadata.devices import camera_name
-from crfnet_core.metrics import brightness_percent
+from crfnet_core.photograph.metadata.devices import camera_name
+from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.types import plain_values
-from ocio.output_files import OutputFiles
-from ocio.report.documents import file_names, rounded
+
+from ..output_files import OutputFiles
+from .documents import file_names, rounded
 
 #: Largest change of the white balance between frames, in stops, that is not worth a line.
 STILL_BALANCE = 0.05

@@ -14,10 +14,11 @@ from matplotlib.figure import Figure
 
 from crfnet_core.calibration import Calibration
 from crfnet_core.posterior import Verdict
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
-from ocio.report import calibration_lines
-from ocio.sheet import (
+
+from . import calibration_lines
+from .sheet import (
     BOTTOM,
     CURVE,
     DOT,

@@ -7,9 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import asdict
 from typing import Any
 
-from crfnet_core.cameras import Camera, KeptPhotograph
-from crfnet_core.response_estimate import CameraAnswer
-from ocio.report.facts import agreement
+from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.library import Camera, KeptPhotograph
+
+from .facts import agreement
 
 
 def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
@@ -52,7 +53,7 @@ def photograph_documents(camera: Camera, found: Mapping[str, CameraAnswer]) -> l
     camera : Camera
         The camera.
     found : mapping of str to CameraAnswer
-        As `crfnet_core.cameras.differences` returns it.
+        As `crfnet_core.library.differences` returns it.
     """
     return [_photograph_document(each, found.get(each.sha256)) for each in camera.photographs]
 

@@ -10,16 +10,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.network import ModelConfig
-from ocio.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ocio.interchange.response_file import ResponseFile
-from ocio.luts.exposure import linear_gray
-from ocio.luts.rgb_lut import AnyLut
-from ocio.output_files import OutputFiles
-from ocio.plates.light import PlateLight
-from ocio.plates.linear import PlateReport
-from ocio.report.facts import PhotoFacts
+
+from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ..interchange.response_file import ResponseFile
+from ..luts.exposure import linear_gray
+from ..luts.rgb_lut import AnyLut
+from ..output_files import OutputFiles
+from ..plates.light import PlateLight
+from ..plates.linear import PlateReport
+from .facts import PhotoFacts
 
 #: Decimals kept in the documents of LUTs.
 DECIMALS = 6

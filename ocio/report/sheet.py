@@ -19,15 +19,16 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 
-from crfnet_core.estimate import ResponseEstimate
+from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
-from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.transfer_functions import srgb_encode
+from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
-from crfnet_core.windows import Window
-from ocio.errors import PlateError
-from ocio.report import agreeing, basis, curve_error_words, shape_error_words
+
+from ..errors import PlateError
+from . import agreeing, basis, curve_error_words, shape_error_words
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150

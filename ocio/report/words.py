@@ -7,15 +7,16 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
+from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.posterior import Family, LikelyKind, Verdict
-from ocio.defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
-from ocio.output_files import OutputFiles
-from ocio.plates.frame_numbers import format_frames
-from ocio.plates.linear import PlateReport
-from ocio.report.documents import QUARTERS
-from ocio.report.facts import agreeing, basis, curve_error_words, expected_errors, shape_error_words
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
+
+from ..defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
+from ..output_files import OutputFiles
+from ..plates.frame_numbers import format_frames
+from ..plates.linear import PlateReport
+from .documents import QUARTERS
+from .facts import agreeing, basis, curve_error_words, expected_errors, shape_error_words
 
 #: The verdicts in words for people.
 VERDICTS = {

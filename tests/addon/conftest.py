@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from blender_addon.work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
-from ocio.configs.portable import portable_config
-from ocio.options import EstimateOptions
+from crfnet.configs.portable import portable_config
+from crfnet.options import EstimateOptions
 from tests.helpers.images import write_image
 
 

@@ -5,8 +5,8 @@ import pytest
 from blender_addon.work.errors import AddonError
 from blender_addon.work.wording import american
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured, listed_cameras
 from crfnet_core.errors import CameraError
+from crfnet_core.library import CameraLibrary, CameraSettings, MeasuredResponse, add_measured, listed_cameras
 
 
 @pytest.fixture(autouse=True)

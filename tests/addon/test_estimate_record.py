@@ -7,13 +7,13 @@ import numpy as np
 import pytest
 
 from blender_addon.work.estimate_record import entries_of, estimate_of
+from crfnet.pipeline import response_lut
+from crfnet.report import verdict_lines
 from crfnet_core.errors import CurveError
-from crfnet_core.metadata.devices import Device
+from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.photograph.metadata.devices import Device
+from crfnet_core.photograph.recognition import Kind, Recognition
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.recognition import Kind, Recognition
-from crfnet_core.response_estimate import CameraAnswer
-from ocio.pipeline import response_lut
-from ocio.report import verdict_lines
 
 #: The entries of layout 2, with their types.
 SAVED = {

@@ -11,7 +11,7 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.frame_files import frame_reader, frames_of, sample, sampled_files
 from blender_addon.work.job import ApplyMode, BlenderDecoder
 from blender_addon.work.run import run
-from crfnet_core.image_io import read_codes
+from crfnet_core.photograph.image_io import read_codes
 from tests.helpers.images import read_image, write_image
 
 #: Does as `scene.decode_frames` is asked to, with files that lie beside the movie.

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-ESTIMATOR = {"crfnet_core", "ocio", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
+ESTIMATOR = {"crfnet_core", "crfnet", "onnxruntime", "OpenImageIO", "PyOpenColorIO"}
 
 #: Modules of `work` that Blender imports when it enables the add-on.
 LIGHT = ("background", "curve_picture", "errors", "job", "wording")
@@ -151,13 +151,13 @@ def repeated(module, name):
 
 
 def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(addon_folder):
-    from crfnet_core.image_io import HEIF_SUFFIXES
+    from crfnet_core.photograph.image_io import HEIF_SUFFIXES
 
     assert repeated(addon_folder / "scene" / "plates.py", "HEIF_SUFFIXES") == HEIF_SUFFIXES
 
 
 def test_the_panel_knows_the_color_spaces_of_plates_by_the_name_that_they_are_given(addon_folder):
-    from ocio.output_files import OutputFiles
+    from crfnet.output_files import OutputFiles
 
     prefix = repeated(addon_folder / "ui" / "plate_settings.py", "COLOR_SPACE_PREFIX")
     assert OutputFiles.named(Path(), [Path("plate.jpg")]).color_space == f"{prefix}plate"

@@ -11,11 +11,11 @@ from blender_addon.work import run as run_module
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
+from crfnet.errors import PlateError
 from crfnet_core.errors import CRFNetError, ModelError, PriorError
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.posterior import Verdict
-from ocio.errors import PlateError
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.footage import limited_range_picture
 from tests.helpers.images import write_image

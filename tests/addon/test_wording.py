@@ -5,8 +5,8 @@ import dataclasses
 import pytest
 
 from blender_addon.work.wording import american, capitalized, panel_line, report_line
+from crfnet.report.words import TELL_DEVICE
 from crfnet_core.posterior import Verdict
-from ocio.report.words import TELL_DEVICE
 
 
 @pytest.mark.parametrize(

@@ -10,12 +10,12 @@ from blender_addon.work import writers
 from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.frame_files import frames_of, read_plate_frame
 from blender_addon.work.job import ApplyMode
+from crfnet.errors import ConfigError
+from crfnet.luts.files import read_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.plates.frames import find_frames
 from crfnet_core.errors import CRFNetError
-from crfnet_core.response import ResponseCurve
-from ocio.errors import ConfigError
-from ocio.luts.files import read_lut
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.plates.frames import find_frames
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 
 CURVE = ResponseCurve.gamma(2.2)
@@ -152,7 +152,7 @@ def test_an_export_whose_config_is_refused_leaves_nothing(make_job, tmp_path, mo
     def refuse(*_arguments, **_options):
         raise ConfigError("OpenColorIO refuses it")
 
-    monkeypatch.setattr("ocio.pipeline.delivery.write_config", refuse)
+    monkeypatch.setattr("crfnet.pipeline.delivery.write_config", refuse)
     with pytest.raises(ConfigError, match="refuses"):
         write(make_job(mode=ApplyMode.EXPORT))
     assert not (tmp_path / "out").exists()

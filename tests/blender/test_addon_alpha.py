@@ -36,7 +36,7 @@ def image(request, addon, tmp_path, codes, alpha):
 
 def expected(image, codes, alpha, mode):
     """Return the linear plate, shape (H, W, 4), by the meaning of Blender's setting."""
-    from ocio.luts.lut1d import inverse_response_lut
+    from crfnet.luts.lut1d import inverse_response_lut
 
     brightness, alpha = codes / 255, alpha / 255
     if mode == "PREMUL":

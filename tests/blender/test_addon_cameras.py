@@ -17,7 +17,7 @@ def image(addon, plate_file):
 def curve(monkeypatch, tmp_path):
     """The response of the stored camera "mine"."""
     from crfnet_core import ResponseCurve
-    from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
+    from crfnet_core.library import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
 
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
     curve = ResponseCurve.gamma(2.0)

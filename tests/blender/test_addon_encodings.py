@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
@@ -87,8 +87,8 @@ def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, t
 
 
 def test_an_exr_plate_is_baked_and_shown_once_it_is_called_encoded(addon, tmp_path, codes, in_editor):
-    from ocio.luts.files import write_lut
-    from ocio.luts.lut1d import inverse_response_lut
+    from crfnet.luts.files import write_lut
+    from crfnet.luts.lut1d import inverse_response_lut
 
     curve = ResponseCurve.gamma(2.2)
     write_lut(tmp_path / "camera.cube", inverse_response_lut(curve))

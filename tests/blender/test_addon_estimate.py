@@ -208,7 +208,7 @@ assert not hasattr(bpy.types, "CRF_OT_estimate_response")
     ("library", "remedy"),
     [
         ("onnxruntime", "install the add-on again, from the zip for this system and Python"),
-        ("ocio", "install the add-on again"),
+        ("crfnet", "install the add-on again"),
         ("crfnet_core", "install the add-on again"),
         ("PyOpenColorIO", "use Blender from blender.org"),
     ],
@@ -229,7 +229,7 @@ def test_enabling_loads_no_estimator(root, tmp_path):
     code = (
         f"import sys; sys.path.insert(0, {str(root)!r}); import bpy, addon_utils;"
         " assert addon_utils.enable('blender_addon', default_set=True);"
-        " print({'onnxruntime', 'crfnet_core', 'ocio', 'PyOpenColorIO', 'OpenImageIO'} & set(sys.modules))"
+        " print({'onnxruntime', 'crfnet_core', 'crfnet', 'PyOpenColorIO', 'OpenImageIO'} & set(sys.modules))"
     )
     done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, timeout=300, cwd=tmp_path)
     assert done.stdout.strip().endswith("set()"), done.stdout + done.stderr

@@ -81,7 +81,7 @@ def test_there_is_no_redo_panel_and_no_choice_is_left_for_the_next_plate(image, 
 
 def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypatch):
     from blender_addon.work import writers
-    from ocio.errors import PlateError
+    from crfnet.errors import PlateError
 
     def refuse(*_arguments, **_options):
         raise PlateError("the disk is full, colour and all")

@@ -96,7 +96,7 @@ def test_bake_shows_the_linear_plate(image, in_editor):
 
 
 def test_export(image, plate_file, tmp_path, codes, estimate):
-    from ocio.luts.files import read_lut
+    from crfnet.luts.files import read_lut
 
     folder = tmp_path / "look"
     assert run(image, apply="EXPORT", folder=str(folder)) == {"FINISHED"}
@@ -170,7 +170,7 @@ def restarted(folder, root):
 def test_a_config_of_somebody_else_is_merged_into_and_restored(image, tmp_path, codes, estimate, plate_file):
     import PyOpenColorIO as OCIO
 
-    from ocio.configs.portable import portable_config
+    from crfnet.configs.portable import portable_config
 
     config = tmp_path / "studio" / "config.ocio"
     config.parent.mkdir()
@@ -211,7 +211,7 @@ def test_a_config_that_does_not_load_is_left_alone(image, tmp_path):
 
 def test_the_environments_config_is_never_touched(image, tmp_path, monkeypatch):
     """Blender looks nowhere else then, so a new config is written and the artist is told to name it."""
-    from ocio.configs.portable import portable_config
+    from crfnet.configs.portable import portable_config
 
     studio = tmp_path / "studio.ocio"
     studio.write_text(portable_config([]).serialize())

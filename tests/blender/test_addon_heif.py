@@ -26,7 +26,7 @@ def heic(root, tmp_path):
 
 
 def file_pixels(path):
-    from crfnet_core.image_io import read_photo
+    from crfnet_core.photograph.image_io import read_photo
 
     return read_photo(path).pixels
 

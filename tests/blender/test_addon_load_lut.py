@@ -14,8 +14,8 @@ def image(addon, plate_file):
 @pytest.fixture
 def lut_file(tmp_path, true_response):
     """Write the inverse of a known response in a format; returns its file."""
-    from ocio.luts.files import write_lut
-    from ocio.luts.lut1d import inverse_response_lut
+    from crfnet.luts.files import write_lut
+    from crfnet.luts.lut1d import inverse_response_lut
 
     def write(suffix=".spi1d"):
         path = tmp_path / f"camera{suffix}"
@@ -55,7 +55,7 @@ def test_the_panel_says_so_and_has_no_verdict(image, lut_file, in_editor):
 
 def test_it_is_applied_in_nodes_and_files(image, lut_file, tmp_path, codes, composited, true_response):
     from blender_addon.scene.node_links import compositor_trees
-    from ocio.luts.files import read_lut
+    from crfnet.luts.files import read_lut
 
     load(image, lut_file())
     bpy.ops.crf.apply_response(image=image.name, apply="NODES")
@@ -103,8 +103,8 @@ def test_without_a_file_it_asks_for_one(image):
 
 
 def test_other_files_are_refused_and_change_nothing(image, tmp_path):
-    from ocio.luts.files import write_lut
-    from ocio.luts.lut1d import Lut1D
+    from crfnet.luts.files import write_lut
+    from crfnet.luts.lut1d import Lut1D
 
     path = tmp_path / "forward.cube"
     write_lut(path, Lut1D(np.linspace(0, 1, 256) ** 0.45))

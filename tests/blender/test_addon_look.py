@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 

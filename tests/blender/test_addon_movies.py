@@ -107,7 +107,7 @@ def decoded(addon):
     def decode(path, numbers, sample="uint8"):
         from blender_addon.scene.plates import plate_of
         from blender_addon.work.frame_files import frame_reader, frames_of
-        from ocio.plates.frames import FrameSequence
+        from crfnet.plates.frames import FrameSequence
 
         plate = plate_of(load("image", path))
         frames = frames_of(plate)
@@ -121,7 +121,7 @@ def decoded(addon):
 
 def as_stored(path):
     """Codes with alpha, not multiplied by it."""
-    from crfnet_core.image_io import read_codes
+    from crfnet_core.photograph.image_io import read_codes
 
     values = read_codes(path)
     return np.dstack([values.codes, values.alpha])
@@ -186,9 +186,9 @@ def test_a_baked_movie_has_the_same_bytes_again(movie, tmp_path):
 
 def test_the_estimate_is_that_of_its_frames(addon, movie, movie_folder):
     from blender_addon.scene.stored_estimate import restored
+    from crfnet.plates.frames import find_frames, sample_frames
     from crfnet_core import ResponseNetwork, estimate_response, read_photo
     from crfnet_core.network import DEFAULT_MODEL
-    from ocio.plates.frames import find_frames, sample_frames
 
     if not DEFAULT_MODEL.is_dir():
         pytest.skip("the packaged model is not there")

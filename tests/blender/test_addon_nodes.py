@@ -32,7 +32,7 @@ def scene_tree():
 
 def linear(curve, brightness):
     """What `crfnet linearize` makes of a brightness: a LUT of the usual length, which all 8-bit codes are in."""
-    from ocio.luts.lut1d import inverse_response_lut
+    from crfnet.luts.lut1d import inverse_response_lut
 
     return inverse_response_lut(curve).apply(brightness)
 

@@ -235,7 +235,7 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     """It repeats their choices and defaults, because it is drawn without them."""
     from blender_addon.scene.color_management import CONFIG_NAME
     from blender_addon.work.job import Anchor, ApplyMode
-    from ocio import defaults
+    from crfnet import defaults
 
     settings = bpy.data.images.new("new", 8, 8).camera_response_settings.bl_rna.properties
     assert settings["apply"].enum_items.keys() == list(ApplyMode)

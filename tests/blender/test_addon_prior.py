@@ -39,7 +39,7 @@ def test_the_prior_and_the_metadata_follow_the_settings(image, plate_file, estim
 
 
 def test_what_took_the_plate_may_be_told(image, plate_file, estimate):
-    from crfnet_core.metadata import Device
+    from crfnet_core.photograph.metadata import Device
 
     bpy.ops.crf.estimate_response(image=image.name, device="phone")
     assert_equal(stored(image), estimate(plate_file, device=Device.PHONE))

@@ -135,6 +135,6 @@ def test_of_a_movie_too(windows):
 
 
 def test_a_window_is_as_large_as_the_estimator_says(windows):
-    from crfnet_core.windows import WINDOW_SIZE
+    from crfnet_core.statistics.windows import WINDOW_SIZE
 
     assert windows.WINDOW_SIZE == WINDOW_SIZE

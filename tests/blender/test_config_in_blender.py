@@ -9,12 +9,12 @@ import sys
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs.files import write_config
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.spi1d import write_spi1d
+from crfnet.configs.files import write_config
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.spi1d import write_spi1d
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")

@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet_core.image_io import read_photo
+from crfnet_core.photograph.image_io import read_photo
 from training.synthesis.demo_plate import camera_response, photograph, read_scene, write_photograph
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")

@@ -16,8 +16,8 @@ import numpy as np
 import pytest
 
 from blender_addon import build
+from crfnet.luts.spi1d import read_spi1d
 from crfnet_core import ResponseNetwork, estimate_response, read_photo
-from ocio.luts.spi1d import read_spi1d
 from tests.helpers.colored_ramp import colored_ramp
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
@@ -50,11 +50,11 @@ image = bpy.data.images.load(plate)
 image.camera_response_settings.apply = "EXPORT"
 image.camera_response_settings.folder = folder
 print(bpy.ops.crf.estimate_response(image=image.name))
-import crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO
-packages = (crfnet_core, ocio, onnxruntime, OpenImageIO, PyOpenColorIO)
+import crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO
+packages = (crfnet_core, crfnet, onnxruntime, OpenImageIO, PyOpenColorIO)
 estimate = crfnet_core.estimate_response(crfnet_core.read_photo(plate), network=crfnet_core.ResponseNetwork.load())
 stray = sorted({"shtab", "tqdm", "matplotlib", "google", "flatbuffers", "PIL", "pi_heif"} & set(sys.modules))
-codes = crfnet_core.image_io.read_codes(heic).codes
+codes = crfnet_core.photograph.image_io.read_codes(heic).codes
 import pi_heif, PIL
 packages += (pi_heif, PIL)
 found = {
@@ -175,7 +175,7 @@ def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
     with zipfile.ZipFile(wheel) as archive:
         inside = archive.namelist()
     tops = {name.partition("/")[0] for name in inside}
-    assert tops == {"crfnet_core", "ocio", f"crfnet-{manifest['version']}.dist-info"}
+    assert tops == {"crfnet_core", "crfnet", f"crfnet-{manifest['version']}.dist-info"}
     assert {"crfnet_core/data/emor.npz", "crfnet_core/data/priors/camera.json"} <= set(inside)
     assert [name for name in inside if re.fullmatch("crfnet_core/models/[^/]+/model.(onnx|json)", name)]
 
@@ -194,7 +194,7 @@ def test_it_is_installed_and_enabled(addons):
 
 def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
     site_packages = user / "extensions" / ".local" / "lib"
-    for name in ("crfnet_core", "ocio", "onnxruntime", "pi_heif", "PIL"):
+    for name in ("crfnet_core", "crfnet", "onnxruntime", "pi_heif", "PIL"):
         assert site_packages in Path(found["files"][name]).parents, found["files"][name]
     for name in ("OpenImageIO", "PyOpenColorIO"):
         assert "bpy" in Path(found["files"][name]).parts, found["files"][name]

@@ -6,8 +6,8 @@ import sys
 
 import pytest
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import file_origin
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import file_origin
 
 pytestmark = pytest.mark.skipif(importlib.util.find_spec("bpy") is None, reason="needs Blender's bpy module")
 

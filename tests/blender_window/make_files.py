@@ -15,7 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from benchmarks.pictures import make_photograph
-from ocio.cli import main as crfnet
+from crfnet.cli.main import main as crfnet
 from tests.helpers.images import read_image, write_image
 
 #: The bundled photograph.

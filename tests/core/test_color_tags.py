@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 
 from crfnet_core.colorimetry import adaptation, chromaticity_of, rgb_to_xyz, xyz_of
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import cicp
-from crfnet_core.metadata.cicp import cicp_tags
-from crfnet_core.metadata.color_tags import (
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.metadata.cicp import cicp_tags
+from crfnet_core.photograph.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
     AP1,
@@ -25,9 +25,9 @@ from crfnet_core.metadata.color_tags import (
     Primaries,
     conversion_matrix,
 )
-from crfnet_core.metadata.exif import interoperability_index
-from crfnet_core.metadata.header_colors import TABLES, header_color_tags
-from crfnet_core.metadata.icc import SAME_COLORANTS, read_icc
+from crfnet_core.photograph.metadata.exif import interoperability_index
+from crfnet_core.photograph.metadata.header_colors import TABLES, header_color_tags
+from crfnet_core.photograph.metadata.icc import SAME_COLORANTS, read_icc
 from tests.helpers.color_profiles import exif_segment, matrix_profile, numbers, profile, write_tagged
 from tests.helpers.crafted_files import with_jpeg_segment
 from tests.helpers.images import write_image

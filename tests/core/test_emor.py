@@ -1,8 +1,8 @@
 import numpy as np
 import pytest
 
-from crfnet_core.emor import COMPONENTS, EmorBasis
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
 
 
 def test_the_packaged_basis_is_orthonormal():

@@ -5,17 +5,17 @@ from types import SimpleNamespace
 import numpy as np
 import pytest
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import PhotoError
-from crfnet_core.estimate import estimate_response
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, file_origin
-from crfnet_core.metrics import estimation_error
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import Predictions, ResponseNetwork
 from crfnet_core.network.pooling import inliers, robust_mean
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import DEFAULT_PRIOR, Evidence, Family, Posterior, Prior, ResponseBank, Verdict
 from crfnet_core.posterior.factors import family_factors
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import estimation_error
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
 #: A file as the camera wrote it, and one that an editor saved.

@@ -4,11 +4,11 @@ from dataclasses import asdict
 
 import pytest
 
-from crfnet_core.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
-from crfnet_core.metadata.encodings import Encoding
-from crfnet_core.metadata.jpeg import ANNEX_K_LUMA, scaled_table
-from crfnet_core.metadata.origin import picture_shape
-from crfnet_core.metadata.transfer_tags import profile_transfer
+from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
+from crfnet_core.photograph.metadata.encodings import Encoding
+from crfnet_core.photograph.metadata.jpeg import ANNEX_K_LUMA, scaled_table
+from crfnet_core.photograph.metadata.origin import picture_shape
+from crfnet_core.photograph.metadata.transfer_tags import profile_transfer
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}

@@ -4,9 +4,9 @@ import stat
 
 import pytest
 
+from crfnet.errors import LutError
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import LONGEST_NAME, atomic_write, cut_to_bytes
-from ocio.errors import LutError
 
 
 def test_a_file_takes_its_name_when_it_is_whole(tmp_path):
@@ -91,7 +91,7 @@ def test_a_name_that_is_too_long_is_told(tmp_path):
 
 
 def test_the_temporary_name_says_which_file_it_is_of(tmp_path):
-    """So that what a killed run leaves can be found and removed: see `ocio.plates.linear`."""
+    """So that what a killed run leaves can be found and removed: see `crfnet.plates.linear`."""
     with atomic_write(tmp_path / "plate.0001.exr") as temporary:
         assert re.fullmatch(r"\.plate\.0001\.[a-z0-9]{8}\.exr", temporary.name)
 

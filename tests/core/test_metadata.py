@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_metadata, read_photo
-from crfnet_core.metadata import file_origin
-from crfnet_core.metadata.jpeg import (
+from crfnet_core.photograph.image_io import read_metadata, read_photo
+from crfnet_core.photograph.metadata import file_origin
+from crfnet_core.photograph.metadata.jpeg import (
     ANNEX_K_CHROMA,
     ANNEX_K_LUMA,
     JpegHeader,
@@ -17,7 +17,7 @@ from crfnet_core.metadata.jpeg import (
     read_jpeg_header,
     scaled_table,
 )
-from crfnet_core.metadata.origin import ADOBE
+from crfnet_core.photograph.metadata.origin import ADOBE
 from crfnet_core.posterior.factors import family_factors
 from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
 from tests.helpers.images import write_image

@@ -2,8 +2,8 @@
 
 import pytest
 
-from crfnet_core.metadata.devices import Device, camera_name, device_of
-from crfnet_core.metadata.editors import editor_name
+from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
+from crfnet_core.photograph.metadata.editors import editor_name
 
 PHONES = [
     ("Apple", "iPhone 13 Pro"),

@@ -2,14 +2,14 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import beside_limits
-from crfnet_core.metrics import (
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.metrics import (
     estimation_error,
     linearization_error,
     peak_signal_to_noise,
     scale_error,
     shape_error,
 )
-from crfnet_core.response import SAMPLES, ResponseCurve
 
 STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
 SQUARE = ResponseCurve.gamma(0.5)

@@ -11,10 +11,10 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.estimate import estimate_response
-from crfnet_core.image_io import read_photo
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import DEFAULT_MODEL, ResponseNetwork
-from crfnet_core.response import ResponseCurve
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.response.curve import ResponseCurve
 
 
 @pytest.fixture(scope="module")

@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_codes, read_photo
+from crfnet_core.photograph.image_io import read_codes, read_photo
 from tests.helpers.crafted_files import jpeg, png, png_chunk, tiff
 from tests.helpers.images import read_image, write_image
 
@@ -191,7 +191,7 @@ def test_memory_is_the_codes_alone(tmp_path):
     path = write_image(tmp_path / "a.png", np.zeros((3000, 4000, 3), np.uint8))
     code = (
         "import resource, sys\n"
-        "from crfnet_core.image_io import read_photo\n"
+        "from crfnet_core.photograph.image_io import read_photo\n"
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "read_photo(sys.argv[1])\n"
         "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"

@@ -7,11 +7,11 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.estimate import estimate_response
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.photo import Photo
 from tests.helpers.images import write_image
 
 CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)

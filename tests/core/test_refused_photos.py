@@ -11,7 +11,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import MAX_PIXELS, read_photo
+from crfnet_core.photograph.image_io import MAX_PIXELS, read_photo
 from tests.helpers.crafted_files import jpeg, png, tiff, with_jpeg_size
 from tests.helpers.images import write_image
 
@@ -250,7 +250,7 @@ def test_bombs_take_little_memory(tmp_path):
         made.rename(name)
     code = (
         "import resource, sys\n"
-        "from crfnet_core.image_io import read_photo\n"
+        "from crfnet_core.photograph.image_io import read_photo\n"
         "from crfnet_core.errors import PhotoError\n"
         "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
         "for name in sys.argv[1:]:\n"

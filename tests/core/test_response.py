@@ -4,9 +4,9 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.errors import CurveError
-from crfnet_core.response import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
+from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
+from crfnet_core.response.emor import EmorBasis
 
 UNIFORM = np.linspace(0, 1, SAMPLES)
 

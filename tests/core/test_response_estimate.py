@@ -9,15 +9,15 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import CRFNetError, CurveError, EstimateError, PhotoError
-from crfnet_core.estimate import estimate_response
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, file_origin
-from crfnet_core.metadata.devices import Device
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.result import SCHEMA_VERSION, CameraAnswer, ResponseEstimate
 from crfnet_core.network import ResponseNetwork
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata.devices import Device
+from crfnet_core.photograph.recognition import Kind, Recognition
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Posterior, ResponseBank, Verdict
-from crfnet_core.recognition import Kind, Recognition
-from crfnet_core.response import ResponseCurve
-from crfnet_core.response_estimate import SCHEMA_VERSION, CameraAnswer, ResponseEstimate
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.metadata import Device
+from crfnet_core.photograph.metadata import Device
 from crfnet_core.posterior import Family
 
 

@@ -2,7 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.windows import (
+from crfnet_core.statistics.windows import (
     WINDOW_SIZE,
     Window,
     cut_windows,
@@ -65,7 +65,7 @@ def test_a_poor_photograph_gets_the_best_windows_there_are():
 
 def test_the_number_of_attempts_is_bounded(monkeypatch):
     tried = []
-    monkeypatch.setattr("crfnet_core.windows.filled_bins", lambda samples: tried.append(1) or 0)
+    monkeypatch.setattr("crfnet_core.statistics.windows.filled_bins", lambda samples: tried.append(1) or 0)
     select_windows(noise(2000, 2000))
     assert len(tried) == 400
 

@@ -13,10 +13,10 @@ from pathlib import Path
 import numpy as np
 from onnx import TensorProto, helper, numpy_helper
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.statistics.windows import WINDOW_SIZE
 
 ASSETS = Path(__file__).parent
 OPSET, IR_VERSION = 17, 8

@@ -9,9 +9,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.image_io import read_photo
+from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.statistics import window_statistics
-from crfnet_core.windows import cut_windows, select_windows
+from crfnet_core.statistics.windows import cut_windows, select_windows
 
 ASSETS = Path(__file__).parent
 

@@ -11,7 +11,7 @@ import pytest
 import crfnet_core
 
 #: The head of a table of names that one module has.
-HEAD = re.compile(r"^\| `((?:crfnet_core|ocio)[\w.]*)` \|")
+HEAD = re.compile(r"^\| `((?:crfnet_core|crfnet)[\w.]*)` \|")
 
 #: A name, with its parameters if it is called.
 ENTRY = re.compile(r"`([A-Za-z_.\d]+)(\(.*?\))?`(?=,| \|)")

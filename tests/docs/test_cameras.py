@@ -5,8 +5,8 @@ import shlex
 
 import pytest
 
-from crfnet_core.cameras import CameraLibrary
-from ocio.configs.files import load_config
+from crfnet.configs.files import load_config
+from crfnet_core.library import CameraLibrary
 from tests.helpers.cameras import photograph
 from tests.helpers.stacks import StackOptions, light_of, make_stack
 

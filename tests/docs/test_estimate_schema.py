@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
-from crfnet_core.metadata import FileOrigin
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.encodings import Encoding
-from crfnet_core.metadata.origin import SHAPES
+from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.metadata.devices import Device
+from crfnet_core.photograph.metadata.encodings import Encoding
+from crfnet_core.photograph.metadata.origin import SHAPES
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.response_estimate import SCHEMA_VERSION
 from tests.helpers.cameras import photograph
 from tests.helpers.schemas import problems_by, read_schema
 

@@ -6,7 +6,7 @@ import shutil
 import numpy as np
 import pytest
 
-from ocio.luts.files import read_lut
+from crfnet.luts.files import read_lut
 
 
 @pytest.fixture(scope="module")

@@ -5,9 +5,9 @@ import importlib.util
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.defaults import GRAY_BRIGHTNESS
-from ocio.luts.exposure import anchored_exposure
+from crfnet.defaults import GRAY_BRIGHTNESS
+from crfnet.luts.exposure import anchored_exposure
+from crfnet_core.response.curve import ResponseCurve
 
 pytest.importorskip("matplotlib")
 

@@ -65,8 +65,8 @@ def test_the_expressions_ask_for_knobs_that_the_gizmo_has(root):
 
 
 def test_the_names_are_those_that_crfnet_writes(root):
-    from ocio.configs.plate_views import view_names
-    from ocio.output_files import OutputFiles
+    from crfnet.configs.plate_views import view_names
+    from crfnet.output_files import OutputFiles
 
     files = OutputFiles.named(root / "look", [root / "plate01.jpg"])
     text = (root / "docs" / "nuke" / "plate01.nk").read_text(encoding="utf-8")

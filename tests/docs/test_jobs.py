@@ -8,7 +8,7 @@ from pathlib import Path
 import OpenImageIO as oiio
 import pytest
 
-from ocio.configs.files import load_config
+from crfnet.configs.files import load_config
 from tests.helpers.movies import run_ffmpeg
 
 JOBS = Path(__file__).parents[2] / "docs" / "JOBS.md"

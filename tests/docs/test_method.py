@@ -7,15 +7,15 @@ from inspect import signature
 
 import pytest
 
-from crfnet_core import emor, response, windows
+from crfnet.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
 from crfnet_core.network import pooling
 from crfnet_core.posterior import Family, ResponseBank, evidence, posterior, responses, verdict
-from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading
-from ocio.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
+from crfnet_core.response import curve, emor
+from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading, windows
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md")
 
-DOTTED = re.compile(r"\b(?:crfnet_core|ocio|training)(?:\.\w+)+")
+DOTTED = re.compile(r"\b(?:crfnet_core|crfnet|training)(?:\.\w+)+")
 
 
 def documents(root):
@@ -76,8 +76,8 @@ def test_every_function_that_a_document_names_is_there(root):
     "name",
     [
         "crfnet_core.nowhere",
-        "crfnet_core.emor.EmorBasis.nothing",
-        "crfnet_core.metrics.estimation_error.nothing",
+        "crfnet_core.response.emor.EmorBasis.nothing",
+        "crfnet_core.response.metrics.estimation_error.nothing",
         "training.network.nothing",
     ],
 )
@@ -86,7 +86,12 @@ def test_a_name_that_is_not_there_is_found_out(root, name):
 
 
 def test_a_name_is_found_in_modules_classes_and_facades(root):
-    names = ("crfnet_core", "crfnet_core.read_photo", "crfnet_core.emor.EmorBasis.load", "crfnet_core.windows.Window.x")
+    names = (
+        "crfnet_core",
+        "crfnet_core.read_photo",
+        "crfnet_core.response.emor.EmorBasis.load",
+        "crfnet_core.statistics.windows.Window.x",
+    )
     assert [exists(root, name) for name in names] == [True] * 4
 
 
@@ -144,7 +149,7 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"({shading.MUCH[0]} to {shading.MUCH[1]})",
         f"s = {shading.OTHER_CHANGE} ",
         f"The factor {pooling.OUTLIER_FACTOR:g} is ours",
-        f"\\varepsilon = 10^{{{math.log10(response.LEAST_SLOPE):.0f}}}",
+        f"\\varepsilon = 10^{{{math.log10(curve.LEAST_SLOPE):.0f}}}",
         f"Student's t with {evidence.DEGREES_OF_FREEDOM:g} degrees of freedom",
         f"first {evidence.EVIDENCE_WEIGHTS} EMoR weights",
         f"\\frac{{{evidence.DEGREES_OF_FREEDOM:g} + {evidence.EVIDENCE_WEIGHTS}}}{{2}}",

@@ -6,9 +6,9 @@ import shutil
 
 import pytest
 
+from crfnet.defaults import ESTIMATES
+from crfnet.pipeline import PhotographRecord
 from crfnet_core.posterior import Verdict
-from ocio.defaults import ESTIMATES
-from ocio.pipeline import PhotographRecord
 from tests.helpers.looks import write_look
 from tests.helpers.schemas import problems_by, read_schema
 from tests.helpers.stacks import StackOptions, light_of, make_stack

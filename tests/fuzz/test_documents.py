@@ -7,18 +7,18 @@ from contextlib import suppress
 import numpy as np
 import pytest
 
-from crfnet_core.cameras import CameraLibrary, add_photographs, camera_estimate
-from crfnet_core.cameras.documents import read_camera
-from crfnet_core.cameras.library import SHIPPED
+from crfnet.configs.studio.looks import read_looks
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D
+from crfnet.pipeline.calibrations import response_to_compare
 from crfnet_core.errors import CameraError, CRFNetError
+from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.library import CameraLibrary, add_photographs, camera_estimate
+from crfnet_core.library.documents import read_camera
+from crfnet_core.library.library import SHIPPED
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.posterior.prior import PRIORS
-from crfnet_core.response_estimate import ResponseEstimate
-from ocio.configs.studio.looks import read_looks
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D
-from ocio.pipeline.calibrations import response_to_compare
 from tests.helpers.hostile_models import evidence_graph, model, write_model
 from tests.helpers.mutations import mutated, mutated_text, mutated_value
 

@@ -5,8 +5,8 @@ import shutil
 import numpy as np
 import pytest
 
-from crfnet_core.image_io import read_photo
-from ocio.plates.frame_files import read_frame
+from crfnet.plates.frame_files import read_frame
+from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.images import write_image
 from tests.helpers.mutations import mutated
 

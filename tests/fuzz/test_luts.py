@@ -4,10 +4,10 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.interchange.files import RESPONSE_READERS, SEVERAL, read_response, write_response
-from ocio.luts.files import WRITERS, read_lut, write_lut
-from ocio.luts.lut1d import Lut1D, strictly_increasing
-from ocio.luts.rgb_lut import RgbLut1D
+from crfnet.interchange.files import RESPONSE_READERS, SEVERAL, read_response, write_response
+from crfnet.luts.files import WRITERS, read_lut, write_lut
+from crfnet.luts.lut1d import Lut1D, strictly_increasing
+from crfnet.luts.rgb_lut import RgbLut1D
 from tests.helpers.mutations import mutated, mutated_text
 
 #: Words of each format that are put into its files, with bars between.

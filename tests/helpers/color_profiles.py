@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.colorimetry import adaptation, xyz_of
-from crfnet_core.metadata.color_tags import D50, Primaries
+from crfnet_core.photograph.metadata.color_tags import D50, Primaries
 from tests.helpers.images import write_image
 
 

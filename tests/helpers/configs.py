@@ -9,10 +9,10 @@ import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.errors import ConfigError
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 
 #: A plate's colour space, and a LUT for it that goes beyond [0, 1].
 SPACE = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",), description="from a.jpg")

@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.recognition import log_curves
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.photograph.recognition import log_curves
+from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 
 

@@ -11,17 +11,17 @@ from typing import Any
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.metadata.color_tags import REC709, Primaries
-from crfnet_core.response import ResponseCurve
-from ocio.configs.files import write_config
-from ocio.configs.portable import portable_config
-from ocio.configs.studio.additions import AdditionOptions, add_looks
-from ocio.configs.studio.looks import read_looks
-from ocio.configs.studio.plates import Changed
-from ocio.configs.studio.sources import find_config
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.output_files import OutputFiles
+from crfnet.configs.files import write_config
+from crfnet.configs.portable import portable_config
+from crfnet.configs.studio.additions import AdditionOptions, add_looks
+from crfnet.configs.studio.looks import read_looks
+from crfnet.configs.studio.plates import Changed
+from crfnet.configs.studio.sources import find_config
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.output_files import OutputFiles
+from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import rule_names
 from tests.helpers.images import write_image
 

@@ -10,12 +10,12 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from crfnet_core.response import ResponseCurve
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.options import PlateOptions
+from crfnet.plates.frames import find_frames
+from crfnet.plates.linear import PlateReport, linear_targets, linearize_plates
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Progress
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.options import PlateOptions
-from ocio.plates.frames import find_frames
-from ocio.plates.linear import PlateReport, linear_targets, linearize_plates
 from tests.helpers.images import read_image, write_image
 
 #: The inverse of gamma 2.2, with provenance.

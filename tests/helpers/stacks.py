@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.posterior import ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from tests.helpers.images import read_image, write_image
 
 #: Exposure times as cameras write them, a third of a stop apart, and the exact ones in stops.

@@ -4,12 +4,12 @@ import inspect
 
 import numpy as np
 
+from crfnet import defaults, report
+from crfnet.plates.exr import SAMPLE_TYPES
 from crfnet_core import estimate_response
-from crfnet_core.metadata import Device
-from crfnet_core.metrics import brightness_percent
+from crfnet_core.photograph.metadata import Device
 from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packaged_priors, verdict
-from ocio import defaults, report
-from ocio.plates.exr import SAMPLE_TYPES
+from crfnet_core.response.metrics import brightness_percent
 
 
 def test_windows_are_those_of_the_core():

@@ -10,20 +10,20 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
+from crfnet import pipeline
+from crfnet.defaults import FRAMES_ANALYZED, LUT_LENGTH
+from crfnet.errors import PlateError
+from crfnet.luts.files import read_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.rgb_lut import RgbLut1D
+from crfnet.options import EstimateOptions, OutputOptions, PlateOptions
+from crfnet.output_files import OutputFiles
+from crfnet.pipeline.batch import network_and_prior
+from crfnet.plates.frames import FrameSequence, find_frames
+from crfnet.plates.linear import linear_targets, linearize_plates
 from crfnet_core.errors import CRFNetError, PhotoError, PriorError
 from crfnet_core.posterior import Family
-from crfnet_core.response import ResponseCurve
-from ocio import pipeline
-from ocio.defaults import FRAMES_ANALYZED, LUT_LENGTH
-from ocio.errors import PlateError
-from ocio.luts.files import read_lut
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.rgb_lut import RgbLut1D
-from ocio.options import EstimateOptions, OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles
-from ocio.pipeline.batch import network_and_prior
-from ocio.plates.frames import FrameSequence, find_frames
-from ocio.plates.linear import linear_targets, linearize_plates
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import listed
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2))
@@ -248,7 +248,7 @@ class TestExport:
 
     def test_a_failure_in_the_middle_leaves_earlier_files_as_they_were(self, files, space, monkeypatch):
         earlier = {path: path.read_bytes() for path in pipeline.export_luts(files, space, LUT)}
-        monkeypatch.setattr("ocio.pipeline.delivery.write_config", lambda *arguments, **options: 1 / 0)
+        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", lambda *arguments, **options: 1 / 0)
         other = inverse_response_lut(ResponseCurve.gamma(1.5))
         with pytest.raises(ZeroDivisionError):
             pipeline.export_luts(files, space, other, overwrite=True)
@@ -265,7 +265,7 @@ class TestExport:
         def fail(*arguments, **options):
             raise problem
 
-        monkeypatch.setattr("ocio.pipeline.delivery.write_config", fail)
+        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", fail)
         with pytest.raises(type(problem)):
             pipeline.export_luts(files, space, LUT)
         assert not files.config.parent.exists()

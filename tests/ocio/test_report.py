@@ -6,19 +6,19 @@ import math
 
 import pytest
 
-from crfnet_core.estimate import estimate_response
+from crfnet import report
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.options import PlateOptions
+from crfnet.plates.light import PlateLight
+from crfnet.plates.linear import PlateReport
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.files import json_text
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import Device, FileMetadata, as_told, file_origin
-from crfnet_core.metadata.color_tags import ColorTags
 from crfnet_core.network import ModelConfig, ResponseNetwork
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import Device, FileMetadata, as_told, file_origin
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.response import ResponseCurve
-from ocio import report
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.options import PlateOptions
-from ocio.plates.light import PlateLight
-from ocio.plates.linear import PlateReport
+from crfnet_core.response.curve import ResponseCurve
 
 CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D", file_format="TIFF")
 

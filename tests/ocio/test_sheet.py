@@ -5,15 +5,15 @@ import dataclasses
 import numpy as np
 import pytest
 
-from crfnet_core.estimate import estimate_response
-from crfnet_core.image_io import read_photo
+from crfnet.errors import PlateError
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Family, Verdict
-from ocio.errors import PlateError
 from tests.helpers.images import read_image
 
-sheet = pytest.importorskip("ocio.sheet", reason="needs matplotlib, of the plot extra")
+sheet = pytest.importorskip("crfnet.report.sheet", reason="needs matplotlib, of the plot extra")
 
 
 @pytest.fixture(scope="module")

@@ -3,8 +3,8 @@ from pathlib import Path
 
 import pytest
 
-from ocio.errors import PlateError
-from ocio.staging import STALE_SECONDS, staged_files
+from crfnet.errors import PlateError
+from crfnet.staging import STALE_SECONDS, staged_files
 
 
 def content(folder):

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocio.arguments.parts import BAD_INPUT
+from crfnet.cli.arguments.parts import BAD_INPUT
 from tests.helpers.images import write_image
 
 CRFNET = Path(sys.executable).with_name("crfnet")
@@ -20,7 +20,7 @@ def run(code, **options):
 def test_only_the_program_s_own_lines_reach_stderr(root):
     code = (
         "import os, sys\n"
-        "from ocio.streams import own_stderr\n"
+        "from crfnet.cli.streams import own_stderr\n"
         "with own_stderr():\n"
         "    os.write(2, b'from C\\n'); print('own', file=sys.stderr)\n"
         "    try:\n        with own_stderr(): os.write(2, b'nested\\n'); raise ValueError\n"
@@ -32,7 +32,12 @@ def test_only_the_program_s_own_lines_reach_stderr(root):
 
 
 def test_a_traceback_of_a_bug_is_not_lost(root):
-    code = "import ocio.cli, ocio.commands.info as i\ndef bug(_): 1 / 0\ni.run = bug\nocio.cli.main(['info', 'x'])"
+    code = (
+        "import crfnet.cli.main as m, crfnet.cli.commands.info as i\n"
+        "def bug(_): 1 / 0\n"
+        "i.run = bug\n"
+        "m.main(['info', 'x'])"
+    )
     assert "ZeroDivisionError" in run(code, cwd=root).stderr
 
 

@@ -8,7 +8,7 @@ import pytest
 pytest.importorskip("scipy.ndimage", reason="training needs the train extra")
 
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import camera_estimate
+from crfnet_core.library import camera_estimate
 from training.export.cameras import measured_cameras
 
 ROW = {

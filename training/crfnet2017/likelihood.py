@@ -15,12 +15,12 @@ import torch
 from torch import nn
 from tqdm import tqdm
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.network import pooling
 from crfnet_core.posterior import UNUSUAL, Evidence
 from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM, EVIDENCE_WEIGHTS
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.statistics.windows import cut_windows, select_windows
 from crfnet_core.types import Float64Array
-from crfnet_core.windows import cut_windows, select_windows
 from training.network.shards import STATED_FAMILIES, photograph_source
 from training.synthesis.camera import Capture, automatic_exposure, render_photo, sensor_light
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.emor import COMPONENTS
+from crfnet_core.response.emor import COMPONENTS
 
 #: Channels and side of the maps that the last layer is fully connected to.
 MAP_CHANNELS, MAP_SIDE = 512, 23

@@ -8,7 +8,7 @@ import numpy as np
 import torch
 from torch import Tensor, nn
 
-from crfnet_core.emor import COMPONENTS, EmorBasis
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
 
 STAGES = ("classify", "regress")
 

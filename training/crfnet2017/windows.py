@@ -18,7 +18,7 @@ import torch
 from torch import Tensor
 from torch.utils.data import IterableDataset, get_worker_info
 
-from crfnet_core.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
+from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
 from training.crfnet2017.pack import ScenePack, write_pack
 from training.data.manifest import training_digest
 from training.provenance import record_making

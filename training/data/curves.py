@@ -11,8 +11,8 @@ import numpy as np
 import scipy.io
 from scipy.interpolate import PchipInterpolator
 
-from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array
 
 #: The files of responses in a data folder: DoRF, the published EMoR basis, and in-camera tone curves.

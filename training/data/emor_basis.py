@@ -7,9 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.emor import BASIS_FILE, EmorBasis
 from crfnet_core.files import atomic_write
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.emor import BASIS_FILE, EmorBasis
 from crfnet_core.types import Float64Array
 from training.data.curves import DORF_FILE, EMOR_FILE, read_dorf
 

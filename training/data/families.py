@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.metrics import LAST_SHAPE_CODE
 from crfnet_core.posterior import Family
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses, curve_of_inverse
 

@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError, PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text, check_target
-from crfnet_core.image_io import first_line
+from crfnet_core.photograph.image_io import first_line
 from training.data.linear_files import LEAST_SIDE, linear_scene
 from training.data.scenes import IMPORTED
 

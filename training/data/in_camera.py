@@ -9,7 +9,7 @@ import numpy as np
 from scipy.ndimage import gaussian_filter1d
 
 from crfnet_core.posterior.responses import LEAST_IRRADIANCE
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, geometric_median
 from training.data.real.bodies import Body

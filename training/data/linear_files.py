@@ -12,9 +12,9 @@ import rawpy
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import LINEAR_SIGNATURES, RAW_SUFFIXES, first_line
-from crfnet_core.image_io.header_checks import check_size
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.photograph.image_io import LINEAR_SIGNATURES, RAW_SUFFIXES, first_line
+from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.scenes import BAND, LUMINANCE, area_averaged
 
 #: The automatic scale leaves the shorter side at least this many samples, room for windows of step 1 and 2.

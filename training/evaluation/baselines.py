@@ -7,9 +7,9 @@ from collections.abc import Sequence
 import numpy as np
 from scipy.optimize import minimize_scalar
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float64Array
 from training.data.curves import IRRADIANCE, curve_of_inverse, geometric_median
 from training.data.families import SHOULDER, with_headroom

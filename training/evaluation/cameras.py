@@ -17,12 +17,12 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.analysis import analyze_photographs
-from crfnet_core.cameras import Camera, CameraSettings, KeptPhotograph, compared
-from crfnet_core.estimate import ResponseEstimate, estimate_of
-from crfnet_core.metrics import estimation_error, shape_error
+from crfnet_core.estimate.analysis import analyze_photographs
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_of
+from crfnet_core.library import Camera, CameraSettings, KeptPhotograph, compared
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real.photographs import REAL_BODIES, RealPhotograph, real_photographs
 from training.data.real.stacks import Stack, measured_response, settings_of_bodies
 from training.evaluation.measure.real import bank_without_fold, read_real_photo

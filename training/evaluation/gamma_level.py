@@ -13,8 +13,8 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.metrics import linearization_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import linearization_error
 from training.evaluation.measure.figures import CODES
 from training.evaluation.report import paper
 from training.evaluation.report.markdown_tables import rows_of

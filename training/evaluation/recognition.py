@@ -16,11 +16,11 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from crfnet_core.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition import Kind, Levels, LogCurve, is_limited_range, light_error, log_curves
 from crfnet_core.posterior import Verdict
-from crfnet_core.recognition import Kind, Levels, LogCurve, is_limited_range, light_error, log_curves
 from crfnet_core.types import Float32Array, Uint8Array
 from training.data.real.photographs import real_photographs
 from training.data.scenes import Scene, read_scenes

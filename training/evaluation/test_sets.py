@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import norm
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.response import ResponseCurve
-from crfnet_core.transfer_functions import rec709_encode, srgb_encode
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
 from training.data.scenes import Scene, read_scene, split_scenes

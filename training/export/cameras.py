@@ -11,7 +11,7 @@ import sys
 from collections.abc import Sequence
 from pathlib import Path
 
-from crfnet_core.cameras import Camera, CameraLibrary
+from crfnet_core.library import Camera, CameraLibrary
 from training.data.real.stacks import measured_response, settings_of_bodies
 
 

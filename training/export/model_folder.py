@@ -17,7 +17,7 @@ from torch import nn
 from crfnet_core.files import file_sha256
 from crfnet_core.network import ModelConfig
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.splits import SPLITS_FILE
 from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded

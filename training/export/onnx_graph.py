@@ -14,7 +14,7 @@ from torch import nn
 
 from crfnet_core.files import atomic_write
 from crfnet_core.statistics import LENGTH
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.network.start import HALF_SUFFIX
 
 OPSET = 18

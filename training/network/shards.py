@@ -16,9 +16,9 @@ import torch
 from torch import Tensor
 from tqdm import tqdm
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.files import atomic_write
 from crfnet_core.posterior import UNUSUAL, Family
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.statistics import window_statistics
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
 from training.data.families import EditedResponses

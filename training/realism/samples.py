@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 import torch
 
-from crfnet_core.image_io import read_photo
+from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.statistics import window_statistics
+from crfnet_core.statistics.windows import cut_windows, select_windows
 from crfnet_core.types import Float32Array, Float64Array, IndexArray
-from crfnet_core.windows import cut_windows, select_windows
 from training.data.curves import CurveSource
 from training.data.real.photographs import REAL_BODIES, RealPhotograph, real_photographs
 from training.data.scenes import Scene

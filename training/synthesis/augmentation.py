@@ -6,8 +6,8 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter, uniform_filter1d
 
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import LUMINANCE
 
 #: Fractions of photographs: without colour, under an illumination gradient, with another large-scale contrast, and

@@ -15,7 +15,7 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d
 
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
 from training.data.scenes import LUMINANCE, Scene, dithered
 

@@ -8,7 +8,7 @@ from enum import StrEnum
 import numpy as np
 from PIL import Image
 
-from crfnet_core.windows import WINDOW_SIZE
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.synthesis.development import Development, Export, ToneMapping
 from training.synthesis.picture import Finish, Jpeg, Sharpening
 from training.synthesis.sensor import Demosaicing, Sensor

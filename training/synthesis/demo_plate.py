@@ -18,8 +18,8 @@ import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.files import atomic_write, atomic_write_text
-from crfnet_core.response import SAMPLES, ResponseCurve
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array, Uint8Array
 
 #: Rows and columns of the panorama (1024 x 512) that make the photograph, 672 x 378.

@@ -13,9 +13,9 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter
 
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.transfer_functions import srgb_encode
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import LUMINANCE
 from training.synthesis.picture import Finish, Jpeg, gaussian, rounded, scaled, split
 from training.synthesis.sensor import Planes, Sensor

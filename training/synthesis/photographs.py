@@ -7,8 +7,8 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from crfnet_core.statistics.windows import WINDOW_SIZE, filled_bins, filled_codes
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
-from crfnet_core.windows import WINDOW_SIZE, filled_bins, filled_codes
 from training.data.curves import IRRADIANCE, DrawsResponses
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured

@@ -12,7 +12,7 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, Table
+from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, Table
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
 from training.synthesis.sensor import Planes
 

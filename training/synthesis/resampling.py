@@ -8,8 +8,8 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d
 
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, IndexArray
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import Scene
 
 #: Smallest and largest distance between samples, in pixels of the scene. Below 1 a window is as soft as a photograph

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
 #: The switch: a property of the window manager.
 SHOWN = "camera_response_shows_windows"
 
-#: Samples along each side of a window. It is `crfnet_core.windows.WINDOW_SIZE` again, because `crfnet_core` comes as a
+#: Samples along each side of a window. It is `crfnet_core.statistics.windows.WINDOW_SIZE` again, because it comes as a
 #: wheel, and the add-on has to start without it.
 WINDOW_SIZE = 227
 

@@ -171,7 +171,7 @@ def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
     """Return the linear plate of what an editor shows, by the stored response and the present exposure."""
     settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
     gray = settings.gray if settings.anchor == "GRAY" else None
-    stops = lazy_import.load("ocio.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
+    stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
     codes = comparison.code_values(space.image, space.image_user)
     return comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
 

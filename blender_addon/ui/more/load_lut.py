@@ -16,7 +16,7 @@ from ..operator_base import ChosenPlate, failed
 from ..preferences import absolute
 
 if TYPE_CHECKING:
-    from crfnet_core.metadata.color_tags import Primaries
+    from crfnet_core.photograph.metadata.color_tags import Primaries
 
 
 class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
@@ -51,8 +51,8 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
             path = absolute(self.filepath)
             if path is None or not Path(self.filepath).name:
                 raise AddonError("No LUT file is chosen: choose a .spi1d, .cube or .clf file")
-            lut = lazy_import.load("ocio.luts.files").read_lut(path)
-            curve = lazy_import.load("ocio.luts.response").response_of_lut(lut)
+            lut = lazy_import.load("crfnet.luts.files").read_lut(path)
+            curve = lazy_import.load("crfnet.luts.response").response_of_lut(lut)
             model = f"{LOADED}{path.name}"
             loaded = lazy_import.load(".work.estimate_record").loaded_estimate(curve, model)
         except expected_errors() as problem:

@@ -11,11 +11,11 @@ heif_boxes       what the boxes of such a file say of its picture: colour, depth
 problems         the errors of files that cannot be decoded
 """
 
-from crfnet_core.image_io.camera_raw import RAW_SUFFIXES
-from crfnet_core.image_io.file_kinds import HEIF_SUFFIXES, LINEAR_SIGNATURES, PHOTOGRAPH_SUFFIXES, SIGNATURES
-from crfnet_core.image_io.header_checks import MAX_PIXELS
-from crfnet_core.image_io.problems import first_line, oiio_message
-from crfnet_core.image_io.reading import read_codes, read_metadata, read_photo
+from crfnet_core.photograph.image_io.camera_raw import RAW_SUFFIXES
+from crfnet_core.photograph.image_io.file_kinds import HEIF_SUFFIXES, LINEAR_SIGNATURES, PHOTOGRAPH_SUFFIXES, SIGNATURES
+from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS
+from crfnet_core.photograph.image_io.problems import first_line, oiio_message
+from crfnet_core.photograph.image_io.reading import read_codes, read_metadata, read_photo
 
 __all__ = [
     "HEIF_SUFFIXES",

@@ -6,8 +6,8 @@ import struct
 from pathlib import Path
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import problems
-from crfnet_core.image_io.camera_raw import is_raw_content, is_raw_name
+from crfnet_core.photograph.image_io import problems
+from crfnet_core.photograph.image_io.camera_raw import is_raw_content, is_raw_name
 
 #: How the files that are read begin.
 SIGNATURES = {

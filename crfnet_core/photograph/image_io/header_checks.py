@@ -6,7 +6,7 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import problems
+from crfnet_core.photograph.image_io import problems
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000

@@ -18,11 +18,11 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import problems
-from crfnet_core.image_io.header_checks import check_size
-from crfnet_core.image_io.heif_boxes import HeifProperties, heif_properties
-from crfnet_core.metadata.file_metadata import metadata_of_header
-from crfnet_core.photo import CodeValues
+from crfnet_core.photograph.image_io import problems
+from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.image_io.heif_boxes import HeifProperties, heif_properties
+from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
+from crfnet_core.photograph.photo import CodeValues
 
 #: EXIF's Orientation, and how each turns the rows and columns as stored: transposed?, rows reversed?, columns reversed?
 _ORIENTATION = 0x0112

@@ -5,9 +5,9 @@ from __future__ import annotations
 import mmap
 from pathlib import Path
 
-from crfnet_core.image_io import problems
-from crfnet_core.image_io.header_checks import check_size
-from crfnet_core.metadata.jpeg import JpegHeader, read_jpeg_header
+from crfnet_core.photograph.image_io import problems
+from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.metadata.jpeg import JpegHeader, read_jpeg_header
 
 _END_OF_IMAGE = b"\xff\xd9"
 

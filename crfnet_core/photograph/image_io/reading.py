@@ -14,14 +14,14 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import problems
-from crfnet_core.image_io.file_kinds import file_kind
-from crfnet_core.image_io.header_checks import checked_bit_depth
-from crfnet_core.image_io.heif import read_heif
-from crfnet_core.image_io.jpeg_files import base_image, checked_jpeg_header
-from crfnet_core.image_io.png_files import with_color_chunks
-from crfnet_core.metadata.file_metadata import FileMetadata, metadata_of_header
-from crfnet_core.photo import CodeValues, Photo
+from crfnet_core.photograph.image_io import problems
+from crfnet_core.photograph.image_io.file_kinds import file_kind
+from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
+from crfnet_core.photograph.image_io.heif import read_heif
+from crfnet_core.photograph.image_io.jpeg_files import base_image, checked_jpeg_header
+from crfnet_core.photograph.image_io.png_files import with_color_chunks
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.photograph.photo import CodeValues, Photo
 
 #: Rows read at a time.
 _ROWS = 256

@@ -16,8 +16,8 @@ origin          what follows: device, editor, scaled or not, saved again or not,
 Nothing here opens a file: `image_io` hands over the header and the segments. Damaged metadata is never an error.
 """
 
-from crfnet_core.metadata.devices import Device
-from crfnet_core.metadata.file_metadata import FileMetadata
-from crfnet_core.metadata.origin import FileOrigin, as_told, file_origin
+from crfnet_core.photograph.metadata.devices import Device
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
+from crfnet_core.photograph.metadata.origin import FileOrigin, as_told, file_origin
 
 __all__ = ["Device", "FileMetadata", "FileOrigin", "as_told", "file_origin"]

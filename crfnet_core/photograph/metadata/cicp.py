@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from crfnet_core.colorimetry import Chromaticity
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags, Primaries
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags, Primaries
 
 #: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
 C: Chromaticity = (0.310, 0.316)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 from enum import StrEnum
 
-from crfnet_core.metadata.file_metadata import FileMetadata
-from crfnet_core.metadata.transfer_tags import profile_transfer
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
+from crfnet_core.photograph.metadata.transfer_tags import profile_transfer
 
 
 class Encoding(StrEnum):

@@ -5,10 +5,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Any
 
-from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.metadata.header_colors import header_attribute, header_color_tags
-from crfnet_core.metadata.jpeg import JpegHeader, Table
-from crfnet_core.metadata.transfer_tags import dpx_transfer, with_named_transfer
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
+from crfnet_core.photograph.metadata.jpeg import JpegHeader, Table
+from crfnet_core.photograph.metadata.transfer_tags import dpx_transfer, with_named_transfer
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.metadata import cicp
-from crfnet_core.metadata.color_tags import (
+from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.metadata.color_tags import (
     ADOBE_RGB,
     AP0,
     AP1,
@@ -19,7 +19,7 @@ from crfnet_core.metadata.color_tags import (
     ColorTags,
     Primaries,
 )
-from crfnet_core.metadata.icc import read_icc
+from crfnet_core.photograph.metadata.icc import read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.colorimetry import adaptation, chromaticity_of
-from crfnet_core.metadata.color_tags import D50, PHOTOGRAPHIC, Primaries
+from crfnet_core.photograph.metadata.color_tags import D50, PHOTOGRAPHIC, Primaries
 from crfnet_core.types import Float64Array
 
 #: XYZ of the profile connection space's white, D50 (7.2.16 of the specification).

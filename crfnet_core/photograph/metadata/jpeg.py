@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cache
 
-from crfnet_core.metadata.exif import interoperability_index
+from crfnet_core.photograph.metadata.exif import interoperability_index
 
 #: A quantization table: 64 divisors in the order of the file, which is a zigzag from low to high frequencies.
 Table = tuple[int, ...]

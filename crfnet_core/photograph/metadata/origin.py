@@ -6,11 +6,11 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from crfnet_core.metadata.devices import Device, camera_name, device_of
-from crfnet_core.metadata.editors import editor_name, is_developer
-from crfnet_core.metadata.encodings import FOOTAGE, Encoding, encoding_of, encoding_words
-from crfnet_core.metadata.file_metadata import FileMetadata
-from crfnet_core.metadata.jpeg import ijg_quality
+from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
+from crfnet_core.photograph.metadata.editors import editor_name, is_developer
+from crfnet_core.photograph.metadata.encodings import FOOTAGE, Encoding, encoding_of, encoding_words
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
+from crfnet_core.photograph.metadata.jpeg import ijg_quality
 
 #: The editor of a file that has a segment of Adobe, or names a raw file, but no program.
 ADOBE = "a program of Adobe"

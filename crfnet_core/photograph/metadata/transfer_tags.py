@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from dataclasses import replace
 
-from crfnet_core.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 
 #: What follows of transfer characteristics in a DPX header (SMPTE ST 268).
 DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}

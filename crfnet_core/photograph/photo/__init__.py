@@ -4,7 +4,7 @@ photo     `Photo`, which is analysed, and `CodeValues`, the integer samples of a
 arrays    pixels from the arrays of NumPy, Pillow and OpenCV
 """
 
-from crfnet_core.photo.arrays import ColorOrder
-from crfnet_core.photo.photo import CodeArray, CodeValues, Photo
+from crfnet_core.photograph.photo.arrays import ColorOrder
+from crfnet_core.photograph.photo.photo import CodeArray, CodeValues, Photo
 
 __all__ = ["CodeArray", "CodeValues", "ColorOrder", "Photo"]

@@ -10,8 +10,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata.file_metadata import FileMetadata
-from crfnet_core.photo.arrays import ColorOrder, HasArrayInterface, check_range, has_equal_channels, pixels_of_array
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
+from crfnet_core.photograph.photo.arrays import (
+    ColorOrder,
+    HasArrayInterface,
+    check_range,
+    has_equal_channels,
+    pixels_of_array,
+)
 from crfnet_core.types import Float32Array
 
 CodeArray = NDArray[np.uint8] | NDArray[np.uint16]

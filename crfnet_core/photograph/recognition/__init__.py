@@ -8,12 +8,12 @@ limited_range   the codes 16 to 235 of video, stored as if they were 0 to 255
 recognition     the finding, in words, with what to do
 """
 
-from crfnet_core.recognition.levels import Levels
-from crfnet_core.recognition.limited_range import is_limited_range
-from crfnet_core.recognition.log_curves import COLOR_SPACES, LogCurve, log_curves
-from crfnet_core.recognition.log_footage import NearCurve, light_error, log_factor, nearest_curves
-from crfnet_core.recognition.recognition import Kind, Recognition, recognize
-from crfnet_core.recognition.tagged import refuse_tagged, tag_refusal
+from crfnet_core.photograph.recognition.levels import Levels
+from crfnet_core.photograph.recognition.limited_range import is_limited_range
+from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES, LogCurve, log_curves
+from crfnet_core.photograph.recognition.log_footage import NearCurve, light_error, log_factor, nearest_curves
+from crfnet_core.photograph.recognition.recognition import Kind, Recognition, recognize
+from crfnet_core.photograph.recognition.tagged import refuse_tagged, tag_refusal
 
 __all__ = [
     "COLOR_SPACES",

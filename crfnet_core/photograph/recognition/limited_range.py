@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from crfnet_core.recognition.levels import Levels
+from crfnet_core.photograph.recognition.levels import Levels
 
 #: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness.
 LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255

@@ -6,8 +6,8 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.recognition.levels import Levels
-from crfnet_core.recognition.log_curves import LEAST_REFLECTANCE, MOST_REFLECTANCE, LogCurve, log_curves
+from crfnet_core.photograph.recognition.levels import Levels
+from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, MOST_REFLECTANCE, LogCurve, log_curves
 from crfnet_core.types import Float64Array
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below

@@ -7,11 +7,11 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
-from crfnet_core.metadata import FileOrigin
-from crfnet_core.recognition.levels import Levels
-from crfnet_core.recognition.limited_range import is_limited_range
-from crfnet_core.recognition.log_curves import COLOR_SPACES
-from crfnet_core.recognition.log_footage import nearest_curves
+from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.recognition.levels import Levels
+from crfnet_core.photograph.recognition.limited_range import is_limited_range
+from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
+from crfnet_core.photograph.recognition.log_footage import nearest_curves
 
 #: Probability of log footage above which it counts as recognized.
 RECOGNIZED = 0.5

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.photo import Photo
-from crfnet_core.recognition.log_curves import COLOR_SPACES
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
 
 #: Encoding by the name that tags give it -> colour space of OpenColorIO's ACES studio config.
 TAGGED_SPACES = COLOR_SPACES | {

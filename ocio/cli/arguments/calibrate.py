@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_json, positive, written_path
-from ocio.defaults import LUT_LENGTH
+from ...defaults import LUT_LENGTH
+from .parts import Commands, add_command, add_json, positive, written_path
 
 EXAMPLES = """examples:
   crfnet calibrate stack/*.jpg --out camera --name eos20d

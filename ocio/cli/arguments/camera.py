@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, Parser, add_action, add_command, add_model, written_path
+from .parts import Commands, Parser, add_action, add_command, add_model, written_path
 
 EXAMPLES = """examples:
   crfnet camera add "A7 III" IMG_1.jpg IMG_2.jpg               one response for all plates; more may be added later

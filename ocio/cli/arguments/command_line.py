@@ -5,8 +5,8 @@ from __future__ import annotations
 import argparse
 import sys
 
-from ocio.arguments import calibrate, camera, completion, config, convert, estimate, info, linearize
-from ocio.arguments.parts import Parser
+from . import calibrate, camera, completion, config, convert, estimate, info, linearize
+from .parts import Parser
 
 
 class _Version(argparse.Action):

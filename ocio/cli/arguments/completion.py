@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ocio.arguments.parts import Commands, add_command
+from .parts import Commands, add_command
 
 #: The shells that shtab knows. Its own list is not read here: importing it takes a third as long as all of --help.
 SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, Parser, add_action, add_command, written_path
+from .parts import Commands, Parser, add_action, add_command, written_path
 
 EXAMPLES = """examples:
   crfnet config add --base /studio/config.ocio look                       into that config; a backup is kept

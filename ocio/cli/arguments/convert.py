@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_json, written_path
+from .parts import Commands, add_command, add_json, written_path
 
 EXAMPLES = """examples:
   crfnet convert look/plate01.spi1d response.npy               for OpenCV's createMergeDebevec

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import (
+from ...defaults import LUT_LENGTH, WINDOWS
+from .parts import (
     Commands,
     add_command,
     add_each,
@@ -15,7 +16,6 @@ from ocio.arguments.parts import (
     positive,
     written_path,
 )
-from ocio.defaults import LUT_LENGTH, WINDOWS
 
 EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look

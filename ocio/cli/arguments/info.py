@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_json
+from .parts import Commands, add_command, add_json
 
 EXAMPLES = """examples:
   crfnet info look/plate01.spi1d

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ocio.arguments.parts import Commands, add_command, add_each, add_frames, add_network, add_plate, written_path
+from .parts import Commands, add_command, add_each, add_frames, add_network, add_plate, written_path
 
 EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr

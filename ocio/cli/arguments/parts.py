@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import NamedTuple, NoReturn, TypeAlias
 
-from ocio.defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
+from ...defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 #: Exit code of refused arguments and refused files.
 BAD_INPUT = 2

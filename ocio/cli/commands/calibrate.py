@@ -7,9 +7,10 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from crfnet_core.calibration import calibrate_stack, parse_times, read_times
-from ocio import pipeline, report
-from ocio.commands.printing import prepare_matplotlib, print_earlier, print_json, print_lines, progress_bar
-from ocio.options import OutputOptions
+
+from ... import pipeline, report
+from ...options import OutputOptions
+from .printing import prepare_matplotlib, print_earlier, print_json, print_lines, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:

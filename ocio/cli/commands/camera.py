@@ -5,7 +5,9 @@ from __future__ import annotations
 import argparse
 from collections.abc import Callable
 
-from crfnet_core.cameras import (
+from crfnet_core.errors import CameraError
+from crfnet_core.files import atomic_write_text, json_text
+from crfnet_core.library import (
     Camera,
     CameraLibrary,
     add_measured,
@@ -17,12 +19,11 @@ from crfnet_core.cameras import (
     read_calibration,
     remove_photographs,
 )
-from crfnet_core.errors import CameraError
-from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.network import ResponseNetwork
-from ocio import pipeline, report
-from ocio.commands.printing import print_json, print_lines, progress_bar
-from ocio.interchange.files import write_response
+
+from ... import pipeline, report
+from ...interchange.files import write_response
+from .printing import print_json, print_lines, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 
 import shtab
 
-from ocio.arguments.command_line import build_parser
+from ..arguments.command_line import build_parser
 
 #: What the arguments that name files and folders are called in the help.
 FILES = {"CONFIG", "FILE", "FILE|MODEL", "FRAME", "LIST|CSV", "LOOK", "OUT", "PATTERN", "PHOTO", "PLATES", "SOURCE"}

@@ -8,15 +8,15 @@ from dataclasses import asdict
 from pathlib import Path
 from typing import Any
 
-from ocio.commands.printing import print_json, print_lines
-from ocio.configs.studio.additions import AdditionOptions, add_looks
-from ocio.configs.studio.looks import Look, read_looks
-from ocio.configs.studio.overlay import write_overlay
-from ocio.configs.studio.plates import Changed, PlateInConfig, plates_in_config
-from ocio.configs.studio.removal import remove_plates
-from ocio.configs.studio.sources import find_config
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
+from ...configs.studio.additions import AdditionOptions, add_looks
+from ...configs.studio.looks import Look, read_looks
+from ...configs.studio.overlay import write_overlay
+from ...configs.studio.plates import Changed, PlateInConfig, plates_in_config
+from ...configs.studio.removal import remove_plates
+from ...configs.studio.sources import find_config
+from ...defaults import CONFIG_NAME
+from ...errors import ConfigError
+from .printing import print_json, print_lines
 
 
 def run(arguments: argparse.Namespace) -> None:

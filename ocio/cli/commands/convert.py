@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from ocio.commands.printing import print_json, print_lines
-from ocio.errors import LutError
-from ocio.interchange.files import read_response, write_response
-from ocio.luts.files import WRITERS, write_lut
-from ocio.luts.forward import forward_lut
-from ocio.luts.rgb_lut import AnyLut
+from ...errors import LutError
+from ...interchange.files import read_response, write_response
+from ...luts.files import WRITERS, write_lut
+from ...luts.forward import forward_lut
+from ...luts.rgb_lut import AnyLut
+from .printing import print_json, print_lines
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -12,14 +12,15 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.errors import PhotoError
-from ocio import pipeline, report
-from ocio.commands.options import check_each, estimate_options, plate_arguments, plate_options
-from ocio.commands.printing import prepare_matplotlib, print_earlier, print_json, print_left, print_lines, progress_bar
-from ocio.defaults import ESTIMATES
-from ocio.movies.source import movie_of
-from ocio.options import EstimateOptions, OutputOptions, PlateOptions
-from ocio.output_files import OutputFiles, plain_stem
-from ocio.pipeline import OutputPlan, PhotographEstimate, PhotographRecord
+
+from ... import pipeline, report
+from ...defaults import ESTIMATES
+from ...movies.source import movie_of
+from ...options import EstimateOptions, OutputOptions, PlateOptions
+from ...output_files import OutputFiles, plain_stem
+from ...pipeline import OutputPlan, PhotographEstimate, PhotographRecord
+from .options import check_each, estimate_options, plate_arguments, plate_options
+from .printing import prepare_matplotlib, print_earlier, print_json, print_left, print_lines, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -39,7 +40,7 @@ def run(arguments: argparse.Namespace) -> None:
     plan = pipeline.plan_outputs(arguments.out, photos, plate_options(arguments), outputs)
     with ThreadPoolExecutor(1) as loader, progress_bar("windows") as progress:
         if outputs.has_sheet:
-            loader.submit(import_module, "ocio.sheet")  # matplotlib, on another core than network and photograph
+            loader.submit(import_module, "crfnet.report.sheet")  # matplotlib, on another core
         prior, network = pipeline.load_prior(options), pipeline.load_network(options)
         estimated = pipeline.estimate_photographs(
             photos, network, prior, options, frames=arguments.frames, progress=progress

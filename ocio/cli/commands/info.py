@@ -7,10 +7,11 @@ from pathlib import Path
 
 from crfnet_core.errors import ModelError
 from crfnet_core.network import ResponseNetwork, model_folder
-from ocio import report
-from ocio.commands.printing import print_json, print_lines
-from ocio.interchange.files import READABLE, read_response
-from ocio.luts.files import READERS, read_lut
+
+from ... import report
+from ...interchange.files import READABLE, read_response
+from ...luts.files import READERS, read_lut
+from .printing import print_json, print_lines
 
 #: Names of the files of a model; either of them stands for its folder.
 MODEL_FILES = ("model.json", "model.onnx")

@@ -7,21 +7,22 @@ from dataclasses import asdict
 from pathlib import Path
 
 from crfnet_core.errors import CameraError
-from crfnet_core.estimate import ResponseEstimate
-from ocio import pipeline, report
-from ocio.commands.options import check_each, estimate_options, plate_options
-from ocio.commands.printing import print_json, print_lines, progress_bar
-from ocio.defaults import PLATES
-from ocio.errors import PlateError
-from ocio.interchange.files import read_response
-from ocio.interchange.response_file import ResponseFile
-from ocio.luts.files import READERS
-from ocio.luts.rgb_lut import AnyLut
-from ocio.movies.source import PlateSource, find_source, movie_of
-from ocio.movies.stream import check_progressive
-from ocio.output_files import check_folder, output_folder
-from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.linear import linear_targets, linearize_plates
+from crfnet_core.estimate.estimate import ResponseEstimate
+
+from ... import pipeline, report
+from ...defaults import PLATES
+from ...errors import PlateError
+from ...interchange.files import read_response
+from ...interchange.response_file import ResponseFile
+from ...luts.files import READERS
+from ...luts.rgb_lut import AnyLut
+from ...movies.source import PlateSource, find_source, movie_of
+from ...movies.stream import check_progressive
+from ...output_files import check_folder, output_folder
+from ...plates.frame_pattern import FramePattern
+from ...plates.linear import linear_targets, linearize_plates
+from .options import check_each, estimate_options, plate_options
+from .printing import print_json, print_lines, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 
 from crfnet_core.errors import CRFNetError
-from ocio.options import EstimateOptions, PlateOptions
+
+from ...options import EstimateOptions, PlateOptions
 
 
 def estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOptions:

@@ -54,7 +54,7 @@ def print_left(left: Sequence[str], what: str) -> None:
 
 
 def print_earlier(earlier: Mapping[str, Sequence[str]], config: Path, what: str) -> None:
-    """Warn of what `ocio.pipeline.folders.EarlierRun.document` names; say how the colour spaces of plates come back."""
+    """Warn of what `EarlierRun.document` names; say how the colour spaces of plates come back."""
     print_left(earlier.get("left", ()), what)
     if names := earlier.get("dropped"):
         which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")

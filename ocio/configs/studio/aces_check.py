@@ -10,11 +10,12 @@ import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import one_line
-from crfnet_core.metadata.color_tags import REC709, conversion_matrix
-from ocio.configs.files import plate_exposure
-from ocio.configs.reference_space import REC709_TO_AP0
-from ocio.configs.studio.looks import Look
-from ocio.errors import ConfigError
+from crfnet_core.photograph.metadata.color_tags import REC709, conversion_matrix
+
+from ...errors import ConfigError
+from ..files import plate_exposure
+from ..reference_space import REC709_TO_AP0
+from .looks import Look
 
 #: Differences in ACES2065-1 between a config's processor and the LUT and matrix: absolute up to a value of 1, relative
 #: above. The first is worth a note, the second refuses the config. Blender 4.5 goes through rounded matrices: 2.4e-4.

@@ -1,7 +1,7 @@
 """Put plates into a config: their colour spaces, rules and views.
 
 Everything else of the config stays: its profile version, roles, displays, views, looks, rules and search paths. Beside
-it lie a folder of our own with the LUTs and a record (`ocio.configs.installation_record`), and a backup.
+it lie a folder of our own with the LUTs and a record (`crfnet.configs.installation_record`), and a backup.
 """
 
 from __future__ import annotations
@@ -12,9 +12,14 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.file_rules import LINEAR_SUFFIX, add_file_rule
-from ocio.configs.files import write_config
-from ocio.configs.installation_record import (
+from ...errors import ConfigError
+from ...luts.files import read_lut
+from ...luts.lut1d import Lut1D
+from ...luts.spi1d import write_spi1d
+from ...output_files import output_folder
+from ..file_rules import LINEAR_SUFFIX, add_file_rule
+from ..files import write_config
+from ..installation_record import (
     InstallationRecord,
     backed_up,
     digest,
@@ -23,20 +28,15 @@ from ocio.configs.installation_record import (
     record_file,
     write_record,
 )
-from ocio.configs.installed import free_name
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space
-from ocio.configs.plate_views import add_plate_views, plate_views, view_names
-from ocio.configs.studio.aces_check import check_in_ap0
-from ocio.configs.studio.looks import Look
-from ocio.configs.studio.plates import Changed, checked_target, plate_in_config, plates_in_config
-from ocio.configs.studio.rules import PlateRules
-from ocio.configs.studio.sources import ConfigSource, is_blender_config
-from ocio.configs.undo import as_before_on_failure
-from ocio.errors import ConfigError
-from ocio.luts.files import read_lut
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import output_folder
+from ..installed import free_name
+from ..plate_color_space import PlateColorSpace, add_plate_color_space
+from ..plate_views import add_plate_views, plate_views, view_names
+from ..undo import as_before_on_failure
+from .aces_check import check_in_ap0
+from .looks import Look
+from .plates import Changed, checked_target, plate_in_config, plates_in_config
+from .rules import PlateRules
+from .sources import ConfigSource, is_blender_config
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -46,14 +46,14 @@ class AdditionOptions:
     Parameters
     ----------
     patterns : tuple of str
-        The names of a plate's files (`ocio.configs.file_rules.rule_regex`); none for those of its photographs.
+        The names of a plate's files (`crfnet.configs.file_rules.rule_regex`); none for those of its photographs.
     linear_patterns : tuple of str
         The names of its linear files; none for those that `crfnet estimate` has written.
     has_rules : bool
         Whether the plates get file rules. Without patterns, a config of Blender's gets none: it holds for every
         project.
     has_views : bool
-        Whether the plates get views (`ocio.configs.plate_views`). Views that are there stay.
+        Whether the plates get views (`crfnet.configs.plate_views`). Views that are there stay.
     overwrite : bool
         Whether another config may be replaced.
     """

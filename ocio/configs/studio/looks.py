@@ -11,16 +11,17 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import read_json
-from crfnet_core.image_io import oiio_message
-from crfnet_core.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
-from ocio.configs.files import load_config, plate_exposure
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.defaults import ESTIMATES
-from ocio.errors import ConfigError, LutError
-from ocio.luts.files import READERS, read_lut
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.response import response_of_lut
-from ocio.output_files import OutputFiles
+from crfnet_core.photograph.image_io import oiio_message
+from crfnet_core.photograph.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
+
+from ...defaults import ESTIMATES
+from ...errors import ConfigError, LutError
+from ...luts.files import READERS, read_lut
+from ...luts.lut1d import Lut1D
+from ...luts.response import response_of_lut
+from ...output_files import OutputFiles
+from ..files import load_config, plate_exposure
+from ..plate_color_space import PlateColorSpace
 
 
 @dataclass(frozen=True, eq=False)

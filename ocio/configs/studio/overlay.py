@@ -15,18 +15,19 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.files import atomic_write_text, check_target
-from ocio.configs.files import write_config
-from ocio.configs.installation_record import own_folder
-from ocio.configs.plate_color_space import add_plate_color_space
-from ocio.configs.studio.aces_check import check_in_ap0
-from ocio.configs.studio.additions import own_space
-from ocio.configs.studio.looks import Look
-from ocio.configs.studio.plates import PlateInConfig, plates_in_config
-from ocio.configs.studio.sources import ConfigSource
-from ocio.configs.undo import as_before_on_failure
-from ocio.errors import ConfigError
-from ocio.luts.spi1d import write_spi1d
-from ocio.output_files import check_config_folder, output_folder
+
+from ...errors import ConfigError
+from ...luts.spi1d import write_spi1d
+from ...output_files import check_config_folder, output_folder
+from ..files import write_config
+from ..installation_record import own_folder
+from ..plate_color_space import add_plate_color_space
+from ..undo import as_before_on_failure
+from .aces_check import check_in_ap0
+from .additions import own_space
+from .looks import Look
+from .plates import PlateInConfig, plates_in_config
+from .sources import ConfigSource
 
 #: The config without plates.
 TEMPLATE = """\

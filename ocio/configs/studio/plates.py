@@ -8,14 +8,14 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.file_rules import LINEAR_SUFFIX, file_rules
-from ocio.configs.files import plate_exposure
-from ocio.configs.plate_color_space import FAMILY
-from ocio.configs.plate_views import plate_views
-from ocio.configs.reference_space import lut_file_of
-from ocio.configs.studio.sources import ConfigSource
-from ocio.errors import ConfigError
-from ocio.output_files import check_config_folder
+from ...errors import ConfigError
+from ...output_files import check_config_folder
+from ..file_rules import LINEAR_SUFFIX, file_rules
+from ..files import plate_exposure
+from ..plate_color_space import FAMILY
+from ..plate_views import plate_views
+from ..reference_space import lut_file_of
+from .sources import ConfigSource
 
 
 @dataclass(frozen=True)

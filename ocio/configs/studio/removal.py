@@ -7,8 +7,9 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.files import loaded_or_empty, write_config
-from ocio.configs.installation_record import (
+from ...errors import ConfigError
+from ..files import loaded_or_empty, write_config
+from ..installation_record import (
     InstallationRecord,
     backed_up,
     digest,
@@ -18,11 +19,10 @@ from ocio.configs.installation_record import (
     remove_record,
     write_record,
 )
-from ocio.configs.plate_color_space import without_plate_color_space
-from ocio.configs.studio.plates import Changed, PlateInConfig, checked_target, plates_in_config
-from ocio.configs.studio.sources import ConfigSource, is_blender_config
-from ocio.configs.undo import as_before_on_failure
-from ocio.errors import ConfigError
+from ..plate_color_space import without_plate_color_space
+from ..undo import as_before_on_failure
+from .plates import Changed, PlateInConfig, checked_target, plates_in_config
+from .sources import ConfigSource, is_blender_config
 
 
 def remove_plates(source: ConfigSource, names: Sequence[str]) -> Changed:

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import PyOpenColorIO as OCIO
 
-from ocio.configs.file_rules import is_counter_name, linear_pattern, plate_pattern
-from ocio.configs.reference_space import LINEAR_NAMES, linear_space_name
-from ocio.configs.studio.looks import Look
+from ..file_rules import is_counter_name, linear_pattern, plate_pattern
+from ..reference_space import LINEAR_NAMES, linear_space_name
+from .looks import Look
 
 #: The space of linear plates of which no header says more.
 DEFAULT_LINEAR = "lin_rec709_scene"
@@ -22,7 +22,7 @@ class PlateRules:
     Parameters
     ----------
     encoded, linear : tuple of str
-        Patterns of the plate's files, and of its linear ones (`ocio.configs.file_rules.rule_regex`).
+        Patterns of the plate's files, and of its linear ones (`crfnet.configs.file_rules.rule_regex`).
     linear_space : str
         The config's colour space of the linear ones.
     notes : tuple of str

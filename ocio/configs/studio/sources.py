@@ -10,9 +10,10 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from crfnet_core.errors import one_line
-from ocio.configs.files import load_config
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
+
+from ...defaults import CONFIG_NAME
+from ...errors import ConfigError
+from ..files import load_config
 
 #: How OpenColorIO marks the names of built-in configs.
 BUILT_IN = "ocio://"

@@ -5,8 +5,8 @@ import pytest
 
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
-from crfnet_core.metrics import estimation_error, scale_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, scale_error, shape_error
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
 #: The largest errors allowed: of the shape in stops, and of E_est where white is reached.

@@ -5,10 +5,10 @@ import pytest
 
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
-from crfnet_core.cameras import Camera, CameraSettings, MeasuredResponse
-from crfnet_core.cameras.answer import camera_estimate
-from crfnet_core.metrics import scale_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.library import Camera, CameraSettings, MeasuredResponse
+from crfnet_core.library.answer import camera_estimate
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import scale_error, shape_error
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
 #: The code at which the camera clips, as a part of the largest.

@@ -6,8 +6,8 @@ import pytest
 from crfnet_core.calibration.alignment import chain_of_shifts, common_area, displacement, rank_image
 from crfnet_core.calibration.blocks import block_means, cell_size, observe
 from crfnet_core.calibration.curve_model import CurveModel, cubic_splines
-from crfnet_core.metrics import estimation_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, shape_error
 from tests.helpers.stacks import emor_response
 
 

@@ -6,7 +6,7 @@ import pytest
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.calibration.frames import read_frames, white_level
-from crfnet_core.metrics import scale_error
+from crfnet_core.response.metrics import scale_error
 from tests.helpers.images import write_image
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
 

@@ -6,7 +6,9 @@ import numpy as np
 import pytest
 
 from crfnet_core import ResponseCurve, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
-from crfnet_core.cameras import (
+from crfnet_core.errors import CameraError, CRFNetError, PhotoError
+from crfnet_core.files import file_sha256
+from crfnet_core.library import (
     Camera,
     CameraLibrary,
     CameraSettings,
@@ -21,13 +23,11 @@ from crfnet_core.cameras import (
     remove_photographs,
     with_camera,
 )
-from crfnet_core.cameras.answer import brightness_per_stop
-from crfnet_core.cameras.camera import KEY_LENGTH
-from crfnet_core.errors import CameraError, CRFNetError, PhotoError
-from crfnet_core.files import file_sha256
-from crfnet_core.metadata import FileMetadata, file_origin
-from crfnet_core.metrics import estimation_error
+from crfnet_core.library.answer import brightness_per_stop
+from crfnet_core.library.camera import KEY_LENGTH
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.posterior import Prior, Verdict
+from crfnet_core.response.metrics import estimation_error
 from tests.helpers.cameras import photograph
 from tests.helpers.footage import log_picture
 from tests.helpers.images import write_image

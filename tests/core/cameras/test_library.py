@@ -7,10 +7,10 @@ from concurrent.futures import ThreadPoolExecutor
 import pytest
 
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import Camera, CameraLibrary, CameraSettings, MeasuredResponse, add_measured, find_camera
-from crfnet_core.cameras import library as library_module
-from crfnet_core.cameras.documents import camera_document, read_calibration
 from crfnet_core.errors import CameraError
+from crfnet_core.library import Camera, CameraLibrary, CameraSettings, MeasuredResponse, add_measured, find_camera
+from crfnet_core.library import library as library_module
+from crfnet_core.library.documents import camera_document, read_calibration
 
 
 def measured(**settings):

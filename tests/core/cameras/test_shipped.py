@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.cameras import CameraLibrary, CameraSettings, camera_estimate, find_camera, matching_cameras
+from crfnet_core.library import CameraLibrary, CameraSettings, camera_estimate, find_camera, matching_cameras
 from crfnet_core.posterior import Verdict
 
 

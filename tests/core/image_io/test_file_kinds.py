@@ -7,7 +7,7 @@ import pytest
 from PIL import Image
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_codes, read_metadata, read_photo
+from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
 from tests.helpers.colored_ramp import colored_ramp
 from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 from tests.helpers.images import write_image

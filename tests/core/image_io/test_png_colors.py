@@ -7,10 +7,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.image_io.png_files import with_color_chunks
-from crfnet_core.metadata import cicp
-from crfnet_core.metadata.color_tags import (
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.image_io.png_files import with_color_chunks
+from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.metadata.color_tags import (
     ADOBE_RGB,
     DISPLAY_P3,
     PHOTOGRAPHIC,

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.metadata import Device, FileMetadata, as_told, file_origin
+from crfnet_core.photograph.metadata import Device, FileMetadata, as_told, file_origin
 from crfnet_core.posterior import Family
 from crfnet_core.posterior.factors import FACTORS, LEAST_FACTOR, family_factors
 

@@ -1,10 +1,10 @@
 import numpy as np
 import pytest
 
-from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
 from crfnet_core.posterior.verdict import GOOD_STOPS, USABLE_STOPS
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, shape_error
 from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for, small_bank
 
 

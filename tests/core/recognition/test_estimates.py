@@ -8,10 +8,10 @@ import pytest
 
 from crfnet_core import Photo, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata import file_origin
-from crfnet_core.metadata.encodings import Encoding
+from crfnet_core.photograph.metadata import file_origin
+from crfnet_core.photograph.metadata.encodings import Encoding
+from crfnet_core.photograph.recognition import Kind
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.recognition import Kind
 from tests.helpers.footage import log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
 

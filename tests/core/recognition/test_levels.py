@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.recognition import Levels
+from crfnet_core.photograph.recognition import Levels
 
 
 def flat(*shares, size=1000):

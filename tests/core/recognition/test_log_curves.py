@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from crfnet_core.metadata import cicp
-from crfnet_core.recognition import COLOR_SPACES, log_curves
-from crfnet_core.recognition.tagged import TAGGED_SPACES
-from ocio.movies import log_tags
+from crfnet.movies import log_tags
+from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.recognition import COLOR_SPACES, log_curves
+from crfnet_core.photograph.recognition.tagged import TAGGED_SPACES
 
 #: Published codes of 10 bits (black, 18 % gray, 90 % white), from the makers' tables.
 PUBLISHED = {

@@ -6,11 +6,11 @@ import json
 import numpy as np
 import pytest
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata, file_origin
-from crfnet_core.metadata.color_tags import ColorTags
-from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
-from crfnet_core.recognition import (
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
+from crfnet_core.photograph.recognition import (
     COLOR_SPACES,
     Kind,
     Levels,
@@ -23,7 +23,12 @@ from crfnet_core.recognition import (
     recognize,
     tag_refusal,
 )
-from crfnet_core.recognition.log_footage import BLACK_FACTOR, HIGH_WHITE_FACTOR, LIFTED_BLACK, LOW_WHITE_FACTOR
+from crfnet_core.photograph.recognition.log_footage import (
+    BLACK_FACTOR,
+    HIGH_WHITE_FACTOR,
+    LIFTED_BLACK,
+    LOW_WHITE_FACTOR,
+)
 from tests.helpers.footage import limited_range_picture, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
 

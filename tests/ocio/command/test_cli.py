@@ -10,10 +10,10 @@ from pathlib import Path
 import pytest
 import shtab
 
+from crfnet.cli.arguments.command_line import build_parser
+from crfnet.cli.commands import printing
+from crfnet.cli.commands.completion import FILES, FOLDERS, all_arguments
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from ocio.arguments.command_line import build_parser
-from ocio.commands import printing
-from ocio.commands.completion import FILES, FOLDERS, all_arguments
 
 COMMANDS = ("estimate", "linearize", "info", "completion")
 

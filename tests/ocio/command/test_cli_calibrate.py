@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
-from crfnet_core.metrics import shape_error
-from crfnet_core.response import ResponseCurve
-from ocio.arguments.parts import BAD_INPUT
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.response import response_of_lut
-from ocio.luts.spi1d import read_spi1d
-from ocio.pipeline.calibrations import response_to_compare
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.response import response_of_lut
+from crfnet.luts.spi1d import read_spi1d
+from crfnet.pipeline.calibrations import response_to_compare
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
@@ -191,9 +191,9 @@ def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tm
 
 def test_a_response_from_a_lut_is_gamma(tmp_path):
     """`response_to_compare` on a LUT of gamma 2.2."""
-    from ocio.luts.files import write_lut
-    from ocio.luts.lut1d import inverse_response_lut
-    from ocio.pipeline import response_to_compare
+    from crfnet.luts.files import write_lut
+    from crfnet.luts.lut1d import inverse_response_lut
+    from crfnet.pipeline import response_to_compare
 
     write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
     assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01

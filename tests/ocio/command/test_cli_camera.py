@@ -5,13 +5,13 @@ import json
 import numpy as np
 import pytest
 
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.files import read_lut
+from crfnet.luts.response import response_of_lut
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
 from crfnet_core.files import file_sha256
-from crfnet_core.metrics import estimation_error
-from ocio.arguments.parts import BAD_INPUT
-from ocio.luts.files import read_lut
-from ocio.luts.response import response_of_lut
+from crfnet_core.library import CameraLibrary, CameraSettings, MeasuredResponse, add_measured
+from crfnet_core.response.metrics import estimation_error
 from tests.helpers.cameras import photograph
 from tests.helpers.folders import tree
 from tests.helpers.images import read_image

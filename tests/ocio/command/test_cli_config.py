@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocio.configs.portable import portable_config
+from crfnet.configs.portable import portable_config
 from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image

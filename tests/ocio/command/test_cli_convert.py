@@ -5,11 +5,11 @@ import json
 import numpy as np
 import pytest
 
-from ocio.interchange.files import read_response, write_response
-from ocio.luts.files import WRITERS, read_lut, write_lut
-from ocio.luts.forward import forward_lut
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.rgb_lut import RgbLut1D
+from crfnet.interchange.files import read_response, write_response
+from crfnet.luts.files import WRITERS, read_lut, write_lut
+from crfnet.luts.forward import forward_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.rgb_lut import RgbLut1D
 from tests.helpers.images import read_image
 
 

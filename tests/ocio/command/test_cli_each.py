@@ -10,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from ocio.arguments.parts import BAD_INPUT
-from ocio.defaults import ESTIMATES
-from ocio.pipeline import each
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.defaults import ESTIMATES
+from crfnet.pipeline import each
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.processes import start_interruptible
@@ -248,17 +248,17 @@ def test_a_folder_without_photographs_is_refused(estimate, tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_run_is_continued(photographs, fixed_model, tmp_path):
     code = (
-        "import sys, time, ocio.cli, ocio.pipeline.manifest as m;"
+        "import sys, time, crfnet.cli.main, crfnet.pipeline.manifest as m;"
         "add = m.Manifest.add;"
         "m.Manifest.add = lambda self, record: (add(self, record), print('ready', flush=True), time.sleep(60));"
-        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]
     with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE) as process:
         process.stdout.readline()
         process.send_signal(signal.SIGKILL)
     assert len(manifest_lines(tmp_path)[1]) == 1
-    subprocess.run([sys.executable, "-m", "ocio.cli", *arguments], capture_output=True, check=True)
+    subprocess.run([sys.executable, "-m", "crfnet.cli.main", *arguments], capture_output=True, check=True)
     assert len(manifest_lines(tmp_path)[1]) == 3
     assert "config.ocio" in listed(tmp_path / "out")
 
@@ -281,7 +281,7 @@ def test_a_dask_worker_that_dies_loses_nothing(photographs, fixed_model, tmp_pat
         shutil.copy(photographs / "a.jpg", photographs / f"more {number}.jpg")
     with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as cluster:
         arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK[:-2]]
-        command = [sys.executable, "-m", "ocio.cli", *arguments, "--scheduler", cluster.scheduler_address]
+        command = [sys.executable, "-m", "crfnet.cli.main", *arguments, "--scheduler", cluster.scheduler_address]
         with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
             kill_a_busy_worker(distributed, cluster)
             _, err = process.communicate(timeout=100)

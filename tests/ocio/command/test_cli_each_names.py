@@ -9,9 +9,9 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.arguments.parts import BAD_INPUT
-from ocio.configs.plate_color_space import FAMILY
-from ocio.defaults import ESTIMATES
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.configs.plate_color_space import FAMILY
+from crfnet.defaults import ESTIMATES
 from tests.helpers.folders import listed, tree
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")

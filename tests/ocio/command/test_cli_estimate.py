@@ -10,13 +10,13 @@ from pathlib import Path, PurePosixPath
 import numpy as np
 import pytest
 
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.cli.commands import printing
+from crfnet.errors import ConfigError
+from crfnet.luts.spi1d import read_spi1d
+from crfnet.pipeline import folders
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
-from crfnet_core.response import ResponseCurve
-from ocio.arguments.parts import BAD_INPUT
-from ocio.commands import printing
-from ocio.errors import ConfigError
-from ocio.luts.spi1d import read_spi1d
-from ocio.pipeline import folders
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 

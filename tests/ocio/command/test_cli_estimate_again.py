@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from ocio.commands.printing import print_left
+from crfnet.cli.commands.printing import print_left
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed
 

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from ocio.arguments.parts import BAD_INPUT
+from crfnet.cli.arguments.parts import BAD_INPUT
 from tests.helpers.folders import listed
 from tests.helpers.movies import make_movie
 

@@ -5,10 +5,10 @@ import json
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.arguments.parts import BAD_INPUT
-from ocio.luts.files import read_lut, write_lut
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded
 from tests.helpers.folders import listed
 from tests.helpers.images import read_image

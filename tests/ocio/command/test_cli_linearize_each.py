@@ -6,13 +6,13 @@ import shutil
 import numpy as np
 import pytest
 
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.defaults import PLATES
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.pipeline import each_linear
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras.library import SHIPPED
-from ocio.arguments.parts import BAD_INPUT
-from ocio.defaults import PLATES
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.pipeline import each_linear
+from crfnet_core.library.library import SHIPPED
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
 

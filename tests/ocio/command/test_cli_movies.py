@@ -11,11 +11,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet_core.image_io import read_photo
-from ocio.arguments.parts import BAD_INPUT
-from ocio.configs.files import load_config
-from ocio.luts.files import read_lut
-from ocio.movies import decoding
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.configs.files import load_config
+from crfnet.luts.files import read_lut
+from crfnet.movies import decoding
+from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed, tree
 from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
 from tests.helpers.plates import read_exr
@@ -120,7 +120,7 @@ def test_an_interrupted_run_leaves_whole_frames(look, tmp_path):
     arguments = [
         sys.executable,
         "-m",
-        "ocio.cli",
+        "crfnet.cli.main",
         "linearize",
         movie,
         "--lut",

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from ocio.arguments.parts import BAD_INPUT
+from crfnet.cli.arguments.parts import BAD_INPUT
 from tests.helpers.folders import listed
 from tests.helpers.processes import start_interruptible
 
@@ -54,9 +54,9 @@ def test_a_reader_that_leaves_is_no_error_message(look):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_leaves_nothing_and_no_traceback(plate, fixed_model, tmp_path, number):
     code = (
-        "import sys, time, ocio.pipeline.folders as f, ocio.cli;"
+        "import sys, time, crfnet.pipeline.folders as f, crfnet.cli.main;"
         "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
-        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", code, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
     with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -73,10 +73,10 @@ def test_a_signal_leaves_nothing_and_no_traceback(plate, fixed_model, tmp_path, 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_control_c_during_the_imports_leaves_no_traceback(look):
     code = (
-        "import sys, ocio.cli;"
-        "import_module = ocio.cli.import_module;"
-        "ocio.cli.import_module = lambda name: (print('ready', flush=True), import_module(name))[1];"
-        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+        "import sys, crfnet.cli.main;"
+        "import_module = crfnet.cli.main.import_module;"
+        "crfnet.cli.main.import_module = lambda name: (print('ready', flush=True), import_module(name))[1];"
+        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     command = [sys.executable, "-c", code, "info", look / "plate.spi1d"]
     with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
@@ -100,9 +100,9 @@ def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fixed_model, tmp_path):
     code = (
-        "import sys, time, ocio.pipeline.folders as f, ocio.cli;"
+        "import sys, time, crfnet.pipeline.folders as f, crfnet.cli.main;"
         "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
-        "sys.exit(ocio.cli.main(sys.argv[1:]))"
+        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     arguments = ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
     with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE, text=True) as process:

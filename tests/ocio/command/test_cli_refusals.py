@@ -5,11 +5,11 @@ import shutil
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.arguments.parts import BAD_INPUT
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.spi1d import write_spi1d
-from ocio.pipeline import estimates
+from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.spi1d import write_spi1d
+from crfnet.pipeline import estimates
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import tree
 from tests.helpers.images import write_image
 

@@ -3,9 +3,9 @@
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.portable import portable_config
-from ocio.defaults import CONFIG_NAME
-from ocio.luts.files import write_lut
+from crfnet.configs.portable import portable_config
+from crfnet.defaults import CONFIG_NAME
+from crfnet.luts.files import write_lut
 from tests.helpers.looks import OTHER_LUT, write_look
 
 

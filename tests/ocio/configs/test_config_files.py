@@ -10,13 +10,13 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs.files import load_config, role_name, write_config
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.errors import ConfigError
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.configs.files import load_config, role_name, write_config
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.errors import ConfigError
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import LUT, SPACE, converted, loaded
 from tests.helpers.folders import listed
 from tests.helpers.images import read_image, write_image

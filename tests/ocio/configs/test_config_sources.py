@@ -5,9 +5,9 @@ from pathlib import Path
 
 import pytest
 
-from ocio.configs.portable import portable_config
-from ocio.configs.studio.sources import built_in_names, find_config, is_blender_config
-from ocio.errors import ConfigError
+from crfnet.configs.portable import portable_config
+from crfnet.configs.studio.sources import built_in_names, find_config, is_blender_config
+from crfnet.errors import ConfigError
 
 
 @pytest.fixture

@@ -5,7 +5,7 @@ import re
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.file_rules import (
+from crfnet.configs.file_rules import (
     add_file_rule,
     file_rules,
     is_counter_name,
@@ -13,7 +13,7 @@ from ocio.configs.file_rules import (
     plate_pattern,
     rule_regex,
 )
-from ocio.configs.portable import portable_config
+from crfnet.configs.portable import portable_config
 from tests.helpers.configs import rule_names
 
 

@@ -6,16 +6,16 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs import installed
-from ocio.configs.installation_record import FOLDER, RECORD_NAME
-from ocio.configs.installed import install, installed_color_spaces, restore, uninstall
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError, PlateError
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.spi1d import read_spi1d, write_spi1d
+from crfnet.configs import installed
+from crfnet.configs.installation_record import FOLDER, RECORD_NAME
+from crfnet.configs.installed import install, installed_color_spaces, restore, uninstall
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.defaults import CONFIG_NAME
+from crfnet.errors import ConfigError, PlateError
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.spi1d import read_spi1d, write_spi1d
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
 

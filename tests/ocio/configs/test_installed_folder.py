@@ -6,11 +6,11 @@ import re
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.installation_record import FOLDER, RECORD_NAME
-from ocio.configs.installed import install, missing_color_spaces, restore
-from ocio.configs.portable import portable_config
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
+from crfnet.configs.installation_record import FOLDER, RECORD_NAME
+from crfnet.configs.installed import install, missing_color_spaces, restore
+from crfnet.configs.portable import portable_config
+from crfnet.defaults import CONFIG_NAME
+from crfnet.errors import ConfigError
 from tests.helpers.configs import loaded
 from tests.helpers.folders import tree
 

@@ -5,15 +5,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs import installed
-from ocio.configs.installation_record import FOLDER
-from ocio.configs.installed import install, installed_color_spaces, restore
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.defaults import CONFIG_NAME
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.configs import installed
+from crfnet.configs.installation_record import FOLDER
+from crfnet.configs.installed import install, installed_color_spaces, restore
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.defaults import CONFIG_NAME
+from crfnet.errors import ConfigError
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import STUDIO, add

@@ -4,8 +4,8 @@ import json
 
 import pytest
 
-from ocio.configs.studio.looks import read_looks
-from ocio.errors import ConfigError
+from crfnet.configs.studio.looks import read_looks
+from crfnet.errors import ConfigError
 
 
 @pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", 5, None])

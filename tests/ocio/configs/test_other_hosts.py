@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ocio.luts.spi1d import read_spi1d
+from crfnet.luts.spi1d import read_spi1d
 from tests.helpers.images import read_image
 
 

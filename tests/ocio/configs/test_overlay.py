@@ -8,14 +8,14 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.configs.portable import portable_config
-from ocio.configs.reference_space import REC709_TO_AP0
-from ocio.configs.studio.looks import read_looks
-from ocio.configs.studio.overlay import write_overlay
-from ocio.configs.studio.sources import find_config
-from ocio.errors import ConfigError
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.configs.portable import portable_config
+from crfnet.configs.reference_space import REC709_TO_AP0
+from crfnet.configs.studio.looks import read_looks
+from crfnet.configs.studio.overlay import write_overlay
+from crfnet.configs.studio.sources import find_config
+from crfnet.errors import ConfigError
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look

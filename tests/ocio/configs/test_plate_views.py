@@ -6,9 +6,8 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
-from ocio.configs.plate_color_space import PlateColorSpace, add_plate_color_space, without_plate_color_space
-from ocio.configs.plate_views import (
+from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_space, without_plate_color_space
+from crfnet.configs.plate_views import (
     KNEE,
     SOFTNESS,
     active_views,
@@ -18,9 +17,10 @@ from ocio.configs.plate_views import (
     roll_off,
     view_names,
 )
-from ocio.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
-from ocio.errors import ConfigError
-from ocio.luts.files import write_lut
+from crfnet.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
+from crfnet.errors import ConfigError
+from crfnet.luts.files import write_lut
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
 from tests.helpers.configs import loaded
 from tests.helpers.looks import LUT
 

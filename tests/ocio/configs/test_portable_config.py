@@ -4,9 +4,9 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.plate_color_space import FAMILY, PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.errors import ConfigError
+from crfnet.configs.plate_color_space import FAMILY, PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.errors import ConfigError
 from tests.helpers.configs import REC709_TO_AP1, SPACE, converted, rule_names
 
 

@@ -6,13 +6,13 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.metadata.color_tags import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
-from ocio.configs.plate_views import view_names
-from ocio.configs.reference_space import REC709_TO_AP0
-from ocio.configs.studio import additions
-from ocio.configs.studio.aces_check import check_in_ap0
-from ocio.configs.studio.plates import plates_in_config
-from ocio.errors import ConfigError
+from crfnet.configs.plate_views import view_names
+from crfnet.configs.reference_space import REC709_TO_AP0
+from crfnet.configs.studio import additions
+from crfnet.configs.studio.aces_check import check_in_ap0
+from crfnet.configs.studio.plates import plates_in_config
+from crfnet.errors import ConfigError
+from crfnet_core.photograph.metadata.color_tags import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
 from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look

@@ -4,14 +4,14 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.configs.installed import install, restore
-from ocio.configs.plate_color_space import PlateColorSpace
-from ocio.configs.portable import portable_config
-from ocio.configs.studio import removal
-from ocio.configs.studio.plates import plates_in_config
-from ocio.configs.studio.removal import remove_plates
-from ocio.configs.studio.sources import find_config
-from ocio.errors import ConfigError
+from crfnet.configs.installed import install, restore
+from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.portable import portable_config
+from crfnet.configs.studio import removal
+from crfnet.configs.studio.plates import plates_in_config
+from crfnet.configs.studio.removal import remove_plates
+from crfnet.configs.studio.sources import find_config
+from crfnet.errors import ConfigError
 from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, write_look

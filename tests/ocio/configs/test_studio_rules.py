@@ -6,14 +6,14 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, Primaries
-from ocio.configs.portable import portable_config
-from ocio.configs.studio.looks import read_looks
-from ocio.defaults import ESTIMATES
-from ocio.errors import ConfigError, LutError
-from ocio.luts.files import write_lut
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.rgb_lut import RgbLut1D
+from crfnet.configs.portable import portable_config
+from crfnet.configs.studio.looks import read_looks
+from crfnet.defaults import ESTIMATES
+from crfnet.errors import ConfigError, LutError
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D
+from crfnet.luts.rgb_lut import RgbLut1D
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, Primaries
 from tests.helpers.configs import loaded, rule_names
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 

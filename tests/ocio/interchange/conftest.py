@@ -6,9 +6,9 @@ import subprocess
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.luts.lut1d import inverse_response_lut
-from ocio.luts.rgb_lut import RgbLut1D
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet.luts.rgb_lut import RgbLut1D
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import write_image
 
 #: Exposure times of the series, in seconds.

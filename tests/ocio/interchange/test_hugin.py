@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.errors import LutError
-from ocio.interchange.files import read_response, write_response
-from ocio.interchange.hugin import hugin_parameters, hugin_response
-from ocio.luts.lut1d import inverse_response_lut
+from crfnet.errors import LutError
+from crfnet.interchange.files import read_response, write_response
+from crfnet.interchange.hugin import hugin_parameters, hugin_response
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 
 #: Measured, not calibrated, and so steep that Hugin levels it off.

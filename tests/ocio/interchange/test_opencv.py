@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ocio.errors import LutError
-from ocio.interchange.files import read_response, write_response
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.errors import LutError
+from crfnet.interchange.files import read_response, write_response
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 
 SUFFIXES = (".npy", ".yml", ".xml")
 

@@ -3,12 +3,12 @@
 import numpy as np
 import pytest
 
-from ocio.errors import LutError
-from ocio.interchange.files import READABLE, read_response, write_response
-from ocio.luts.files import write_lut
-from ocio.luts.forward import forward_lut
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.luts.rgb_lut import RgbLut1D
+from crfnet.errors import LutError
+from crfnet.interchange.files import READABLE, read_response, write_response
+from crfnet.luts.files import write_lut
+from crfnet.luts.forward import forward_lut
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.luts.rgb_lut import RgbLut1D
 
 CODES = np.linspace(0, 1, 256)
 SHAPER = "2\n0.0 1.0\n0.0 1.0\n" * 3

@@ -3,8 +3,8 @@
 import numpy as np
 import pytest
 
-from ocio.errors import LutError
-from ocio.interchange.files import read_response, write_response
+from crfnet.errors import LutError
+from crfnet.interchange.files import read_response, write_response
 
 #: From linear sRGB to XYZ (IEC 61966-2-1), in which PFS streams are.
 TO_XYZ = np.array([[0.4124, 0.3576, 0.1805], [0.2126, 0.7152, 0.0722], [0.0193, 0.1192, 0.9505]])

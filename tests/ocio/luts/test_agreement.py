@@ -5,10 +5,10 @@ import os
 import numpy as np
 import pytest
 
-from ocio.errors import LutError
-from ocio.interchange.files import read_response
-from ocio.luts.files import WRITERS, read_lut, write_lut
-from ocio.luts.lut1d import Lut1D
+from crfnet.errors import LutError
+from crfnet.interchange.files import read_response
+from crfnet.luts.files import WRITERS, read_lut, write_lut
+from crfnet.luts.lut1d import Lut1D
 
 ROWS = ("0", "0.1", "0.3", "0.6", "1")
 

@@ -4,9 +4,9 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from ocio.errors import LutError
-from ocio.luts.clf import read_clf, write_clf
-from ocio.luts.lut1d import Lut1D
+from crfnet.errors import LutError
+from crfnet.luts.clf import read_clf, write_clf
+from crfnet.luts.lut1d import Lut1D
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: <a> & b.jpg", "model: crf é"))
 TEXT = """\

@@ -2,9 +2,9 @@
 
 import pytest
 
-from ocio.errors import LutError
-from ocio.luts.cube import read_cube, write_cube
-from ocio.luts.lut1d import Lut1D
+from crfnet.errors import LutError
+from crfnet.luts.cube import read_cube, write_cube
+from crfnet.luts.lut1d import Lut1D
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: a.jpg", "model: crf é"))
 TEXT = """\

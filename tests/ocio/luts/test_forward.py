@@ -7,14 +7,14 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
+from crfnet.errors import LutError
+from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.forward import LENGTHS, forward_lut, round_trip_error
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from crfnet.luts.response import is_forward, response_of_lut
+from crfnet.luts.rgb_lut import RgbLut1D, lut_of_columns
 from crfnet_core.posterior.responses import ResponseBank
-from crfnet_core.response import ResponseCurve
-from ocio.errors import LutError
-from ocio.luts.files import read_lut, write_lut
-from ocio.luts.forward import LENGTHS, forward_lut, round_trip_error
-from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from ocio.luts.response import is_forward, response_of_lut
-from ocio.luts.rgb_lut import RgbLut1D, lut_of_columns
+from crfnet_core.response.curve import ResponseCurve
 
 SUFFIXES = (".spi1d", ".cube", ".clf")
 POWERS = (2.2, 1.8, 2.0)

@@ -7,10 +7,10 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet_core.response import ResponseCurve
-from ocio.defaults import LUT_LENGTH
-from ocio.errors import LutError
-from ocio.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
+from crfnet.defaults import LUT_LENGTH
+from crfnet.errors import LutError
+from crfnet.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
+from crfnet_core.response.curve import ResponseCurve
 
 EXTENDED = (-0.125, 1.125)
 

@@ -12,10 +12,10 @@ from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet_core.response import ResponseCurve
-from ocio.errors import LutError
-from ocio.luts.files import READERS, WRITERS, read_lut, write_lut
-from ocio.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from crfnet.errors import LutError
+from crfnet.luts.files import READERS, WRITERS, read_lut, write_lut
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
+from crfnet_core.response.curve import ResponseCurve
 
 SUFFIXES = (".spi1d", ".cube", ".clf")
 EXTENDED = (-0.125, 1.125)
@@ -187,7 +187,7 @@ def test_numbers_have_points_under_a_locale_with_commas(tmp_path, root):
         "import locale, sys\n"
         "locale.setlocale(locale.LC_ALL, '')\n"
         "assert locale.str(0.5) == '0,5'\n"
-        "from ocio.luts.files import read_lut, write_lut\n"
+        "from crfnet.luts.files import read_lut, write_lut\n"
         "for suffix in sys.argv[1:]:\n"
         "    write_lut(f'comma{suffix}', read_lut(f'plain{suffix}'))\n"
     )

@@ -3,10 +3,10 @@
 import numpy as np
 import pytest
 
-from crfnet_core.response import ResponseCurve
-from ocio.errors import LutError
-from ocio.luts.lut1d import Lut1D, inverse_response_lut
-from ocio.luts.response import response_of_lut
+from crfnet.errors import LutError
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.luts.response import response_of_lut
+from crfnet_core.response.curve import ResponseCurve
 
 GRID = np.linspace(0, 1, 4081)
 

@@ -2,9 +2,9 @@
 
 import pytest
 
-from ocio.errors import LutError
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.spi1d import read_spi1d, write_spi1d
+from crfnet.errors import LutError
+from crfnet.luts.lut1d import Lut1D
+from crfnet.luts.spi1d import read_spi1d, write_spi1d
 
 LUT = Lut1D([-0.1, 0.0, 1e-7, 1.25], domain=(-0.125, 1.125), comments=("photo: a.jpg", "model: crf é"))
 TEXT = """\

@@ -3,9 +3,9 @@
 import numpy as np
 import pytest
 
-from ocio.errors import PlateError
-from ocio.movies.frames import WHITE, MovieFrames
-from ocio.movies.stream import read_stream
+from crfnet.errors import PlateError
+from crfnet.movies.frames import WHITE, MovieFrames
+from crfnet.movies.stream import read_stream
 from tests.helpers.movies import CODECS, ffmpeg_frames, make_movie
 
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")

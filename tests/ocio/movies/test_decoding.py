@@ -3,11 +3,11 @@
 import numpy as np
 import pytest
 
-from ocio.movies import decoding
-from ocio.movies.decoding import decoded
-from ocio.movies.frames import MovieFrames
-from ocio.movies.index import FrameIndex
-from ocio.movies.stream import read_stream
+from crfnet.movies import decoding
+from crfnet.movies.decoding import decoded
+from crfnet.movies.frames import MovieFrames
+from crfnet.movies.index import FrameIndex
+from crfnet.movies.stream import read_stream
 from tests.helpers.movies import make_movie, run_ffmpeg
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")

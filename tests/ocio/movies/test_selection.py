@@ -2,14 +2,14 @@
 
 import pytest
 
+from crfnet.defaults import FRAMES_ANALYZED, PRIORS
+from crfnet.movies.frames import MovieFrames
+from crfnet.movies.selection import chosen_photos
+from crfnet.options import EstimateOptions
+from crfnet.pipeline import estimate_photographs
 from crfnet_core.errors import PhotoError
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
-from ocio.defaults import FRAMES_ANALYZED, PRIORS
-from ocio.movies.frames import MovieFrames
-from ocio.movies.selection import chosen_photos
-from ocio.options import EstimateOptions
-from ocio.pipeline import estimate_photographs
 from tests.helpers.movies import SOURCE, make_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")

@@ -7,14 +7,14 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from crfnet_core.metadata import cicp, file_origin
-from crfnet_core.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags
-from ocio.errors import PlateError
-from ocio.movies import log_tags
-from ocio.movies.frames import MovieFrames
-from ocio.movies.header import frame_header, movie_metadata
-from ocio.movies.library import is_movie
-from ocio.movies.stream import check_progressive, read_stream
+from crfnet.errors import PlateError
+from crfnet.movies import log_tags
+from crfnet.movies.frames import MovieFrames
+from crfnet.movies.header import frame_header, movie_metadata
+from crfnet.movies.library import is_movie
+from crfnet.movies.stream import check_progressive, read_stream
+from crfnet_core.photograph.metadata import cicp, file_origin
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags
 from tests.helpers.images import write_image
 from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
 

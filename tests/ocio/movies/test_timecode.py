@@ -6,7 +6,7 @@ from itertools import islice
 import OpenImageIO as oiio
 import pytest
 
-from ocio.movies.timecode import Timecode
+from crfnet.movies.timecode import Timecode
 
 NTSC, NTSC60 = Fraction(30000, 1001), Fraction(60000, 1001)
 

@@ -4,10 +4,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from crfnet.errors import PlateError
+from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.errors import PhotoError
-from crfnet_core.metadata.color_tags import DISPLAY_P3, ColorTags
-from ocio.errors import PlateError
-from ocio.plates.frame_files import read_color_tags, read_frame
+from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, ColorTags
 from tests.helpers.images import write_image
 
 

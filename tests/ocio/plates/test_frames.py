@@ -5,10 +5,10 @@ import sys
 import numpy as np
 import pytest
 
-from ocio.errors import PlateError
-from ocio.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
-from ocio.plates.frame_pattern import FramePattern
-from ocio.plates.frames import FrameSequence, find_frames, sample_frames
+from crfnet.errors import PlateError
+from crfnet.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
+from crfnet.plates.frame_pattern import FramePattern
+from crfnet.plates.frames import FrameSequence, find_frames, sample_frames
 
 
 def touch(folder, *names):

@@ -6,9 +6,9 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from ocio.luts.lut1d import Lut1D
-from ocio.luts.spi1d import write_spi1d
-from ocio.plates.exr import STANDARD_NAMES
+from crfnet.luts.lut1d import Lut1D
+from crfnet.luts.spi1d import write_spi1d
+from crfnet.plates.exr import STANDARD_NAMES
 from tests.helpers.folders import listed
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, attributes, linearize, read_exr

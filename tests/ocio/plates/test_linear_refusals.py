@@ -6,10 +6,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from crfnet.errors import PlateError
+from crfnet.plates import exr, linear
 from crfnet_core.errors import PhotoError
-from crfnet_core.image_io import read_codes
-from ocio.errors import PlateError
-from ocio.plates import exr, linear
+from crfnet_core.photograph.image_io import read_codes
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, write_sequence

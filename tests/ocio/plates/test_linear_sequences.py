@@ -11,13 +11,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from crfnet.errors import PlateError
+from crfnet.luts.lut1d import Lut1D
+from crfnet.plates import linear
+from crfnet.plates.parallel import finished
+from crfnet.staging import STALE_SECONDS
 from crfnet_core.files import LONGEST_NAME, atomic_write
-from crfnet_core.image_io import read_photo
-from ocio.errors import PlateError
-from ocio.luts.lut1d import Lut1D
-from ocio.plates import linear
-from ocio.plates.parallel import finished
-from ocio.staging import STALE_SECONDS
+from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
@@ -27,10 +27,10 @@ ROOT = Path(__file__).parents[3]
 
 RUN = """
 import sys
-from ocio.luts.lut1d import Lut1D
-from ocio.options import PlateOptions
-from ocio.plates.frames import find_frames
-from ocio.plates.linear import linear_targets, linearize_plates
+from crfnet.luts.lut1d import Lut1D
+from crfnet.options import PlateOptions
+from crfnet.plates.frames import find_frames
+from crfnet.plates.linear import linear_targets, linearize_plates
 sequence = find_frames(sys.argv[1])
 targets = linear_targets(sys.argv[2], sequence)
 lut, options = Lut1D([0, 0.2, 1]), PlateOptions(depth="float")

@@ -5,8 +5,8 @@ from contextlib import closing
 
 import pytest
 
-from ocio.errors import PlateError
-from ocio.plates.parallel import finished
+from crfnet.errors import PlateError
+from crfnet.plates.parallel import finished
 
 
 def test_every_job_ends_once():

@@ -11,8 +11,8 @@ torch = pytest.importorskip("torch", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.emor import EmorBasis
 from crfnet_core.network import MODELS, ResponseNetwork
+from crfnet_core.response.emor import EmorBasis
 from training.crfnet2017.checkpoints import TrainingState, fold_normalization, start_from
 from training.crfnet2017.export import ShippedCRFNet, load_network
 from training.crfnet2017.likelihood import Likelihood

@@ -6,7 +6,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
 
-from crfnet_core.windows import filled_bins
+from crfnet_core.statistics.windows import filled_bins
 from training.crfnet2017 import pack as packing
 from training.crfnet2017.pack import area_scaled, read_pack, write_scenes
 from training.crfnet2017.windows import LinearWindows, WindowStream, code_table, draw_windows, render_windows

@@ -2,8 +2,8 @@
 
 import pytest
 
-from crfnet_core.metadata import file_origin
-from crfnet_core.metadata.jpeg import read_jpeg_header
+from crfnet_core.photograph.metadata import file_origin
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.crafted_files import jpeg
 from training.data.real.case_metadata import is_original, metadata_of_case
 

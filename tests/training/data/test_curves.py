@@ -3,7 +3,7 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.transfer_functions import srgb_encode
 from training.data.curves import CurveSource, camera_response, geometric_median, read_base_curves
 
 UNIFORM = np.linspace(0, 1, 1024)

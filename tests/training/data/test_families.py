@@ -3,9 +3,9 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.metrics import shape_error
 from crfnet_core.posterior import Family
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import shape_error
 from training.data.curves import CurveSource
 from training.data.families import (
     DEVELOPED_HEADROOM,

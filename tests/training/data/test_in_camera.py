@@ -3,8 +3,8 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.metrics import shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import shape_error
 from training.data.in_camera import COMPONENTS, KINDS, InCameraResponses, log_irradiance, response_of
 from training.data.real.bodies import Body
 

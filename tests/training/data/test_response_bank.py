@@ -4,7 +4,7 @@ import pytest
 scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.posterior import Family, ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from training.data import response_bank
 from training.data.real.bodies import Body
 from training.data.response_bank import COUNTS, make_bank, write_bank

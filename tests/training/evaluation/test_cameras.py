@@ -7,9 +7,9 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core import ResponseCurve
-from crfnet_core.cameras import Camera, CameraSettings
-from crfnet_core.metrics import estimation_error, shape_error
-from crfnet_core.response_estimate import CameraAnswer
+from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.library import Camera, CameraSettings
+from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real.stacks import Stack
 from training.evaluation import cameras
 from training.evaluation.cameras import Setting, disagreements, of_another_stack

@@ -7,8 +7,8 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.metrics import estimation_error, linearization_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from training.evaluation.measure.case_files import CaseFile, code_digest
 from training.evaluation.measure.figures import PhotographFigures, baseline_figures
 

@@ -6,8 +6,8 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import FileMetadata
 from training.evaluation.measure.real import without_exif
 
 

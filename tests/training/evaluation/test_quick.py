@@ -10,7 +10,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
 from crfnet_core.network import DEFAULT_MODEL
-from crfnet_core.response import LEAST_SLOPE
+from crfnet_core.response.curve import LEAST_SLOPE
 from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import jobs
 from training.evaluation.measure.jobs import Job

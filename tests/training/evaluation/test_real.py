@@ -11,9 +11,9 @@ scipy_io = pytest.importorskip("scipy.io", reason="training needs the train extr
 pytest.importorskip("PIL", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.metrics import estimation_error, shape_error
 from crfnet_core.posterior import IN_CAMERA, Posterior, Prior
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real.photographs import real_photographs
 from training.data.response_bank import COUNTS
 from training.evaluation.measure.case_files import CaseFile

@@ -7,9 +7,9 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.metrics import estimation_error, shape_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.families import with_headroom
 from training.data.real.file_origin import Editing, editing, is_scaled
 from training.data.real.photographs import RealPhotograph

@@ -4,8 +4,8 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from crfnet_core.metrics import estimation_error, peak_signal_to_noise
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error, peak_signal_to_noise
 from training.data.curves import geometric_median
 from training.evaluation.baselines import (
     constant_curves,

@@ -9,7 +9,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.metadata import Device, FileMetadata
+from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.unusual import (
     WRITTEN,

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from training.data.real.photographs import RealPhotograph, real_photographs
 
 

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from crfnet_core.metadata import FileMetadata
-from crfnet_core.metadata.jpeg import read_jpeg_header
+from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
 
 def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:

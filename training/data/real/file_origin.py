@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from enum import StrEnum
 
-from crfnet_core.metadata.editors import is_editor
-from crfnet_core.metadata.origin import SCALED_BELOW
+from crfnet_core.photograph.metadata.editors import is_editor
+from crfnet_core.photograph.metadata.origin import SCALED_BELOW
 
 
 class Editing(StrEnum):

@@ -8,9 +8,9 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.image_io import read_metadata
-from crfnet_core.metadata import FileMetadata, file_origin
-from crfnet_core.response import ResponseCurve
+from crfnet_core.photograph.image_io import read_metadata
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.response.curve import ResponseCurve
 from training.data.real.case_metadata import is_original, metadata_of_case
 from training.data.real.file_origin import Editing, editing, is_scaled
 

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.cameras import CameraSettings, MeasuredResponse
-from crfnet_core.cameras.answer import brightness_per_stop
-from crfnet_core.metrics import estimation_error
-from crfnet_core.response import ResponseCurve
+from crfnet_core.library import CameraSettings, MeasuredResponse
+from crfnet_core.library.answer import brightness_per_stop
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
 from training.data.real.case_metadata import metadata_of_case
 from training.data.real.file_origin import Editing, editing

@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.estimate import ResponseEstimate
-from crfnet_core.metrics import estimation_error, linearization_error, shape_error
-from crfnet_core.response import SAMPLES, ResponseCurve
+from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
 from crfnet_core.types import Float64Array, IndexArray
 from training.evaluation.baselines import oracle_curves
 from training.evaluation.report.errors import PerError
@@ -34,7 +34,7 @@ class PhotographFigures:
     Parameters
     ----------
     estimation, linearization, shape : float
-        E_est, E_lin (a fraction of the peak) and the shape error in stops, of `crfnet_core.metrics`.
+        E_est, E_lin (a fraction of the peak) and the shape error in stops, of `crfnet_core.response.metrics`.
     partial : float
         E_est over the samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
     uncertainty : float, optional

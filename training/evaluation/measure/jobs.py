@@ -11,12 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
 from crfnet_core.network import ResponseNetwork, pooling
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float32Array, Float64Array
 from training.evaluation.measure.figures import PhotographFigures, all_baselines, model_figures
 from training.evaluation.plan import Condition, Query, TestPhotograph

@@ -9,13 +9,13 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from crfnet_core.estimate import ResponseEstimate, estimate_response
-from crfnet_core.image_io import read_photo
-from crfnet_core.metadata import Device, FileMetadata
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.metadata import Device, FileMetadata
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float64Array
 from training.data.real.photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank

@@ -12,7 +12,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from crfnet_core.posterior import ResponseBank
-from crfnet_core.response import ResponseCurve
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float64Array
 from training.evaluation.baselines import BASELINES, constant_curves
 from training.evaluation.measure import jobs

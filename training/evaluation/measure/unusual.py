@@ -10,11 +10,11 @@ from pathlib import Path
 import numpy as np
 from tqdm import tqdm
 
-from crfnet_core.estimate import estimate_response
-from crfnet_core.metadata import Device, FileMetadata
-from crfnet_core.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
+from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.metadata import Device, FileMetadata
+from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Verdict
 from training.evaluation.measure.verdict_files import VerdictFile
 from training.evaluation.report.unusual import Accepted, UnusualReport

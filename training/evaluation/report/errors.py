@@ -17,7 +17,7 @@ TIE = "tie"
 
 @dataclass(frozen=True)
 class PerError(Generic[T]):
-    """One value for each of the three errors that are reported (definitions: `crfnet_core.metrics`).
+    """One value for each of the three errors that are reported (definitions: `crfnet_core.response.metrics`).
 
     Parameters
     ----------

@@ -41,7 +41,7 @@ INTRODUCTION = """# How accurate the models are
   fraction of photographs on which gamma 2.2 is worse.
 - [Brackets] hold 95 % bootstrap intervals; scenes and responses are resampled together. A difference whose interval
   contains 0 is a tie.
-- All estimates come from `crfnet_core.estimate.estimate_response`, as users have it. "Paper" is the CRF-net paper
+- All estimates come from `crfnet.estimate_response`, as users have it. "Paper" is the CRF-net paper
   (Li & Peers, 2017), on photographs of its own.
 """
 

@@ -6,8 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crfnet_core.emor import EmorBasis
-from crfnet_core.response import SAMPLES
+from crfnet_core.response.curve import SAMPLES
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float64Array, IndexArray
 from training.data.real.photographs import RealPhotograph
 from training.evaluation.measure.figures import DRAWN_SAMPLES, PhotographFigures

@@ -8,7 +8,7 @@ from itertools import combinations
 
 import numpy as np
 
-from crfnet_core.metrics import peak_signal_to_noise
+from crfnet_core.response.metrics import peak_signal_to_noise
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure.case_files import CaseFile

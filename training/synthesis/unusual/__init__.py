@@ -10,7 +10,7 @@ graphics         screenshots and drawings
 kinds            the list of kinds, each with its reason; windows and whole frames of a kind
 """
 
-from crfnet_core.recognition import LogCurve
+from crfnet_core.photograph.recognition import LogCurve
 from training.synthesis.unusual.kinds import (
     RECIPES,
     Recipe,

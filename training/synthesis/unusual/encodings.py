@@ -9,9 +9,9 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image
 
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.transfer_functions import srgb_encode
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.curves import IRRADIANCE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, enlarged, jpeg_compressed

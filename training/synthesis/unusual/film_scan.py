@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from PIL import Image, ImageDraw
 
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.curves import IRRADIANCE
 from training.synthesis.camera import apply_response, blurred
 

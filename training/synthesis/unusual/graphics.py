@@ -8,8 +8,8 @@ from functools import cache
 import numpy as np
 from PIL import Image, ImageDraw, ImageFont
 
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.synthesis.unusual.encodings import camera_rendering, codes_of, reduced
 
 #: Sizes of letters, in pixels.

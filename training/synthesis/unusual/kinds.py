@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.photo import Photo
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.types import Float32Array, Uint8Array
 from training.data.curves import IRRADIANCE
 from training.data.scenes import Scene

@@ -1,12 +1,12 @@
-"""Curves of log footage: those of `crfnet_core.recognition`, one definition for training and for recognizing.
+"""Curves of log footage, of `crfnet_core.photograph.recognition`: one definition for training and recognition.
 
 Training draws from the ten that the packaged models have seen; more would change what a seed draws.
 """
 
 from __future__ import annotations
 
-from crfnet_core.recognition import LogCurve
-from crfnet_core.recognition import log_curves as published_curves
+from crfnet_core.photograph.recognition import LogCurve
+from crfnet_core.photograph.recognition import log_curves as published_curves
 
 #: The curves of the packaged models' training.
 TRAINING_CURVES = (

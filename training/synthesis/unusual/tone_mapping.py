@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import uniform_filter
 
+from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from crfnet_core.windows import WINDOW_SIZE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response
 from training.synthesis.unusual.encodings import SRGB

@@ -6,7 +6,7 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from crfnet_core.metadata import FileMetadata
+from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import bodies as module
 from training.data.real.bodies import measured_bodies, model_key
 from training.data.real.file_origin import Editing

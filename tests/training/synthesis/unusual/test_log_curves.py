@@ -4,7 +4,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from crfnet_core.recognition import log_curves as published_curves
+from crfnet_core.photograph.recognition import log_curves as published_curves
 from training.synthesis.unusual import log_curves
 from training.synthesis.unusual.log_curves import TRAINING_CURVES
 

@@ -4,7 +4,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
-from crfnet_core.transfer_functions import srgb_encode
+from crfnet_core.response.transfer_functions import srgb_encode
 from training.synthesis.unusual.encodings import camera_curve, reduced
 from training.synthesis.unusual.film_scan import Negative, dust_mask, grain
 from training.synthesis.unusual.filters import cross_processed, faded, split_toned

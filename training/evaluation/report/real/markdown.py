@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from crfnet_core.metadata.origin import SCALED_BELOW
+from crfnet_core.photograph.metadata.origin import SCALED_BELOW
 from training.data.real.file_origin import Editing
 from training.data.real.photographs import REAL, REAL_BODIES
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, ORACLE_DORF, ORACLE_HEADROOM, OTHER_BODIES
