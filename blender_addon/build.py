@@ -92,8 +92,9 @@ def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
         If a wheel cannot be downloaded or has another SHA-256 than expected, or the version numbers disagree.
     """
     text = (ADDON / MANIFEST).read_text(encoding="utf-8")
+    own_wheel = build_own_wheel(tomllib.loads(text)["version"], cache)
+    text = re.sub(r"crfnet-[^-\n]+-py3-none-any\.whl", own_wheel.name, text)
     manifest = tomllib.loads(text)
-    own_wheel = build_own_wheel(manifest["version"], cache)
     out.mkdir(parents=True, exist_ok=True)
     zips = []
     for zip_name in names:
@@ -144,6 +145,9 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
 def build_own_wheel(version: str, cache: Path) -> Path:
     """Build the wheel that holds `crfnet_core` and `crfnet`, beside the downloads, and return its path.
 
+    Its version ends in a hash of its sources, such as 0.1.0+1f3a5b7c: Blender keeps an installed wheel if another of
+    the same name and version comes with a newer zip.
+
     The wheel declares the dependencies of the `crfnet` command. Blender ignores them: it comes with numpy, OpenImageIO
     and OpenColorIO, and the add-on does not import what only the command needs (tqdm, shtab, matplotlib).
     """
@@ -152,10 +156,14 @@ def build_own_wheel(version: str, cache: Path) -> Path:
         source, out = Path(folder, "source"), Path(folder, "out")
         for name in WHEEL_SOURCES:
             _copy(ROOT / name, source / name)
+        build = f"{version}+{_digest(source)}"
+        project = (source / "pyproject.toml").read_text(encoding="utf-8")
+        project = re.sub(rf'^version = "{re.escape(version)}"$', f'version = "{build}"', project, flags=re.MULTILINE)
+        (source / "pyproject.toml").write_text(project, encoding="utf-8")
         arguments = ["wheel", "--no-deps", "--no-index", f"--find-links={cache.resolve()}", f"--wheel-dir={out}"]
         _pip([*arguments, str(source)], "our own wheel cannot be built", options={"PIP_CONFIG_FILE": os.devnull})
         (wheel,) = out.glob("*.whl")
-        if wheel.name.split("-")[1] != version:
+        if wheel.name.split("-")[1] != build:
             raise BuildError(f"{MANIFEST} has version {version}, pyproject.toml makes {wheel.name}: make them equal")
         with zipfile.ZipFile(wheel) as archive:
             contents = {name: archive.read(name) for name in archive.namelist()}
@@ -216,6 +224,13 @@ def _setuptools() -> str:
     """Return the name of the setuptools wheel that builds our own."""
     (name,) = (name for name in _expected_hashes() if name.startswith("setuptools-"))
     return name
+
+
+def _digest(folder: Path) -> str:
+    """Return eight hexadecimal digits that name the files of a folder and their contents."""
+    names = sorted(path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file())
+    lines = "".join(f"{_sha256(folder / name)}  {name}\n" for name in names)
+    return hashlib.sha256(lines.encode()).hexdigest()[:8]
 
 
 def _sha256(path: Path) -> str:

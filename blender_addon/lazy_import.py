@@ -4,9 +4,12 @@
 from __future__ import annotations
 
 import importlib
+import importlib.metadata
 import importlib.util
 import sys
+import tomllib
 from functools import cache
+from pathlib import Path
 from types import ModuleType
 
 import bpy
@@ -41,13 +44,26 @@ def load(module: str) -> ModuleType:
 
 @cache
 def missing() -> str:
-    """Return, in one line, which library is missing and what to install; an empty text if all are there.
+    """Return, in one line, which library is missing or of another build, and what to do; an empty text if none is.
 
     It looks for the libraries once and imports none of them, so it does not notice one that is damaged.
     """
     _expose_blenders_own()
     absent = [name for name in (*_IN_WHEELS, *_IN_BLENDER) if importlib.util.find_spec(name) is None]
-    return f"{absent[0]} is missing: {_remedy(absent[0])}" if absent else ""
+    return f"{absent[0]} is missing: {_remedy(absent[0])}" if absent else _of_another_build()
+
+
+def _of_another_build() -> str:
+    """Return, in one line, that the estimator is not the one of this zip; an empty text if it is, or for the sources.
+
+    Blender replaces the wheels of an add-on when the next session starts.
+    """
+    manifest = tomllib.loads(Path(__file__).with_name("blender_manifest.toml").read_text(encoding="utf-8"))
+    (wheel,) = (name for name in manifest["wheels"] if "/crfnet-" in name)
+    expected, installed = wheel.split("-")[1], importlib.metadata.version("crfnet")
+    if "+" not in expected or installed == expected:
+        return ""
+    return f"the add-on needs its estimator {expected}, but Blender has loaded {installed}: restart Blender"
 
 
 def _expose_blenders_own() -> None:

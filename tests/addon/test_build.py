@@ -143,3 +143,13 @@ def test_no_network_is_one_line(root, tmp_path):
     assert done.returncode == 2
     assert re.fullmatch(r"setuptools-\S+: cannot be downloaded; check the network \(pip: .*\)\n", done.stderr)
     assert not (tmp_path / "out").exists()
+
+
+def test_the_build_of_our_wheel_changes_with_its_sources(tmp_path):
+    (tmp_path / "a.py").write_text("1")
+    first = build._digest(tmp_path)
+    assert first == build._digest(tmp_path)
+    (tmp_path / "a.py").write_text("2")
+    assert build._digest(tmp_path) != first
+    (tmp_path / "a.py").rename(tmp_path / "b.py")
+    assert len({first, build._digest(tmp_path)}) == 2

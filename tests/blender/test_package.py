@@ -42,7 +42,7 @@ print("FOUND " + json.dumps([addon.module for addon in bpy.context.preferences.a
 
 # The next process estimates; Blender as a module does not read the preferences, so the add-on is enabled again.
 ESTIMATE = """
-import json, sys
+import importlib, importlib.metadata, json, sys
 import bpy
 module, plate, folder, heic = sys.argv[-4:]
 bpy.ops.preferences.addon_enable(module=module)
@@ -59,6 +59,9 @@ import pi_heif, PIL
 packages += (pi_heif, PIL)
 found = {
     "files": {package.__name__: package.__file__ for package in packages},
+    "build": importlib.metadata.version("crfnet"),
+    "missing": importlib.import_module(module + ".lazy_import").missing(),
+    "is_older": hasattr(crfnet_core.errors, "OLDER"),
     "onnxruntime": onnxruntime.__version__,
     "operator": [list(image["camera_response"]["weights"]), image["camera_response"]["model"]],
     "api": [list(estimate.weights), estimate.model],
@@ -74,11 +77,12 @@ def manifest(root):
     return tomllib.loads((root / "blender_addon" / "blender_manifest.toml").read_text(encoding="utf-8"))
 
 
-def build_zip(root, out, umask):
-    """The zip of this machine's platform, built by the command that make runs."""
+def build_zip(sources, out, umask, root):
+    """The zip of this machine's platform, built from sources by the command that make runs."""
     if PLATFORM is None:
         pytest.skip(f"no zip is made for {platform.system()} on {platform.machine()}")
-    command = [sys.executable, str(root / "blender_addon" / "build.py"), "--platform", PLATFORM, "--out", str(out)]
+    command = [sys.executable, str(sources / "blender_addon" / "build.py"), "--platform", PLATFORM, "--out", str(out)]
+    command += ["--cache", str(root / "build" / "wheels")]
     done = subprocess.run(command, capture_output=True, text=True, umask=umask, check=False)
     if "cannot be downloaded" in done.stderr:
         pytest.skip(done.stderr.strip())
@@ -89,7 +93,24 @@ def build_zip(root, out, umask):
 
 @pytest.fixture(scope="module")
 def package(root, tmp_path_factory):
-    return build_zip(root, tmp_path_factory.mktemp("dist"), umask=0o022)
+    return build_zip(root, tmp_path_factory.mktemp("dist"), 0o022, root)
+
+
+@pytest.fixture(scope="module")
+def older_package(root, tmp_path_factory):
+    """A zip of the same version from other sources, as a user has it who built it a week before."""
+    sources = tmp_path_factory.mktemp("older")
+    for name in ("blender_addon", *build.WHEEL_SOURCES):
+        build._copy(root / name, sources / name)
+    with (sources / "crfnet_core" / "errors.py").open("a", encoding="utf-8") as file:
+        file.write("OLDER = True\n")
+    return build_zip(sources, tmp_path_factory.mktemp("dist"), 0o022, root)
+
+
+def build_of(package):
+    """The version of the wheel of `crfnet` in a zip."""
+    (wheel,) = (name for name in zipfile.ZipFile(package).namelist() if "/crfnet-" in name)
+    return wheel.split("-")[1]
 
 
 def bpy_requirements(name="bpy"):
@@ -140,8 +161,9 @@ def look(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def addons(package, bare_python, user):
-    """The add-ons that are enabled in the session that installs the zip."""
+def addons(package, older_package, bare_python, user):
+    """The add-ons that are enabled in the session that installs the zip over an older one."""
+    run_blender(bare_python, user, INSTALL, older_package)
     return run_blender(bare_python, user, INSTALL, package)
 
 
@@ -153,7 +175,7 @@ def found(addons, bare_python, user, plate, look, root):
 
 
 def test_the_same_sources_give_the_same_bytes(root, package, tmp_path):
-    again = build_zip(root, tmp_path / "again", umask=0o077)
+    again = build_zip(root, tmp_path / "again", 0o077, root)
     assert again.name == package.name
     assert again.read_bytes() == package.read_bytes()
 
@@ -170,12 +192,14 @@ def test_the_zip_holds_the_add_on_and_its_wheels(root, package):
 
 
 def test_our_wheel_holds_core_ocio_and_the_model(package, manifest, tmp_path):
+    version = build_of(package)
+    assert version.startswith(f"{manifest['version']}+")
     with zipfile.ZipFile(package) as archive:
-        wheel = archive.extract(f"wheels/crfnet-{manifest['version']}-py3-none-any.whl", tmp_path)
+        wheel = archive.extract(f"wheels/crfnet-{version}-py3-none-any.whl", tmp_path)
     with zipfile.ZipFile(wheel) as archive:
         inside = archive.namelist()
     tops = {name.partition("/")[0] for name in inside}
-    assert tops == {"crfnet_core", "crfnet", f"crfnet-{manifest['version']}.dist-info"}
+    assert tops == {"crfnet_core", "crfnet", f"crfnet-{version}.dist-info"}
     assert {"crfnet_core/data/emor.npz", "crfnet_core/data/priors/camera.json"} <= set(inside)
     assert [name for name in inside if re.fullmatch("crfnet_core/models/[^/]+/model.(onnx|json)", name)]
 
@@ -202,6 +226,12 @@ def test_everything_comes_from_its_wheels_or_from_blender(found, package, user):
     assert found["stray"] == []
 
 
+def test_a_newer_zip_of_the_same_version_replaces_the_estimator(found, package, older_package):
+    assert build_of(older_package) != build_of(package) == found["build"]
+    assert found["missing"] == ""
+    assert not found["is_older"]
+
+
 def test_its_wheels_read_heic(found):
     np.testing.assert_array_equal(found["heic"], colored_ramp(8))
 
@@ -224,3 +254,16 @@ def test_the_exported_lut_is_the_inverse_response(found, look, plate, tolerance)
     np.testing.assert_allclose(
         read_spi1d(path).apply(brightness), here.curve.inverse(brightness), atol=tolerance.parity
     )
+
+
+def test_an_estimator_of_another_build_asks_for_a_restart(monkeypatch, tmp_path):
+    """Between the update of the add-on and the next start of Blender."""
+    from blender_addon import lazy_import
+
+    (tmp_path / "blender_manifest.toml").write_text('wheels = ["./wheels/crfnet-0.1.0+00000000-py3-none-any.whl"]\n')
+    monkeypatch.setattr(lazy_import, "__file__", str(tmp_path / "lazy_import.py"))
+    lazy_import.missing.cache_clear()
+    line = lazy_import.missing()
+    lazy_import.missing.cache_clear()
+    assert "0.1.0+00000000" in line
+    assert line.endswith("restart Blender")
