@@ -1,15 +1,18 @@
 """Measure models against responses that are known: ``python -m training.evaluation``.
 
 - `__main__`: the command.
-- `settings`: what is asked for: models, protocols, numbers of photographs.
+- `models`: the models that are measured.
 - `test_sets`: scenes and responses, of the data or bundled with the repository.
-- `plan`: which photographs are simulated: scene, response, exposure, condition, and the query about each.
-- `baselines`: what stands beside the models: constant guesses and oracles.
-- `measure`: photographs to figures, kept on disk.
-- `summaries`: figures to means, intervals, comparisons and reliability.
-- `report`: the report's dataclasses, and how they are written.
-- `protocols`: runs P0 to P6 and writes the report.
-- `cameras`: what stored cameras are worth.
-- `recognition`: how often log footage and other unusual pictures are recognised.
-- `gamma_level`: why gamma 2.2 linearises our photographs worse than the paper's.
+- `plan`: the simulated photographs: scene, response, exposure, condition, and query.
+- `baselines`: constant guesses and oracles.
+- `table`: a row for each photograph and estimator, on disk.
+- `figures`: the columns of a row.
+- `simulated`, `real`, `unusual`: from photographs to rows.
+- `bootstrap`, `summary`: from rows to means, intervals, comparisons and reliability.
+- `protocols`: runs P0 to P6.
+- `report`, `markdown`: report.json and report.md.
+- `card`: figures for model.json and the model card.
+- `paper`: the figures of the CRF-net paper.
+- `cameras`: the worth of a measured response of the same camera.
+- `recognition`: how often log footage and limited range are recognized.
 """

@@ -1,4 +1,4 @@
-"""What can be had without looking at the photograph, and the best that a power law or a few EMoR components can do."""
+"""Baselines: guesses that ignore the photograph, and oracles that choose by the true response."""
 
 from __future__ import annotations
 
@@ -16,9 +16,6 @@ from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
 ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
-
-#: The name of all baselines together, among those of models.
-BASELINES = "baselines"
 
 #: Names of the baselines that tables or plots pick out.
 GAMMA = "gamma 2.2"
@@ -38,7 +35,7 @@ def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
     Parameters
     ----------
     known : ndarray, shape (N, 1024)
-        The responses whose geometric median is taken. The mean curve is that of EMoR, which is the mean of DoRF.
+        The responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of DoRF.
     """
     samples = {
         "sRGB": srgb_encode(IRRADIANCE),
@@ -55,8 +52,8 @@ def oracle_curves(true: ResponseCurve) -> dict[str, ResponseCurve]:
     weights = basis.project(true.brightness)
     curves = {ORACLE_GAMMA: nearest_power(true)}
     for k in ORACLE_COMPONENTS:
-        kept = np.where(np.arange(len(weights)) < k, weights, 0)
-        curves[f"oracle: EMoR, {k} component{'s' * (k > 1)}"] = ResponseCurve.from_samples(basis.reconstruct(kept))
+        truncated = np.where(np.arange(len(weights)) < k, weights, 0)
+        curves[f"oracle: EMoR, {k} component{'s' * (k > 1)}"] = ResponseCurve.from_samples(basis.reconstruct(truncated))
     return curves
 
 
@@ -66,8 +63,8 @@ def nearest_power(true: ResponseCurve) -> ResponseCurve:
     def distance(logarithm: float) -> float:
         return float(np.linalg.norm(true.brightness - IRRADIANCE ** np.exp(logarithm)))
 
-    found = minimize_scalar(distance, bounds=(np.log(0.02), np.log(5)), method="bounded")
-    return ResponseCurve.from_samples(IRRADIANCE ** np.exp(found.x))
+    best = minimize_scalar(distance, bounds=(np.log(0.02), np.log(5)), method="bounded")
+    return ResponseCurve.from_samples(IRRADIANCE ** np.exp(best.x))
 
 
 def nearest_of(curves: Float64Array, true: ResponseCurve) -> ResponseCurve:
@@ -83,8 +80,8 @@ def with_best_headroom(curve: ResponseCurve, true: ResponseCurve) -> ResponseCur
         return float(np.linalg.norm(true.brightness - with_headroom(curve, stops).brightness))
 
     bounds = (MOST_USED * float(np.log2(curve.inverse(SHOULDER))), MOST_ADDED)
-    found = minimize_scalar(distance, bounds=bounds, method="bounded")
-    return with_headroom(curve, float(found.x))
+    best = minimize_scalar(distance, bounds=bounds, method="bounded")
+    return with_headroom(curve, float(best.x))
 
 
 def mean_in_log_irradiance(curves: Sequence[ResponseCurve]) -> ResponseCurve:

@@ -1,4 +1,4 @@
-"""Which photographs are simulated: scene, response, exposure and condition of each, balanced and seeded."""
+"""The simulated photographs: scene, response, exposure and condition of each, balanced and seeded."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 
 @dataclass(frozen=True)
 class Condition:
-    """Under which condition a photograph is taken.
+    """A condition under which a photograph is taken.
 
     Parameters
     ----------
@@ -34,7 +34,7 @@ class Condition:
     is_gray : bool
         Whether all channels hold the luminance of the scene.
     noise : float
-        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantisation. The CRF-net paper's
+        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantization. The CRF-net paper's
         Table 3 gives no unit; this is our reading of it.
     blur : float
         Variance, in squared pixels, of the Gaussian that blurs the linear scene.
@@ -66,18 +66,18 @@ class Condition:
 
 @dataclass(frozen=True)
 class Query:
-    """How the product is asked about a photograph; None leaves the product's default.
+    """The options of an estimate; None leaves the product's default.
 
     Parameters
     ----------
     name : str
-        The name in the report; that of the plain query is empty.
+        The name in the report; empty for the plain query.
     windows : int, optional
         Windows of each photograph.
     coverage : int, optional
         How many of the 256 code values a window should hold; 0 takes random windows.
     pooled : int
-        Photographs, each of another scene, that are given together.
+        Photographs, each of another scene, that are estimated together.
     averaged : str, optional
         "kept" or "all": take the mean of these windows' weights instead of the product's own answer.
     """
@@ -87,6 +87,11 @@ class Query:
     coverage: int | None = None
     pooled: int = 1
     averaged: str | None = None
+
+    @property
+    def question(self) -> Query:
+        """The part of the query that the product answers: queries that share it share the answer."""
+        return replace(self, name="", averaged=None)
 
 
 PLAIN = Query()

@@ -1,56 +1,86 @@
-"""Run the protocols one after the other, and write their report."""
+"""Run protocols one after the other: measure what the table lacks, and sum it up."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import Any
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import atomic_write_text
-from crfnet_core.posterior import ResponseBank
-from crfnet_core.types import Float64Array
 from training.data.real.photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
-from training.evaluation.baselines import BASELINES
-from training.evaluation.measure.case_files import CaseFile, code_digest
-from training.evaluation.measure.pooled import measure_pooled
-from training.evaluation.measure.real import measure_real
-from training.evaluation.measure.simulated import measure_simulated
-from training.evaluation.measure.unusual import measure_unusual, unusual_report
-from training.evaluation.measure.verdict_files import VerdictFile
-from training.evaluation.plan import TestPhotograph, clean_photographs, stress_photographs
-from training.evaluation.report.content import (
-    CleanReport,
-    OtherKindReport,
-    Reliability,
-    Report,
-    ReportSettings,
-    StressReport,
+from training.evaluation import sums, unusual
+from training.evaluation.baselines import GAMMA
+from training.evaluation.markdown import write_markdown
+from training.evaluation.models import Model
+from training.evaluation.plan import (
+    CLEAN,
+    CONDITIONS,
+    PLAIN,
+    QUERIES,
+    STRESS_PHOTOGRAPHS,
+    Condition,
+    Query,
+    TestPhotograph,
+    clean_photographs,
+    stress_photographs,
 )
-from training.evaluation.report.document import read_report, write_report
-from training.evaluation.report.markdown import report_text
-from training.evaluation.report.plots import draw_distributions, draw_reliability, draw_stress
-from training.evaluation.report.real.content import BOTH, RealReport, ways_of
-from training.evaluation.report.real.plots import draw_real
-from training.evaluation.report.unusual import UnusualReport
-from training.evaluation.settings import Settings
-from training.evaluation.summaries.bodies import RealTable, real_report
-from training.evaluation.summaries.clean import clean_report, other_kind_report
-from training.evaluation.summaries.error_table import ErrorColumns, ErrorTable
-from training.evaluation.summaries.reliability import reliability
-from training.evaluation.summaries.stress import stress_report
+from training.evaluation.real import POOLED, measure_pooled, measure_real, pooled_groups, ways_of
+from training.evaluation.report import Report, ReportRow, write_report
+from training.evaluation.simulated import Job, measure_simulated
+from training.evaluation.summary import rounded
+from training.evaluation.table import TABLE_FILE, Cases, Table, code_digest
 from training.evaluation.test_sets import TestSet
+from training.synthesis.unusual import UnusualKind
 
-#: Error -> the file of its plot in P5.
-RELIABILITY_FILES = {"E_est": "p5.png", "shape": "p5-shape.png"}
+#: The protocols. P5, the reliability of the uncertainty, comes with P0, P2 and P4.
+PROTOCOLS = ("p0", "p2", "p3", "p4", "p6")
 
-QUICK_NOTE = (
-    "photographs of the bundled lights through formulas, to see that all works and that nothing got worse: not to"
-    " be compared with the paper's figures"
-)
+#: Photographs of P0: every response with every test scene.
+ALL_PHOTOGRAPHS = 4020
+
+#: The name of the real photographs of both folders together.
+BOTH = "P4 both"
+
+QUICK_NOTE = "bundled lights and formulas instead of the data: not to be compared with the paper's figures"
+
+CODE_NOTE = f"some photographs were measured before the code changed; delete {TABLE_FILE} to measure them again"
+
+
+@dataclass(frozen=True)
+class Settings:
+    """The scope of an evaluation.
+
+    Parameters
+    ----------
+    out : Path
+        The folder of the table and the report.
+    models : tuple of Model
+        All are measured on the same photographs.
+    protocols : tuple of str
+        Some of `PROTOCOLS`.
+    photographs : int
+        The most photographs in P0 and P2.
+    workers : int
+        Processes; 1 measures in this one.
+    seed : int
+        Of the choice of photographs, of dither, noise and bootstrap.
+    stress_photographs : int
+        The most photographs in P3 under each condition; also limited by `photographs`.
+    conditions, queries : tuple
+        Of P3.
+    """
+
+    out: Path
+    models: tuple[Model, ...]
+    protocols: tuple[str, ...] = PROTOCOLS
+    photographs: int = ALL_PHOTOGRAPHS
+    workers: int = 2
+    seed: int = 2017
+    stress_photographs: int = STRESS_PHOTOGRAPHS
+    conditions: tuple[Condition, ...] = CONDITIONS
+    queries: tuple[Query, ...] = QUERIES
 
 
 @dataclass
@@ -60,18 +90,17 @@ class Evaluation:
     Parameters
     ----------
     settings : Settings
-        What is measured.
+        Models, protocols, numbers.
     test_set : TestSet
         Scenes and responses.
     """
 
     settings: Settings
     test_set: TestSet
-    _notes: list[str] = field(default_factory=list)
-    _with_uncertainty: dict[str, dict[str, ErrorColumns]] = field(default_factory=dict)
+    _with_uncertainty: dict[str, tuple[Cases, Sequence[str]]] = field(default_factory=dict)
 
     def run(self) -> Report:
-        """Measure what is not kept yet, write report.json, report.md and the PNGs, and return the report.
+        """Measure what the table lacks, write report.json and report.md, and return the report.
 
         Raises
         ------
@@ -79,124 +108,82 @@ class Evaluation:
             If two models have one name, or P2 is asked of a model that knows its responses.
         """
         self._check()
-        self.settings.out.mkdir(parents=True, exist_ok=True)
-        steps = {"p0": self._p0, "p1": self._p1, "p2": self._p2, "p3": self._p3, "p4": self._p4, "p6": self._p6}
-        parts: dict[str, Any] = {name: step() for name, step in steps.items() if name in self.settings.protocols}
-        if self._with_uncertainty:
-            parts["p5"] = self._p5()
+        every, held_out = range(len(self.test_set.curves)), self.test_set.held_out
+        steps = {
+            "p0": lambda: self._clean("P0", every),
+            "p2": lambda: self._clean("P2", held_out),
+            "p3": self._stress,
+            "p4": self._real,
+            "p6": self._unusual,
+        }
+        rows = [row for name, step in steps.items() if name in self.settings.protocols for row in step()]
+        rows += sums.reliability_rows(self._with_uncertainty)
         report = Report(
-            settings=ReportSettings(self.settings.photographs, self.settings.seed, self.test_set.digest),
-            models={model.name: model.measured for model in self.settings.models},
-            notes=tuple([] if self.test_set.data else [QUICK_NOTE]) + tuple(self._notes),
-            **parts,
+            settings={"photographs": self.settings.photographs} | self._depends_on,
+            models={model.name: model.sha256 for model in self.settings.models},
+            notes=[QUICK_NOTE] * (self.test_set.data is None) + [CODE_NOTE] * self._table.is_of_other_code,
+            rows=[rounded(row) for row in rows],
         )
-        write_report(self._path("report.json"), report)
-        kept = read_report(self._path("report.json"))
-        atomic_write_text(self._path("report.md"), report_text(kept), overwrite=True)
-        return kept
+        write_report(self.settings.out / "report.json", report)
+        write_markdown(self.settings.out / "report.md", report)
+        return report
 
     def _check(self) -> None:
         """Refuse models of one name, and for P2 models that know its responses."""
-        names, held_out = self.settings.names, self.test_set.held_out
+        names, held_out = [model.name for model in self.settings.models], self.test_set.held_out
         if len(set(names)) < len(names):
-            raise CRFNetError(f"models need different names, found {', '.join(names)}; copy one to another folder")
+            raise CRFNetError(f"models need different names, found {', '.join(names)}; rename the folder of one")
         for model in self.settings.models if "p2" in self.settings.protocols else ():
             if not held_out or not model.lacks(held_out):
                 raise CRFNetError(
-                    f"{model.name}: model.json does not say that it was trained without the held-out curves of"
-                    " training/data/splits.json, so P2 would measure known curves; train one without them, or leave p2"
-                    " out"
+                    f"{model.name}: model.json does not list the held-out curves of training/data/splits.json; train a"
+                    " model without them, or leave p2 out"
                 )
 
-    @cached_property
-    def _exposures(self) -> Float64Array:
-        """Return s_crf of every response, found once."""
-        return self.test_set.exposures()
-
-    @cached_property
-    def _code(self) -> str:
-        """Return the hash of the measuring code."""
-        return code_digest()
-
     @property
-    def _folders(self) -> dict[str, Path]:
-        """Return name of a model -> its folder."""
-        return {model.name: model.folder for model in self.settings.models}
-
-    def _path(self, name: str) -> Path:
-        """Return the path of a file of the report."""
-        return self.settings.out / name
-
-    def _files(self, protocol: str, depends_on: dict[str, Any]) -> dict[str, CaseFile]:
-        """Return the case files of a protocol: those of the baselines and of every model."""
-        estimators: dict[str, dict[str, str]] = {BASELINES: {}}
-        for model in self.settings.models:
-            estimators[model.name] = {"sha256": model.measured.sha256}
-        files = {}
-        for name, own in estimators.items():
-            path = self._path(f"cases/{name}/{protocol}.json")
-            files[name] = CaseFile.opened(path, depends_on | {"seed": self.settings.seed} | own, self._code)
-            if files[name].is_of_other_code:
-                relative = path.relative_to(self.settings.out)
-                self._notes.append(f"{relative} was measured before the code changed; delete it to measure again")
-        return files
-
-    def _measured(self, protocol: str, photographs: Sequence[TestPhotograph]) -> dict[str, CaseFile]:
-        """Return the case files of a protocol on simulated photographs, complete."""
-        files = self._files(protocol, {"test_set": self.test_set.digest})
-        measure_simulated(
-            photographs,
-            self.test_set,
-            self._folders,
-            files,
-            exposures=lambda: self._exposures,
-            bank=self._bank_of(protocol),
-            workers=self.settings.workers,
-            seed=self.settings.seed,
-            title=protocol.upper(),
-        )
-        return files
-
-    def _bank_of(self, protocol: str) -> ResponseBank | None:
-        """Return the responses to choose from: for P2 those without the held-out curves, else the packaged ones."""
-        if protocol != "p2" or self.test_set.data is None:
-            return None
-        return make_bank(self.test_set.data, without_held_out=True)
-
-    def _clean(self, protocol: str, curves: Sequence[int]) -> tuple[list[TestPhotograph], ErrorTable]:
-        """Return the photographs of P0 or P2 and their errors."""
-        scenes = range(len(self.test_set.scenes))
-        settings = self.settings
-        photographs = clean_photographs(scenes, curves, count=settings.photographs, seed=settings.seed)
-        return photographs, ErrorTable.of(photographs, self._measured(protocol, photographs), seed=settings.seed)
+    def _depends_on(self) -> dict[str, object]:
+        """The settings that every row of the table depends on."""
+        return {"seed": self.settings.seed, "test_set": self.test_set.digest}
 
     @cached_property
-    def _known(self) -> tuple[list[TestPhotograph], ErrorTable]:
-        """Return the photographs of P0 and their errors, of which P1 is a part."""
-        return self._clean("p0", range(len(self.test_set.curves)))
+    def _table(self) -> Table:
+        """The table on disk."""
+        return Table(self.settings.out / TABLE_FILE, self._depends_on, code_digest())
 
-    def _p0(self) -> CleanReport:
-        """Measure known responses."""
-        return self._clean_report("P0", *self._known)
+    @cached_property
+    def _models(self) -> dict[str, str]:
+        """Name of a model -> its key in the table."""
+        return {model.name: model.key for model in self.settings.models}
 
-    def _p1(self) -> dict[str, OtherKindReport]:
-        """Pick the photographs of P0 that show another kind of scene than training."""
-        models = {model.name: model.measured for model in self.settings.models}
-        return other_kind_report(*self._known, models, self.test_set)
+    @cached_property
+    def _ways(self) -> dict[str, str]:
+        """Name of a way in which P4 asks a model -> the model's key in the table."""
+        return {way: key for name, key in self._models.items() for way in ways_of(name)}
 
-    def _p2(self) -> CleanReport:
-        """Measure unseen responses."""
-        return self._clean_report("P2", *self._clean("p2", self.test_set.held_out))
+    def _cases(self, protocol: str, photographs: Sequence[str], models: dict[str, str]) -> Cases:
+        """Return the rows of models and of all baselines on these photographs."""
+        baselines = dict.fromkeys(self._table.baselines(protocol), "")
+        return Cases(self._table.rows(protocol, models | baselines, photographs))
 
-    def _clean_report(self, name: str, photographs: list[TestPhotograph], table: ErrorTable) -> CleanReport:
-        """Return the report of P0 or P2, and draw it."""
-        models = self.settings.names
-        draw_distributions(self._path(f"{name.lower()}.png"), table, models, f"{name}: {len(photographs)} photographs")
-        self._with_uncertainty[name] = {model: table.columns[model] for model in models}
-        return clean_report(photographs, table, models, self.test_set)
+    def _simulated(self, protocol: str, photographs: Sequence[TestPhotograph]) -> None:
+        """Measure simulated photographs; in P2 with a bank without the held-out curves."""
+        data = self.test_set.data if protocol == "P2" else None
+        bank = make_bank(data, without_held_out=True) if data else None
+        settings = self.settings
+        job = Job(protocol, tuple(photographs), self.test_set, settings.models, bank=bank, seed=settings.seed)
+        measure_simulated(job, self._table, workers=settings.workers)
 
-    def _p3(self) -> StressReport:
-        """Measure stress."""
+    def _clean(self, protocol: str, curves: Sequence[int]) -> Iterator[ReportRow]:
+        """Measure clean photographs through some responses, and return their figures."""
+        scenes, settings = range(len(self.test_set.scenes)), self.settings
+        photographs = clean_photographs(scenes, curves, count=settings.photographs, seed=settings.seed)
+        self._simulated(protocol, photographs)
+        cases = self._cases(protocol, [photograph.label for photograph in photographs], self._models)
+        self._with_uncertainty[protocol] = cases, list(self._models)
+        return sums.clean_rows(protocol, cases, list(self._models), seed=settings.seed)
+
+    def _stress(self) -> Iterator[ReportRow]:
+        """Measure P3, and return the figures under every condition and query."""
         settings = self.settings
         photographs = stress_photographs(
             range(len(self.test_set.scenes)),
@@ -206,67 +193,49 @@ class Evaluation:
             conditions=settings.conditions,
             queries=settings.queries,
         )
-        report = stress_report(photographs, self._measured("p3", photographs), settings.names, seed=settings.seed)
-        draw_stress(self._path("p3.png"), report, settings.names)
-        return report
+        self._simulated("P3", photographs)
 
-    def _p4(self) -> dict[str, RealReport]:
-        """Measure real photographs, in each folder and together."""
+        def cases(condition: Condition, query: Query) -> Cases:
+            chosen = [each.label for each in photographs if (each.condition, each.query) == (condition, query)]
+            return Cases(self._table.rows("P3", self._models | ({GAMMA: ""} if query == PLAIN else {}), chosen))
+
+        conditions = {condition.name: cases(condition, PLAIN) for condition in settings.conditions}
+        asked = dict.fromkeys(each.query for each in photographs if each.query != PLAIN)
+        return sums.stress_rows(conditions, {query.name: cases(CLEAN, query) for query in asked}, seed=settings.seed)
+
+    def _real(self) -> Iterator[ReportRow]:
+        """Measure real photographs, and yield the figures of each folder and of both."""
         if self.test_set.data is None:
             raise CRFNetError("p4 needs real photographs; give --data instead of --quick")
-        names = [name for model in self.settings.names for name in ways_of(model)]
-        sets = real_photographs(self.test_set.data)
-        tables = {name: self._real_table(name, photographs) for name, photographs in sets.items()}
-        pooled = {name: self._pooled_table(name, table) for name, table in tables.items()}
-        if len(tables) > 1:
-            tables[BOTH], pooled[BOTH] = (RealTable.joined(list(parts.values())) for parts in (tables, pooled))
-        for name, table in tables.items():
-            self._with_uncertainty[f"P4 {name}"] = {model: table.trusted.columns(model) for model in names}
-        return {
-            name: real_report(table, pooled[name], names, seed=self.settings.seed) for name, table in tables.items()
-        }
+        ways, seed, alone, together = list(self._ways), self.settings.seed, {}, []
+        for folder, photographs in real_photographs(self.test_set.data).items():
+            protocol = f"P4 {folder}"
+            measure_real(protocol, photographs, self.settings.models, self._table, self.test_set)
+            measure_pooled(protocol + POOLED, photographs, self.settings.models, self._table, self.test_set)
+            alone[protocol] = self._cases(protocol, [photograph.name for photograph in photographs], self._ways)
+            together.append(self._pooled(protocol, photographs))
+        if len(alone) > 1:
+            first, second = alone.values()
+            alone[BOTH], together = first.joined(second), [together[0].joined(together[1])]
+        for protocol, cases in alone.items():
+            self._with_uncertainty[protocol] = sums.without_caution(cases), ways
+            yield from sums.real_rows(protocol, cases, ways, seed=seed)
+        yield from sums.origin_rows(protocol, cases, seed=seed)
+        yield from sums.body_rows(protocol, cases, ways)
+        yield from sums.pooled_rows(protocol + POOLED, together[0], ways, seed=seed)
 
-    def _real_table(self, name: str, photographs: Sequence[RealPhotograph]) -> RealTable:
-        """Measure the real photographs of one folder, and draw them."""
-        files = self._files(f"p4-{name}", {"photographs": [photograph.name for photograph in photographs]})
-        assert self.test_set.data is not None
-        measure_real(photographs, self._folders, files, self.test_set.curves, self.test_set.data, title=f"P4 {name}")
-        table = RealTable.of(photographs, files)
-        for model in self.settings.names:
-            draw_real(self._path(f"p4-{name}-{model}.png"), table, model, f"P4, data/{name}: {model}")
-        return table
+    def _pooled(self, protocol: str, photographs: Sequence[RealPhotograph]) -> Cases:
+        """Return the photographs that were estimated together, with these answers and the single ones."""
+        chosen = {photograph.name for group in pooled_groups(photographs) for photograph in group}
+        names = [photograph.name for photograph in photographs if photograph.name in chosen]
+        pooled = self._table.rows(protocol + POOLED, self._ways, names)
+        single = self._cases(protocol, names, self._ways).rows
+        return Cases(single | {way + POOLED: rows for way, rows in pooled.items()})
 
-    def _pooled_table(self, name: str, table: RealTable) -> RealTable:
-        """Measure several photographs of each body of one folder, given together."""
-        files = self._files(f"p4-{name}-pooled", {"photographs": [photograph.name for photograph in table.photographs]})
-        del files[BASELINES]
-        assert self.test_set.data is not None
-        measure_pooled(table.photographs, self._folders, files, self.test_set.data, title=f"P4 {name}, pooled")
-        return table.with_pooled(files)
-
-    def _p5(self) -> dict[str, dict[str, dict[str, Reliability]]]:
-        """Compare uncertainties with errors."""
-        measured = self._with_uncertainty
-        report: dict[str, dict[str, dict[str, Reliability]]] = {}
-        for error, file in RELIABILITY_FILES.items():
-            report[error] = {
-                protocol: {
-                    name: reliability(columns.errors[error], columns.expected(error), columns.coverage)
-                    for name, columns in models.items()
-                }
-                for protocol, models in measured.items()
-            }
-            draw_reliability(self._path(file), measured, report[error], error=error)
-        return report
-
-    def _p6(self) -> dict[str, UnusualReport]:
-        """Ask about pictures that no response explains."""
-        scenes, settings = self.test_set.scenes, {"test_set": self.test_set.digest, "code": self._code}
-        files = {
-            model.name: VerdictFile.opened(
-                self._path(f"cases/{model.name}/p6.json"), settings | {"sha256": model.measured.sha256}
-            )
-            for model in self.settings.models
-        }
-        measure_unusual(scenes, self._folders, files)
-        return {name: unusual_report(scenes, file) for name, file in files.items()}
+    def _unusual(self) -> Iterator[ReportRow]:
+        """Measure pictures that no response explains, and return how many are accepted."""
+        scenes = self.test_set.scenes
+        unusual.measure_unusual(scenes, self.settings.models, self._table)
+        ways = {way: key for name, key in self._models.items() for way in unusual.ways_of(name)}
+        names = [unusual.label(scene, kind) for kind in UnusualKind for scene in scenes]
+        return sums.unusual_rows(Cases(self._table.rows(unusual.PROTOCOL, ways, names)))

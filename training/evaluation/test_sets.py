@@ -1,9 +1,10 @@
-"""What models are measured on: scenes, responses, and the exposure s_crf that belongs to each response."""
+"""Test sets: scenes, responses, and the exposure s_crf that belongs to each response."""
 
 from __future__ import annotations
 
 import hashlib
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +18,7 @@ from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
 from training.data.scenes import Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
 from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, read_light
+from training.evaluation.baselines import constant_curves
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
 
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
@@ -61,8 +63,14 @@ class TestSet:
     held_out: tuple[int, ...] = ()
     data: Path | None = None
 
+    @cached_property
+    def constants(self) -> dict[str, ResponseCurve]:
+        """The guesses that are the same for every photograph."""
+        return constant_curves(self.curves)
+
+    @cached_property
     def exposures(self) -> Float64Array:
-        """Return s_crf of every response, shape (N,): it belongs to the response and not to the photograph."""
+        """s_crf of every response, shape (N,): it belongs to the response and not to the photograph."""
         luminance = log_normal_luminance() if self.data is None else training_luminance(self.data)
         return np.array([automatic_exposure(curve, luminance) for curve in self.curves])
 
@@ -79,7 +87,7 @@ def dorf_test_set(data: Path) -> TestSet:
     Raises
     ------
     CRFNetError
-        If the data is split otherwise than training/data/splits.json says.
+        If the split of the data differs from training/data/splits.json.
     """
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data / DORF_FILE)
@@ -92,7 +100,7 @@ def dorf_test_set(data: Path) -> TestSet:
 
 
 def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:
-    """Return studio lights of Blender and responses made from formulas: what the repository itself holds."""
+    """Return studio lights of Blender and responses made from formulas that come with the repository."""
     scenes = tuple(SceneFile(Path(light.file).stem, "panorama", lights / light.file, True) for light in LIGHTS)
     return TestSet(scenes, np.stack(list(formula_curves().values())))
 

@@ -15,29 +15,28 @@ from crfnet_core.files import atomic_write_text
 from crfnet_core.network import ModelConfig
 from crfnet_core.statistics import LENGTH
 from training.data.scenes import VALIDATION_SCENES
-from training.evaluation.report import paper
-from training.evaluation.report.accuracy import accuracy, accuracy_table, bodies_table
-from training.evaluation.report.content import Report
-from training.evaluation.report.document import read_report
+from training.evaluation import paper
+from training.evaluation.card import accuracy, accuracy_table, bodies_table
+from training.evaluation.report import Report, read_report
 
 #: The introductions of the cards, one for each input of networks; the names in braces are filled in.
 TEMPLATES = Path(__file__).with_name("model_card_templates")
 
 ALL_CURVES = (
-    "All 201 DoRF curves\nare in training. So P0 below tells the accuracy on new photographs of known responses, and"
-    " the real photographs tell\nthe accuracy on new cameras."
+    "All 201 DoRF curves\nare in training. So P0 below is the accuracy on new photographs of known responses, and"
+    " the real photographs give\nthe accuracy on new cameras."
 )
 
 HELD_OUT_CURVES = (
     "{count} of the 201 DoRF curves, and all mixtures with them, are left out: P2 below is measured on these."
 )
 
-#: What the card says of P2 if the report holds it.
+#: The sentence on P2, if the report holds it.
 P2 = " P2: the same of responses held out of training."
 
 
 def introduction(folder: Path, config: ModelConfig) -> str:
-    """Return what the card says before its figures."""
+    """Return the text before the figures."""
     held_out = len(config.training.get("held_out_curves", ()))
     return (
         (TEMPLATES / f"{config.input_name}.md")
@@ -58,10 +57,10 @@ def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
         introduction(folder, config),
         "## Accuracy\n",
         "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
-        f"{P2 if report.p2 else ''} P4: real photographs with measured responses, means over bodies, with a prior"
-        " that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were chosen on"
-        " them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an E_est of"
-        f" {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
+        f"{P2 if report.table('P2') else ''} P4: real photographs with measured responses, means over bodies, with a"
+        " prior that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were"
+        " chosen on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an"
+        f" E_est of {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",
         accuracy_table(config.accuracy),
         bodies_table(report, config.name),
         "How it is made and measured: `training/README.md`.",
@@ -78,11 +77,10 @@ def checked_report(path: Path, config: ModelConfig) -> Report:
         If it is of another model, was measured on the bundled scenes, or lacks P0.
     """
     report = read_report(path)
-    model = report.models.get(config.name)
-    if model is None or model.sha256 != config.sha256:
+    if report.models.get(config.name) != config.sha256:
         raise CRFNetError(f"{path}: holds no figures of {config.label}; evaluate this model")
-    if report.p0 is None or report.notes:
-        raise CRFNetError(f"{path}: is no whole evaluation on the data; evaluate with --data, anew if code changed")
+    if not report.table("P0") or report.notes:
+        raise CRFNetError(f"{path}: not a whole evaluation on the data; evaluate with --data, anew if code changed")
     return report
 
 

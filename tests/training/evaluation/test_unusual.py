@@ -1,27 +1,16 @@
-from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-pytest.importorskip("PIL", reason="training needs the train extra")
-
-pytest.importorskip("matplotlib", reason="training needs the train extra")
 
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
-from training.evaluation.measure.unusual import (
-    WRITTEN,
-    accepted_by_kind,
-    accepted_overall,
-    measure_unusual,
-    unusual_photographs,
-    unusual_report,
-)
-from training.evaluation.measure.verdict_files import VerdictFile
-from training.evaluation.report.real.content import BodySummary, RealReport, TrustedWrongly
-from training.evaluation.report.unusual import Accepted, unusual_section
+from training.evaluation.models import Model
+from training.evaluation.sums import unusual_rows
+from training.evaluation.table import Cases, Table
+from training.evaluation.unusual import WRITTEN, label, measure_unusual, unusual_photographs, ways_of
 from training.synthesis.unusual import UnusualKind
 
 
@@ -52,82 +41,28 @@ def test_a_picture_does_not_depend_on_which_others_are_asked_for(scene):
     np.testing.assert_array_equal(alone.pixels, with_other.pixels)
 
 
-def test_good_and_usable_are_accepted():
-    log, agx = UnusualKind.LOG_FOOTAGE, UnusualKind.AGX
-    verdicts = [(log, Verdict.GOOD), (agx, Verdict.DO_NOT_TRUST), (log, Verdict.USABLE), (log, Verdict.DO_NOT_TRUST)]
-    by_kind = accepted_by_kind(verdicts)
-    assert by_kind == {log: Accepted(3, 2), agx: Accepted(1, 0)}
-    assert by_kind[log].fraction == pytest.approx(2 / 3)
-    assert accepted_overall(by_kind) == Accepted(4, 2)
-    assert accepted_overall({}).fraction == 0
-
-
-def test_p6_asks_once_as_of_files_that_name_no_camera_and_again_without_what_programs_write(
+def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stated(
     scene, fixed_model, tmp_path, monkeypatch
 ):
     asked = []
 
-    def estimate(photo, *, network, **options):
-        asked.append((photo.metadata, options))
+    def estimate(photo, *, network, device):
+        asked.append((photo.metadata, device))
         return SimpleNamespace(verdict=Verdict.GOOD if "solarised" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
-    monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
+    monkeypatch.setattr("training.evaluation.unusual.estimate_response", estimate)
     kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.MESSENGER), [File(scene, "a"), File(scene, "b")]
-    file = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
-    measure_unusual(scenes, {"m": fixed_model}, {"m": file}, kinds=kinds)
+    model, table = Model.find(str(fixed_model)), Table(tmp_path / "table", {}, "c")
+    measure_unusual(scenes, [model], table, kinds=kinds)
     stripped = FileMetadata(file_format="PNG")
-    untold, told = {"device": None}, {"device": Device.CAMERA}
-    solarized = [(stripped, untold), (stripped, told)]
-    messenger = [(WRITTEN[UnusualKind.MESSENGER], untold), (stripped, untold), (stripped, told)]
+    solarized = [(stripped, None), (stripped, Device.CAMERA)]
+    messenger = [(stripped, None), (WRITTEN[UnusualKind.MESSENGER], None), (stripped, Device.CAMERA)]
     assert asked == [*solarized, *messenger] * 2
-    again = VerdictFile.opened(tmp_path / "p6.json", {"seed": 1})
-    assert again.verdicts == file.verdicts
-    ways = ("solarised or inverted", "solarised or inverted, camera told")
-    ways += ("messenger", "messenger, stripped", "messenger, camera told")
-    assert list(again.verdicts) == [f"{name}, {way}" for name in "ab" for way in ways]
-    measure_unusual(scenes, {"m": fixed_model}, {"m": again}, kinds=kinds)
+    measure_unusual(scenes, [model], Table(tmp_path / "table", {}, "c"), kinds=kinds)
     assert len(asked) == 10
-    report = unusual_report(scenes, again, kinds)
-    assert report.overall == report.stripped == report.told == Accepted(4, 2)
-    assert VerdictFile.opened(tmp_path / "p6.json", {"seed": 2}).verdicts == {}
-
-
-def test_the_section_stands_beside_the_refused_photographs_of_cameras(scene):
-    kind = UnusualKind.AGX
-    file = VerdictFile(
-        Path("p6.json"),
-        {},
-        {
-            "a, rendering, AgX": Verdict.GOOD,
-            "b, rendering, AgX": Verdict.DO_NOT_TRUST,
-            "a, rendering, AgX, stripped": Verdict.GOOD,
-            "b, rendering, AgX, stripped": Verdict.GOOD,
-            "a, rendering, AgX, camera told": Verdict.GOOD,
-            "b, rendering, AgX, camera told": Verdict.USABLE,
-        },
-    )
-    report = {"m": unusual_report([File(scene, "a"), File(scene, "b")], file, (kind,))}
-    summary = BodySummary(3, 8, {}, ())
-    accepted = {"m": 8, "m, EXIF lost": 4, "m, EXIF lost, kind told": 7, "m, metadata ignored": 6}
-    trusted = {name: TrustedWrongly(count, 0, 0, 0) for name, count in accepted.items()}
-    empty = ("kinds", "origins", "origins_of_everything", "weights", "weights_of_everything", "pooled")
-    parts = {name: {} for name in empty}
-    real = RealReport(
-        trusted=summary,
-        everything=None,
-        trusted_wrongly=trusted,
-        trusted_wrongly_of_everything=trusted,
-        bodies=(),
-        photographs=(),
-        **parts,
-    )
-    text = "\n".join(unusual_section(report, {"both": real}))
-    assert "| rendering, AgX | 50 % (1 of 2) |" in text
-    assert "| **all kinds** | 50 % (1 of 2) |" in text
-    assert "| all kinds, without metadata | 100 % (2 of 2) |" in text
-    assert "| all kinds, without metadata, a camera told | 100 % (2 of 2) |" in text
-    assert "| m | 0 % (0 of 8) | 0 % (0 of 8) |" in text
-    assert "| m, EXIF lost | 50 % (4 of 8) | 50 % (4 of 8) |" in text
-    assert "| m, EXIF lost, kind told | 12 % (1 of 8) | 12 % (1 of 8) |" in text
-    assert "| m, metadata ignored | 25 % (2 of 8) | 25 % (2 of 8) |" in text
-    assert "refused" not in "\n".join(unusual_section(report, None))
+    names = [label(scene, kind) for scene in scenes for kind in kinds]
+    cases = Cases(table.rows("P6", dict.fromkeys(ways_of("fixed_model"), model.key), names))
+    counts = {(row["group"], row["estimator"]): row["accepted"] for row in unusual_rows(cases)}
+    assert {counts["", way] for way in ways_of("fixed_model")} == {2}
+    assert counts[UnusualKind.SOLARIZED.value, "fixed_model"] == 2
+    assert counts[UnusualKind.MESSENGER.value, "fixed_model"] == 0

@@ -1,4 +1,4 @@
-"""The figures of the CRF-net paper (Li & Peers, BMVC 2017), written down once to stand beside ours; E_lin is x 1e-2."""
+"""The figures of the CRF-net paper (Li & Peers, BMVC 2017); E_lin is x 1e-2."""
 
 from __future__ import annotations
 
@@ -40,9 +40,6 @@ STRESS = {
     "blur variance 4": PaperFigures(2.219, 3.594),
     "blur variance 8": PaperFigures(2.335, 3.544),
 }
-
-#: What the paper says in words of conditions that it gives no figure for.
-IN_WORDS = {"cool white balance": "fails"}
 
 #: Fig. 6: lowest and highest E_est on 8 real photographs.
 REAL_RANGE = (0.42, 2.18)

@@ -3,22 +3,35 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
 from crfnet_core.types import BoolArray, Float64Array, IndexArray
-from training.evaluation.report.errors import Interval
 
 #: Resamples, and the fraction of them inside an interval.
 RESAMPLES, CONFIDENCE = 1000, 0.95
 
 
+class Interval(NamedTuple):
+    """A figure and the ends of its 95 % confidence interval."""
+
+    value: float
+    low: float
+    high: float
+
+    @property
+    def contains_zero(self) -> bool:
+        """Whether the interval contains 0: a difference is then a tie."""
+        return self.low <= 0 <= self.high
+
+
 @dataclass(frozen=True, eq=False)
 class Resampling:
-    """How often each of N photographs counts: once in the first row, at random in the R others.
+    """Weights of N photographs: 1 in the first row, random counts in the R others.
 
-    Every photograph belongs to a scene and to a response, and both are only samples of what there is. So scenes and
+    Every photograph belongs to a scene and to a response, and both are samples. So scenes and
     responses are drawn with replacement, each on its own, and a photograph counts as often as its scene times as its
     response. The same weights serve every estimator, so that differences are paired.
 
@@ -46,6 +59,12 @@ class Resampling:
             parts.append(counts[:, level].astype(np.float64))
         drawn = parts[0] * parts[1]
         return cls(np.concatenate([np.ones((1, len(scenes))), drawn[drawn.any(axis=1)]]))
+
+    @classmethod
+    def of_bodies(cls, bodies: NDArray[np.generic], *, seed: int) -> Resampling:
+        """Return the weights of photographs of `bodies`, labels of shape (N,): every body counts once."""
+        _, body = np.unique(bodies, return_inverse=True)
+        return cls.of(body, np.zeros(len(body), dtype=int), seed=seed).scaled(1 / np.bincount(body)[body])
 
     def subset(self, chosen: BoolArray | IndexArray) -> Resampling:
         """Return the weights of some photographs, from a mask (N,) or indices."""
@@ -76,7 +95,7 @@ class Resampling:
         return interval(self.quantiles(values, fraction))
 
     def ratio(self, values: Float64Array, others: Float64Array) -> Interval:
-        """Return the mean of values (N,) divided by that of others (N,)."""
+        """Return the mean of values (N,) divided by the mean of others (N,)."""
         return interval(self.means(values) / self.means(others))
 
     def difference(self, values: Float64Array, others: Float64Array) -> Interval:

@@ -1,0 +1,80 @@
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+
+from crfnet_core.response.curve import LEAST_SLOPE, ResponseCurve
+from crfnet_core.response.metrics import estimation_error, shape_error
+from training.data.curves import geometric_median
+from training.data.families import with_headroom
+from training.evaluation.baselines import (
+    constant_curves,
+    mean_in_log_irradiance,
+    nearest_of,
+    nearest_power,
+    oracle_curves,
+    with_best_headroom,
+)
+from training.evaluation.test_sets import bundled_test_set
+
+UNIFORM = np.linspace(0, 1, 1024)
+
+
+def test_baselines_against_gamma_2_2():
+    true = ResponseCurve.gamma(2.2)
+    curves = constant_curves(bundled_test_set().curves) | oracle_curves(true)
+    errors = {name: estimation_error(true, curve) for name, curve in curves.items()}
+    expected = {
+        "gamma 2.2": 0.0,
+        "sRGB": 0.1846,
+        "Rec.709": 1.1214,
+        "mean curve": 1.1841,
+        "geometric median curve": 0.9662,
+        "oracle: best gamma": 0.0,
+        "oracle: EMoR, 1 component": 1.1799,
+        "oracle: EMoR, 2 components": 0.3236,
+        "oracle: EMoR, 3 components": 0.1736,
+        "oracle: EMoR, 5 components": 0.0669,
+        "oracle: EMoR, 11 components": 0.0056,
+    }
+    assert list(errors) == list(expected)
+    assert errors == pytest.approx(expected, abs=1e-3)
+
+
+def test_the_nearest_power_of_an_s_curve_is_the_least_of_a_grid():
+    true = ResponseCurve.from_samples(UNIFORM**0.4 * (2 - UNIFORM**0.4))
+    grid = [np.linalg.norm(true.brightness - UNIFORM**p) for p in np.linspace(0.05, 2, 2000)]
+    assert estimation_error(true, nearest_power(true)) == pytest.approx(min(grid), abs=2e-3)
+
+
+def test_the_geometric_median_ignores_an_outlier():
+    curves = np.stack([UNIFORM**p for p in (0.5, 0.5, 0.5, 3.0)])
+    np.testing.assert_allclose(geometric_median(curves), UNIFORM**0.5, atol=1e-3)
+
+
+def test_the_mean_in_log_irradiance_of_two_powers_is_the_power_between():
+    """By hand: g1 = B ** 1.5 and g2 = B ** 2.5 have the geometric mean B ** 2."""
+    mean = mean_in_log_irradiance([ResponseCurve.gamma(1.5), ResponseCurve.gamma(2.5)])
+    assert estimation_error(ResponseCurve.gamma(2.0), mean) < 0.02
+
+
+def test_the_oracle_chooses_the_headroom_and_keeps_the_shape():
+    mean = ResponseCurve.from_samples(1 - (1 - UNIFORM**0.6) ** 2)
+    for stops in (1.0, -0.4):
+        true = with_headroom(mean, stops)
+        best = with_best_headroom(mean, true)
+        assert estimation_error(true, best) < 0.05 < estimation_error(true, mean)
+        assert shape_error(mean, best) < 0.01
+
+
+def test_the_nearest_curve_is_picked_in_hindsight():
+    curves = np.stack([UNIFORM ** (1 / power) for power in (1.4, 2.0, 2.6)])
+    assert estimation_error(nearest_of(curves, ResponseCurve.gamma(2.1)), ResponseCurve.gamma(2.0)) < 0.02
+
+
+def test_the_bundled_responses_are_strict_and_far_from_each_other():
+    test_set = bundled_test_set()
+    assert (np.diff(test_set.curves, axis=1) >= 0.9 * LEAST_SLOPE / 1024).all()
+    distances = np.linalg.norm(test_set.curves[:, None] - test_set.curves, axis=2)
+    assert distances[~np.eye(13, dtype=bool)].min() > 0.15
+    assert np.log2(test_set.exposures[:3]) == pytest.approx([-2.09, -2.55, -3.43], abs=0.01)

@@ -1,0 +1,147 @@
+"""Means, intervals, comparisons, reliability, correlations."""
+
+import numpy as np
+import pytest
+
+pytest.importorskip("scipy.io", reason="training needs the train extra")
+
+from crfnet_core.response.metrics import peak_signal_to_noise
+from training.evaluation.bootstrap import Resampling
+from training.evaluation.summary import (
+    difference_figures,
+    error_figures,
+    of_scenes,
+    rejection_curve,
+    reliability_figures,
+    verdict_figures,
+    weight_figures,
+)
+from training.evaluation.table import Cases
+
+
+@pytest.fixture
+def rng():
+    return np.random.default_rng(4)
+
+
+def crossed(scenes, curves):
+    """Labels of every scene with every curve."""
+    return tuple(part.ravel() for part in np.meshgrid(np.arange(scenes), np.arange(curves), indexing="ij"))
+
+
+def cases(**estimators):
+    """Photographs of 6 scenes through 10 curves, from estimator -> columns of figures."""
+    places = [{"scene number": scene, "curve": curve} for scene, curve in zip(*crossed(6, 10), strict=True)]
+    return Cases(
+        {
+            name.replace("gamma", "gamma 2.2"): [
+                place | {column: values[number] for column, values in columns.items()}
+                for number, place in enumerate(places)
+            ]
+            for name, columns in estimators.items()
+        }
+    )
+
+
+def errors(estimation, linearization, shape):
+    return {"E_est": estimation, "E_lin": linearization, "shape": shape}
+
+
+def test_the_first_sample_is_the_plain_figure(rng):
+    values = rng.uniform(0, 3, 60)
+    resampling = Resampling.of(*crossed(6, 10), seed=1)
+    assert resampling.mean(values).value == pytest.approx(values.mean())
+    assert resampling.quantile(values, 0.5).value == np.sort(values)[29]
+    assert resampling.quantile(values, 0.9).value == np.sort(values)[53]
+
+
+def test_the_interval_is_that_of_scenes_and_curves_together(rng):
+    scenes, curves = crossed(30, 40)
+    by_scene, by_curve = rng.normal(0, 1, 30), rng.normal(0, 2, 40)
+    values = 10 + by_scene[scenes] + by_curve[curves]
+    mean = Resampling.of(scenes, curves, seed=1).mean(values)
+    expected = 1.96 * np.sqrt(by_scene.var() / 30 + by_curve.var() / 40)
+    assert (mean.high - mean.low) / 2 == pytest.approx(expected, rel=0.08)
+    assert mean.low < mean.value < mean.high
+
+
+def test_every_body_counts_once():
+    resampling = Resampling.of_bodies(np.array(["a", "a", "a", "b"]), seed=1)
+    assert resampling.mean(np.array([0.0, 0.0, 0.0, 1.0])).value == pytest.approx(0.5)
+
+
+def test_weighted_quantiles_are_those_of_repeated_values(rng):
+    values, counts = rng.uniform(0, 1, 25), rng.integers(0, 4, 25)
+    repeated = np.sort(np.repeat(values, counts))
+    weights = np.stack([np.ones(25), counts.astype(float)])
+    quantile = Resampling(weights).quantiles(values, 0.9)[1]
+    assert quantile == repeated[int(np.ceil(0.9 * len(repeated))) - 1]
+
+
+def test_the_same_seed_gives_the_same_intervals(rng):
+    values = rng.uniform(0, 1, 12)
+    first, second, other = (Resampling.of(*crossed(3, 4), seed=seed).mean(values) for seed in (7, 7, 8))
+    assert first == second
+    assert first != other
+
+
+def test_figures_are_those_of_the_metrics(rng):
+    model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
+    parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))
+    figures = error_figures(parts, of_scenes(parts, seed=1), "model")
+    assert figures["E_est mean"].value == pytest.approx(model.mean())
+    assert figures["E_est median"].value == np.sort(model)[29]
+    assert figures["E_est win rate"].value == pytest.approx((model < gamma).mean())
+    assert figures["E_lin ratio"].value == pytest.approx(model.mean() / gamma.mean())
+    assert figures["shape p90"].value == np.sort(model)[53]
+    psnr = figures["PSNR of the mean"]
+    assert psnr.value == pytest.approx(peak_signal_to_noise(model.mean() / 100))
+    assert psnr.low < psnr.high
+
+
+def test_paired_differences_see_what_intervals_hide(rng):
+    scenes, curves = crossed(6, 10)
+    model = rng.normal(0, 1, 6)[scenes] + rng.normal(0, 1, 10)[curves] + 5
+    better = model - 0.1 + rng.normal(0, 0.01, 60)
+    parts = cases(better=errors(better, model, model), model=errors(model, model, model))
+    weights = of_scenes(parts, seed=1)
+    figures = difference_figures(parts, weights, "better", "model")
+    assert weights.mean(better).high > weights.mean(model).low
+    assert figures["E_est difference"].value < 0
+    assert not figures["E_est difference"].contains_zero
+    assert figures["shape difference"].contains_zero
+
+
+@pytest.mark.parametrize(("sign", "least", "most"), [(1, 1, 1), (-1, -9, -0.5), (0, 0, 1e-9)])
+def test_an_uncertainty_gains_what_it_foretells(rng, sign, least, most):
+    model = rng.uniform(0, 3, 60)
+    parts = cases(model={"E_est": model, "expected E_est": sign * model, "band coverage": np.full(60, 0.9)})
+    figures = reliability_figures(parts, "E_est", "model")
+    assert figures["rank correlation"] == pytest.approx(sign)
+    assert least - 1e-9 <= figures["gain"] <= most + 1e-9
+    assert figures["band coverage"] == pytest.approx(0.9)
+
+
+def test_rejection_removes_the_most_doubtful_first():
+    np.testing.assert_allclose(rejection_curve(np.array([1.0, 3.0, 2.0]), np.array([1, 3, 2])), [2, 1.5, 1])
+
+
+def test_answers_that_are_far_off_and_called_usable_are_counted():
+    answers = [(3.5, 0.5, "usable"), (3.5, 0.1, "good"), (1.0, 0.5, "usable"), (1.0, 0.1, "usable")]
+    answers.append((9.0, 0.9, "do not trust"))
+    rows = [{"E_est": estimation, "shape": shape, "verdict": verdict} for estimation, shape, verdict in answers]
+    assert verdict_figures(Cases({"model": rows}), "model") == {
+        "accepted": 4,
+        "refused": 1,
+        "far off": 3,
+        "far off in E_est": 2,
+        "far off in shape": 2,
+    }
+
+
+def test_correlations_of_weights_are_over_bodies():
+    bodies = [("a", 0.5, 0.6), ("a", 1.5, 1.4), ("b", 2.0, 3.0), ("c", 3.0, 5.0), ("d", 4.0, 7.0)]
+    rows = [{"body key": body, "true weights": [true, 0, true], "weights": [w, 0, -w]} for body, true, w in bodies]
+    first, second, third = weight_figures(Cases({"model": rows}), "model", seed=1).values()
+    assert (first.value, second.value, third.value) == pytest.approx((1, 0, -1), abs=1e-3)
+    assert weight_figures(Cases({"model": rows[:3]}), "model", seed=1) == {}  # two bodies

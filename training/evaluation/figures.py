@@ -1,0 +1,106 @@
+"""The figures of one estimator on one photograph, as columns of a row of the table."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
+from crfnet_core.types import Float64Array, IndexArray
+
+#: The errors that reports give; E_lin is x 1e-2, "shape" is in stops (definitions: `crfnet_core.response.metrics`).
+ERRORS = ("E_est", "E_lin", "shape")
+
+#: The part of the irradiance that a partial response covers (CRF-net paper, Fig. 9).
+PARTIAL_IRRADIANCE = 0.8
+
+#: Decimals of the figures.
+DECIMALS = 6
+
+#: EMoR weights that are kept: those that matter (docs/METHOD.md).
+WEIGHTS = 3
+
+#: Samples that EMoR weights are fitted to, and their decimals: so that correlations compare with earlier reports.
+FITTED_SAMPLES, FITTED_DECIMALS = 65, 4
+
+#: The values of 8-bit codes, in [0, 1].
+CODES = np.arange(256) / 255
+
+
+def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
+    """Return the errors of one response on one photograph.
+
+    Parameters
+    ----------
+    true, estimated : ResponseCurve
+        The responses.
+    counts : ndarray, int, shape (256,)
+        How often each code occurs in the photograph.
+
+    Returns
+    -------
+    dict
+        The errors of `ERRORS`; "scale", by how many stops the light is too bright; and "partial", the E_est over the
+        samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
+    """
+    lower = round(PARTIAL_IRRADIANCE * (SAMPLES - 1)) + 1
+    difference = true.brightness - estimated.brightness
+    linearization = round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS)
+    return {
+        "E_est": round(estimation_error(true, estimated), DECIMALS),
+        "E_lin": 100 * linearization,
+        "shape": round(shape_error(true, estimated), DECIMALS),
+        "scale": round(scale_error(true, estimated), DECIMALS),
+        "partial": round(float(np.linalg.norm(difference[:lower])), DECIMALS),
+    }
+
+
+def estimate_figures(
+    true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray, *, curve: ResponseCurve | None = None
+) -> dict[str, Any]:
+    """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds.
+
+    Parameters
+    ----------
+    true : ResponseCurve
+        The response.
+    estimate : ResponseEstimate
+        The product's answer.
+    counts : ndarray, int, shape (256,)
+        How often each code occurs in the photograph.
+    curve : ResponseCurve, optional
+        The response to measure instead of `estimate.curve`.
+    """
+    lower, upper = estimate.band
+    inside = (true.brightness >= lower) & (true.brightness <= upper)
+    kind = max(estimate.families, key=estimate.families.__getitem__, default="")
+    return curve_figures(true, curve or estimate.curve, counts) | {
+        "expected E_est": round(estimate.uncertainty, DECIMALS),
+        "expected shape": round(estimate.shape_uncertainty, DECIMALS),
+        "band coverage": round(float(inside.mean()), DECIMALS),
+        "verdict": str(estimate.verdict),
+        "family": str(kind),
+        "weights": fitted_weights(estimate.curve),
+    }
+
+
+def first_weights(curve: ResponseCurve) -> list[float]:
+    """Return the first EMoR weights of a response."""
+    return _first(EmorBasis.load().project(curve.brightness))
+
+
+def fitted_weights(curve: ResponseCurve) -> list[float]:
+    """Return the first EMoR weights of a response, by least squares on `FITTED_SAMPLES` rounded samples of it."""
+    basis = EmorBasis.load()
+    index = np.linspace(0, SAMPLES - 1, FITTED_SAMPLES).round().astype(int)
+    samples = curve.brightness[index].round(FITTED_DECIMALS)
+    return _first(np.linalg.lstsq(basis.components[:, index].T, samples - basis.mean[index])[0])
+
+
+def _first(weights: Float64Array) -> list[float]:
+    """Return the first weights, rounded."""
+    return [round(float(weight), DECIMALS) for weight in weights[:WEIGHTS]]

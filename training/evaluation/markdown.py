@@ -1,0 +1,236 @@
+"""report.md: every table of a report through one writer; the tables are described by data."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.files import atomic_write_text
+from training.evaluation import paper
+from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
+from training.evaluation.figures import ERRORS
+from training.evaluation.report import Report, ReportRow, value
+
+
+@dataclass(frozen=True)
+class Listed:
+    """A table with a row for each estimator.
+
+    Parameters
+    ----------
+    tables : tuple of str
+        Tables of the report.
+    figures : dict
+        Head of a column -> figure.
+    groups : tuple of str
+        The groups to show; all if empty.
+    """
+
+    tables: tuple[str, ...]
+    figures: dict[str, str]
+    groups: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class Crossed:
+    """A table with a row for each group, and a column for each estimator whose cells hold some figures."""
+
+    tables: tuple[str, ...]
+    figures: tuple[str, ...] = ("E_est mean", "shape mean")
+
+
+@dataclass(frozen=True)
+class Section:
+    """A title, a text, and tables."""
+
+    title: str
+    text: str
+    tables: tuple[Listed | Crossed, ...]
+
+
+#: Figures that are shown with their interval, by the end of their names.
+WITH_INTERVAL = ("mean", "difference", "correlation")
+
+ERROR_FIGURES = {
+    "E_est": "E_est mean",
+    "median": "E_est median",
+    "p90": "E_est p90",
+    "ratio": "E_est ratio",
+    "wins": "E_est win rate",
+    "E_lin": "E_lin mean",
+    "shape": "shape mean",
+}
+
+MEANS = {"E_est": "E_est mean", "shape": "shape mean"}
+
+STATED = {
+    "stated": "stated mean",
+    "found": "error mean",
+    "rank correlation": "rank correlation",
+    "band holds": "band coverage",
+    "gain": "gain",
+}
+
+#: The baselines that tables by group show.
+SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES)
+
+#: The folders of real photographs.
+FOLDERS = ("real", "real_bodies", "both")
+
+INTRODUCTION = """# How accurate the models are
+
+E_est, E_lin (x 1e-2) and the shape error in stops are defined in `docs/METHOD.md` (Eq. 32 to 34), the protocols in
+`training/README.md`. "p90" is the 90th percentile, "ratio" the mean divided by that of gamma 2.2 on the same
+photographs, "wins" the fraction of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals
+over scenes and responses together, on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group
+give E_est, shape. The paper is Li & Peers, 2017, on photographs of its own.
+"""
+
+SECTIONS = (
+    Section(
+        "P0: known responses, unseen photographs",
+        f"The paper: E_est {paper.OVERALL.estimation} (gamma 2.2: {paper.GAMMA.estimation}), E_lin"
+        f" {paper.OVERALL.linearization} ({paper.GAMMA.linearization}), wins {paper.WIN_RATE.estimation:.2f}.",
+        (Listed(("P0",), ERROR_FIGURES), Crossed(("P0 by exposure", "P0 by kind"))),
+    ),
+    Section(
+        "P2: unseen responses, unseen photographs",
+        "The responses were held out of training and of the bank.",
+        (Listed(("P2",), ERROR_FIGURES),),
+    ),
+    Section(
+        "P3: stress",
+        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones. Noise is Gaussian after the"
+        " response, its variance in squared 8-bit codes; blur is Gaussian in linear light, its variance in squared"
+        " pixels; JPEG has subsampled chroma. Below, E_est over irradiance up to 0.8, and its ratio to that over all.",
+        (
+            Crossed(("P3", "P3 queries"), ("E_est mean", "E_est x clean")),
+            Listed(("P3",), {"lower E_est": "partial mean", "ratio": "partial ratio"}, ("clean",)),
+        ),
+    ),
+    Section(
+        "P4: real photographs",
+        "Means over bodies, each counted once. The bank of responses knows nothing of the bodies of the photograph's"
+        ' fold. "EXIF lost": the file states only its size; "kind stated": the user then states phone, compact or'
+        ' camera. "Mean of the other bodies" does not look at the photograph; oracles choose by the true response.'
+        " Photographs with caution (edited, very small, or poorly measured) count only where a table names them.",
+        (
+            Listed(("P4 both",), ERROR_FIGURES),
+            Crossed(tuple(f"P4 {folder}{caution}" for folder in FOLDERS for caution in ("", ", with caution"))),
+            Crossed(("P4 both by kind", "P4 both by file")),
+        ),
+    ),
+    Section(
+        "P4: differences",
+        "The first model, as users ask it, less each other row.",
+        (Listed(("P4 both", "P4 both, with caution"), {error: f"{error} difference" for error in ERRORS}),),
+    ),
+    Section(
+        "P4: several photographs of one body",
+        "Up to four photographs estimated together, and the same photographs one by one, with caution included.",
+        (Listed(("P4 both, pooled",), MEANS),),
+    ),
+    Section(
+        "P4: verdicts and weights",
+        'Accepted are the verdicts "good" and "usable"; far off is an E_est above 3 or a shape error above 0.4 stop.'
+        " Then the correlation over bodies of the true and the estimated EMoR weights.",
+        (
+            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("accepted", "refused", "far off")}),
+            Listed(("P4 both",), {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}),
+        ),
+    ),
+    Section(
+        "P5: reliability of the uncertainty",
+        'Stated and found error, of E_est and then of the shape. "Gain" is 1 if rejecting the most uncertain answers'
+        " first is as good as rejecting the worst first, and 0 if it is as good as chance.",
+        tuple(Listed((f"P5 {error}",), STATED, ("P0", "P2", "P4 both")) for error in ("E_est", "shape")),
+    ),
+    Section(
+        "P6: pictures that no response explains",
+        "Accepted, of all and by kind. Files name no camera; renders and messengers' copies have the metadata that"
+        " their programs write, unless a column excludes it.",
+        (Crossed(("P6", "P6 by kind"), ("accepted",)),),
+    ),
+)
+
+
+def write_markdown(path: Path, report: Report) -> None:
+    """Write report.md."""
+    atomic_write_text(path, report_text(report), overwrite=True)
+
+
+def report_text(report: Report) -> str:
+    """Return report.md."""
+    settings = ", ".join(f"{name.replace('_', ' ')} {setting}" for name, setting in report.settings.items())
+    models = ", ".join(f"{name} (`{sha256[:12]}`)" for name, sha256 in report.models.items())
+    parts = [INTRODUCTION, f"Models: {models}. Settings: {settings}.\n", *(f"- {note}\n" for note in report.notes)]
+    for section in SECTIONS:
+        tables = [text for table in section.tables if (text := _table(report, table))]
+        parts += [f"## {section.title}\n", f"{section.text}\n", *tables] if tables else []
+    return "\n".join(parts)
+
+
+def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
+    """Return a Markdown table."""
+    lines = [f"| {' | '.join(row)} |" for row in (header, ["---"] * len(header), *rows)]
+    return "\n".join(lines) + "\n"
+
+
+def _table(report: Report, table: Listed | Crossed) -> str:
+    """Return a table in Markdown, empty where the report has no such figures."""
+    rows = [row for name in table.tables for row in report.table(name)]
+    return _listed(rows, table) if isinstance(table, Listed) else _crossed(rows, table, tuple(report.models))
+
+
+def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
+    """Return a table with a row for each estimator that has the first figure."""
+    first = next(iter(table.figures.values()))
+    rows = [row for row in rows if first in row and (not table.groups or row["group"] in table.groups)]
+    cells = [
+        [_name(row), row["estimator"], _counts(row), *(_cell(name, row.get(name)) for name in table.figures.values())]
+        for row in rows
+    ]
+    return markdown_table(["", "estimator", "photographs", *table.figures], cells) if cells else ""
+
+
+def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...]) -> str:
+    """Return a table with a row for each group and a column for each model, way of asking it, and shown baseline."""
+    rows = [row for row in rows if row["estimator"].startswith(models) or row["estimator"] in SHOWN_BASELINES]
+    estimators = list(dict.fromkeys(row["estimator"] for row in rows))
+    groups: dict[str, dict[str, ReportRow]] = {}
+    for row in rows:
+        groups.setdefault(_name(row), {})[row["estimator"]] = row
+    cells = [
+        [name, _counts(next(iter(group.values()))), *(_means(group.get(each), table) for each in estimators)]
+        for name, group in groups.items()
+    ]
+    return markdown_table(["", "photographs", *estimators], cells) if cells else ""
+
+
+def _means(row: ReportRow | None, table: Crossed) -> str:
+    """Return the figures of one estimator on one group, without intervals."""
+    return ", ".join(_number(value(row[figure])) for figure in table.figures) if row else ""
+
+
+def _name(row: ReportRow) -> str:
+    """Return the name of a row's group, or of its table."""
+    return str(row["group"] or row["table"])
+
+
+def _counts(row: ReportRow) -> str:
+    """Return the number of photographs, and of bodies."""
+    return f"{row['photographs']} of {row['bodies']}" if "bodies" in row else str(row["photographs"])
+
+
+def _cell(name: str, figure: Any) -> str:
+    """Return a figure, with its interval where it has one that is shown."""
+    if isinstance(figure, list) and name.endswith(WITH_INTERVAL):
+        return "{} [{}, {}]".format(*map(_number, figure))
+    return "" if figure is None else _number(value(figure))
+
+
+def _number(figure: Any) -> str:
+    """Return a figure as text."""
+    return f"{figure:.2f}" if isinstance(figure, float) else str(figure)

@@ -1,0 +1,57 @@
+"""The models that an evaluation measures."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from crfnet_core.errors import CRFNetError
+from crfnet_core.network import ModelConfig, model_folder, packaged_models
+
+
+@dataclass(frozen=True)
+class Model:
+    """A model folder.
+
+    Parameters
+    ----------
+    name : str
+        Of the folder.
+    folder : Path
+        The folder.
+    sha256 : str
+        Of model.onnx.
+    held_out_curves : tuple of int
+        Numbers of the DoRF curves that model.json lists as kept out of training.
+    """
+
+    name: str
+    folder: Path
+    sha256: str
+    held_out_curves: tuple[int, ...] = ()
+
+    @classmethod
+    def find(cls, wanted: str) -> Model:
+        """Return the model of this name in crfnet_core/models, or in the folder of this path.
+
+        Raises
+        ------
+        CRFNetError
+            If there is neither.
+        """
+        folder = model_folder(wanted)
+        if not (folder / "model.json").is_file():
+            names = ", ".join(folder.name for folder in packaged_models())
+            raise CRFNetError(f"{wanted}: not a model folder; give its path, or one of {names}")
+        config = ModelConfig.read(folder / "model.json")
+        return cls(folder.resolve().name, folder, config.sha256, tuple(config.training.get("held_out_curves") or ()))
+
+    @property
+    def key(self) -> str:
+        """The head of the hash, as in the table."""
+        return self.sha256[:12]
+
+    def lacks(self, held_out: Sequence[int]) -> bool:
+        """Return whether these responses were kept out of training."""
+        return set(held_out) <= set(self.held_out_curves)

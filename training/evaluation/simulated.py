@@ -1,0 +1,218 @@
+"""Measure simulated photographs (P0, P2, P3) with every model and baseline, on several processes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from concurrent.futures import ProcessPoolExecutor
+from dataclasses import dataclass, replace
+from functools import cache, lru_cache
+from itertools import compress, groupby
+from multiprocessing import get_context
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from tqdm import tqdm
+
+from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.network import ResponseNetwork, pooling
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.posterior import Prior, ResponseBank
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.types import Float32Array
+from training.evaluation.baselines import GAMMA, oracle_curves
+from training.evaluation.figures import curve_figures, estimate_figures
+from training.evaluation.models import Model
+from training.evaluation.plan import PLAIN, Condition, Query, TestPhotograph
+from training.evaluation.table import Row, Table
+from training.evaluation.test_sets import SceneFile, TestSet
+from training.synthesis.camera import code_counts, render_photo, sensor_light
+
+#: The prior of simulated photographs, whose responses are of any kind.
+PRIOR = "any"
+
+#: The most photographs of a job: few enough to spread over processes and to write often.
+JOB_SIZE = 20
+
+#: Lights in a process's memory: those of a scene, and of the scenes pooled with it. The largest take 0.3 GB.
+CACHED_LIGHTS = 12
+
+
+@dataclass(frozen=True, eq=False)
+class Job:
+    """Simulated photographs, and the estimators to measure on them.
+
+    Parameters
+    ----------
+    protocol : str
+        The protocol; in P3 gamma 2.2 is the only baseline.
+    photographs : tuple of TestPhotograph
+        The photographs.
+    test_set : TestSet
+        Scenes and responses.
+    models : tuple of Model
+        The models.
+    has_baselines : bool
+        Whether to measure the baselines.
+    bank : ResponseBank or None
+        The responses that estimates choose from; None for the packaged ones.
+    seed : int
+        Of dither and noise.
+    """
+
+    protocol: str
+    photographs: tuple[TestPhotograph, ...]
+    test_set: TestSet
+    models: tuple[Model, ...]
+    has_baselines: bool = True
+    bank: ResponseBank | None = None
+    seed: int = 2017
+
+    def photo(self, scene: int, curve: int, condition: Condition) -> Photo:
+        """Return one photograph; its dither is that of the scene, its noise its own."""
+        return render_photo(
+            _light(self.test_set.scenes[scene], scene, condition.light, self.seed),
+            self.test_set.curves[curve],
+            float(self.test_set.exposures[curve]) * condition.factor,
+            np.random.default_rng([self.seed, scene, curve]),
+            name=self.test_set.scenes[scene].name,
+            capture=condition.capture,
+            is_gray=condition.is_gray and not condition.noise,
+        )
+
+    def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
+        """Return a row of the table."""
+        scene = self.test_set.scenes[photograph.scene]
+        return {
+            "protocol": self.protocol,
+            "photograph": photograph.label,
+            "estimator": estimator,
+            "model": model,
+            "scene": scene.name,
+            "scene number": photograph.scene,
+            "kind": scene.kind,
+            "curve": photograph.curve,
+            "exposure": photograph.condition.factor,
+            "condition": photograph.condition.name,
+            "query": photograph.query.name,
+        } | figures
+
+
+def measure_simulated(whole: Job, table: Table, *, workers: int) -> None:
+    """Add to the table what it lacks of a job, on `workers` processes; 1 measures in this one."""
+    work = list(_parts(whole, table))
+    if not work:
+        return
+    _ = whole.test_set.exposures, whole.test_set.constants  # computed once, for all processes
+    with tqdm(total=sum(len(job.photographs) for job in work), desc=whole.protocol, unit="photograph") as bar:
+        for job, rows in zip(work, _run(work, workers), strict=True):
+            table.add(rows)
+            bar.update(len(job.photographs))
+
+
+def _parts(whole: Job, table: Table) -> Iterator[Job]:
+    """Yield jobs of at most `JOB_SIZE` photographs of one scene under one light, with what the table lacks of them."""
+
+    def lacking(photograph: TestPhotograph) -> tuple[bool, ...]:
+        keys = [(model.name, model.key) for model in whole.models] + [(GAMMA, "")] * (photograph.query == PLAIN)
+        return tuple(table.lacks(whole.protocol, photograph.label, *key) for key in keys)
+
+    def place(photograph: TestPhotograph) -> tuple[tuple[bool, ...], int, str]:
+        return lacking(photograph), photograph.scene, repr(photograph.condition.light)
+
+    wanted = (photograph for photograph in whole.photographs if any(lacking(photograph)))
+    ordered = sorted(wanted, key=lambda each: (*place(each), each.curve, repr(each.condition)))
+    for (lacks, *_), group in groupby(ordered, key=place):
+        members, models = tuple(group), tuple(compress(whole.models, lacks))
+        for start in range(0, len(members), JOB_SIZE):
+            part = members[start : start + JOB_SIZE]
+            yield replace(whole, photographs=part, models=models, has_baselines=any(lacks[len(whole.models) :]))
+
+
+def _run(work: list[Job], workers: int) -> Iterator[list[Row]]:
+    """Yield the rows of each job, in their order."""
+    if workers == 1:
+        yield from map(run_job, work)
+        return
+    with ProcessPoolExecutor(workers, mp_context=get_context("spawn")) as pool:
+        try:
+            yield from pool.map(run_job, work)
+        finally:
+            pool.shutdown(wait=False, cancel_futures=True)
+
+
+def run_job(job: Job) -> list[Row]:
+    """Return the rows of every photograph of a job; equal photographs are taken once for all their queries."""
+    rows = []
+    for (scene, curve, condition), group in groupby(
+        job.photographs, key=lambda photograph: (photograph.scene, photograph.curve, photograph.condition)
+    ):
+        photographs = list(group)
+        photo = job.photo(scene, curve, condition)
+        counts, true = code_counts(photo), ResponseCurve.from_samples(job.test_set.curves[curve])
+        for name, guess in _baselines(job, true).items():
+            plain = [photograph for photograph in photographs if photograph.query == PLAIN]
+            rows += [job.row(each, name, "", curve_figures(true, guess, counts)) for each in plain]
+        for model in job.models:
+            answers: dict[Query, ResponseEstimate] = {}
+            for photograph in photographs:
+                query = photograph.query.question
+                if query not in answers:
+                    answers[query] = _answer(job, photo, photograph, model)
+                answer, own = answers[query], queried_curve(answers[query], photograph.query)
+                figures = estimate_figures(true, answer, counts, curve=own)
+                rows.append(job.row(photograph, model.name, model.key, figures))
+    return rows
+
+
+def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
+    """Return the guesses of the baselines of a job by name."""
+    if not job.has_baselines:
+        return {}
+    constants = job.test_set.constants
+    return {GAMMA: constants[GAMMA]} if job.protocol == "P3" else constants | oracle_curves(true)
+
+
+def _answer(job: Job, photo: Photo, photograph: TestPhotograph, model: Model) -> ResponseEstimate:
+    """Return the product's estimate of a photograph, pooled with those of the next scenes where the query asks so."""
+    others = [(photograph.scene + n) % len(job.test_set.scenes) for n in range(1, photograph.query.pooled)]
+    photos = [photo, *(job.photo(other, photograph.curve, photograph.condition) for other in others)]
+    return queried_estimate(photos, photograph.query, _network(model.folder), job.bank)
+
+
+def queried_estimate(
+    photos: Sequence[Photo], query: Query, network: ResponseNetwork, bank: ResponseBank | None = None
+) -> ResponseEstimate:
+    """Return the product's estimate from photographs of one camera, with the options of the query."""
+    options = {"windows": query.windows, "coverage": query.coverage}
+    chosen: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
+    return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, **chosen)
+
+
+def queried_curve(estimate: ResponseEstimate, query: Query) -> ResponseCurve:
+    """Return the product's response or, where the query asks for it, the mean of the windows' own."""
+    if query.averaged is None:
+        return estimate.curve
+    weights = np.stack([part.weights for part in estimate.windows])
+    chosen = weights if query.averaged == "all" else weights[pooling.inliers(weights)]
+    return ResponseCurve.from_samples(EmorBasis.load().reconstruct(chosen.mean(axis=0)))
+
+
+@lru_cache(maxsize=CACHED_LIGHTS)
+def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> Float32Array:
+    """Return the light of a scene under the part of a condition that comes before exposure, shape (H, W, 3)."""
+    return sensor_light(
+        file.read(),
+        np.random.default_rng([seed, number]),
+        gains=condition.gains,
+        is_gray=condition.is_gray,
+        blur=condition.blur,
+        upsampling=condition.upsampling,
+    )
+
+
+@cache
+def _network(folder: Path) -> ResponseNetwork:
+    """Return a model, loaded once per process."""
+    return ResponseNetwork.load(folder, threads=1)

@@ -1,0 +1,209 @@
+"""Figures of a group of photographs: means, intervals, comparisons, reliability; each a dict of name -> figure."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from typing import Any
+
+import numpy as np
+from scipy.stats import spearmanr
+
+from crfnet_core.posterior import Verdict
+from crfnet_core.response.metrics import peak_signal_to_noise
+from crfnet_core.types import Float64Array
+from training.evaluation.baselines import GAMMA
+from training.evaluation.bootstrap import Interval, Resampling, interval
+from training.evaluation.figures import ERRORS, WEIGHTS
+from training.evaluation.table import Cases
+
+#: Name of a figure -> its value, with or without an interval.
+Figures = dict[str, Any]
+
+#: Above these an answer is far off: in E_est, as much as gamma 2.2 on DoRF; in stops of shape error, four times as
+#: much as the mean of the other bodies.
+FAR_OFF = {"E_est": 3.0, "shape": 0.4}
+
+#: The least mean E_lin (x 1e-2) of which a PSNR is given.
+LEAST_LINEARIZATION = 1e-9
+
+#: Fewer bodies have no meaningful correlation.
+LEAST_BODIES = 3
+
+#: Product of the two variances up to which a weight counts as constant.
+LEAST_SPREAD = 1e-12
+
+
+def column(cases: Cases, name: str, estimator: str) -> Float64Array:
+    """Return a figure of an estimator on the N photographs, shape (N,)."""
+    return np.array([row[name] for row in cases.rows[estimator]], dtype=np.float64)
+
+
+def labels(cases: Cases, name: str) -> np.ndarray:
+    """Return a column that belongs to the photographs, shape (N,)."""
+    return np.array([row[name] for row in cases.first])
+
+
+def of_scenes(cases: Cases, *, seed: int) -> Resampling:
+    """Return the weights of simulated photographs."""
+    return Resampling.of(labels(cases, "scene number"), labels(cases, "curve"), seed=seed)
+
+
+def of_bodies(cases: Cases, *, seed: int) -> Resampling:
+    """Return the weights of real photographs, each body counted once."""
+    return Resampling.of_bodies(labels(cases, "body key"), seed=seed)
+
+
+def error_figures(cases: Cases, resampling: Resampling, estimator: str, *, reference: Cases | None = None) -> Figures:
+    """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR.
+
+    Parameters
+    ----------
+    cases : Cases
+        The photographs.
+    resampling : Resampling
+        Their weights.
+    estimator : str
+        The estimator.
+    reference : Cases, optional
+        The same photographs with the figures of gamma 2.2; `cases` by default.
+    """
+    figures: Figures = {}
+    for error in ERRORS:
+        values, gamma = column(cases, error, estimator), column(reference or cases, error, GAMMA)
+        figures |= {
+            f"{error} mean": resampling.mean(values),
+            f"{error} median": resampling.quantile(values, 0.5),
+            f"{error} p90": resampling.quantile(values, 0.9),
+            f"{error} ratio": resampling.ratio(values, gamma),
+            f"{error} win rate": resampling.mean((values < gamma).astype(np.float64)),
+        }
+    return figures | {"PSNR of the mean": _psnr(figures["E_lin mean"])}
+
+
+def difference_figures(cases: Cases, resampling: Resampling, first: str, second: str) -> Figures:
+    """Return the paired differences of the errors of two estimators."""
+    return {
+        f"{error} difference": resampling.difference(column(cases, error, first), column(cases, error, second))
+        for error in ERRORS
+    }
+
+
+def change_figures(cases: Cases, clean: Cases, resampling: Resampling, estimator: str) -> Figures:
+    """Return the errors under a condition relative to the errors on the same photographs without it."""
+    figures: Figures = {}
+    for error in ERRORS:
+        values, others = column(cases, error, estimator), column(clean, error, estimator)
+        figures[f"{error} x clean"] = resampling.ratio(values, others)
+    return figures
+
+
+def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
+    """Return E_est over the lower part of the irradiance, and its ratio to the whole (CRF-net paper, Fig. 9)."""
+    lower, whole = column(cases, "partial", estimator), column(cases, "E_est", estimator)
+    return {"partial mean": resampling.mean(lower), "partial ratio": resampling.ratio(lower, whole)}
+
+
+def verdict_figures(cases: Cases, estimator: str) -> Figures:
+    """Return how many answers of a model are accepted ("good" or "usable"), and how many of these are far off."""
+    accepted = [row for row in cases.rows[estimator] if row["verdict"] != Verdict.DO_NOT_TRUST]
+    far_off = [{error: row[error] > limit for error, limit in FAR_OFF.items()} for row in accepted if "E_est" in row]
+    return {
+        "accepted": len(accepted),
+        "refused": len(cases) - len(accepted),
+        "far off": sum(any(one.values()) for one in far_off),
+        "far off in E_est": sum(one["E_est"] for one in far_off),
+        "far off in shape": sum(one["shape"] for one in far_off),
+    }
+
+
+def mean_figures(cases: Cases, estimator: str) -> Figures:
+    """Return the plain means of the errors, and of what a model expected."""
+    names = [*ERRORS, "expected E_est", "expected shape"]
+    names = [name for name in names if name in cases.rows[estimator][0]]
+    return {f"{name} mean": float(column(cases, name, estimator).mean()) for name in names}
+
+
+def reliability_figures(cases: Cases, error: str, estimator: str) -> Figures:
+    """Return how well a model's expected E_est or shape error foretells the error (P5).
+
+    "gain" is the part, at most 1, of the way from rejecting at random to rejecting the largest errors first that is
+    reached when the most uncertain answers are rejected first.
+    """
+    errors, stated = column(cases, error, estimator), column(cases, f"expected {error}", estimator)
+    chance, area, best = errors.mean(), rejection_curve(errors, stated).mean(), rejection_curve(errors, errors).mean()
+    is_constant = np.ptp(stated) == 0 or np.ptp(errors) == 0
+    return {
+        "stated mean": float(stated.mean()),
+        "error mean": float(chance),
+        "rank correlation": 0.0 if is_constant else float(spearmanr(stated, errors).statistic),
+        "band coverage": float(column(cases, "band coverage", estimator).mean()),
+        "gain": float((chance - area) / max(chance - best, 1e-12)),
+    }
+
+
+def rejection_curve(errors: Float64Array, uncertainties: Float64Array) -> Float64Array:
+    """Return the mean error of the n least uncertain photographs, for n = N down to 1, shape (N,).
+
+    Photographs of equal uncertainty share their mean error, so that their order does not matter.
+    """
+    _, groups = np.unique(uncertainties, return_inverse=True)
+    means = np.bincount(groups, weights=errors) / np.bincount(groups)
+    ordered = means[groups][np.argsort(uncertainties, kind="stable")]
+    return (np.cumsum(ordered) / np.arange(1, len(errors) + 1))[::-1]
+
+
+def weight_figures(cases: Cases, estimator: str, *, seed: int) -> Figures:
+    """Return the correlation over bodies of each of the first EMoR weights, true against estimated.
+
+    The weights of a body are the means over its photographs; bodies are resampled. With fewer than `LEAST_BODIES`
+    bodies there are no figures.
+    """
+    _, body = np.unique(labels(cases, "body key"), return_inverse=True)
+    bodies = body.max() + 1
+    if bodies < LEAST_BODIES:
+        return {}
+    resampling = Resampling.of(np.arange(bodies), np.zeros(bodies, dtype=int), seed=seed)
+    rows = cases.rows[estimator]
+    true, estimated = (np.array([row[name] for row in rows]) for name in ("true weights", "weights"))
+    first, second = (_means(weights, body) for weights in (true, estimated))
+    return {f"weight {k + 1} correlation": _correlation(first[:, k], second[:, k], resampling) for k in range(WEIGHTS)}
+
+
+def rounded(figures: Figures, decimals: int = 4) -> Figures:
+    """Return figures with their floats rounded, intervals as lists."""
+    return {name: _rounded(value, decimals) for name, value in figures.items()}
+
+
+def _rounded(value: Any, decimals: int) -> Any:
+    """Return a figure rounded."""
+    if isinstance(value, Iterable) and not isinstance(value, str):
+        return [round(part, decimals) for part in value]
+    return round(value, decimals) if isinstance(value, float) else value
+
+
+def _psnr(mean: Interval) -> Interval:
+    """Return the PSNR in decibels of a mean E_lin, x 1e-2; a larger error has a smaller PSNR."""
+    ends = (mean.value, mean.high, mean.low)
+    return Interval(*(peak_signal_to_noise(max(end, LEAST_LINEARIZATION) / 100) for end in ends))
+
+
+def _means(values: Float64Array, groups: np.ndarray) -> Float64Array:
+    """Return the means, shape (G, K), of rows (N, K) of each group; `groups` (N,) are numbers from 0."""
+    return np.stack([values[groups == k].mean(axis=0) for k in range(groups.max() + 1)])
+
+
+def _correlation(first: Float64Array, second: Float64Array, resampling: Resampling) -> Interval:
+    """Return Pearson's correlation of two weights of G bodies, 0 where one does not vary.
+
+    A resample that draws one body only has no correlation, and is left out.
+    """
+
+    def covariance(one: Float64Array, other: Float64Array) -> Float64Array:
+        return resampling.means(one * other) - resampling.means(one) * resampling.means(other)
+
+    product = covariance(first, first) * covariance(second, second)  # (1 + R,)
+    has_spread = product > LEAST_SPREAD
+    if not has_spread[0]:
+        return Interval(0.0, 0.0, 0.0)
+    correlations = covariance(first, second)[has_spread] / np.sqrt(product[has_spread])
+    return interval(np.clip(correlations, -1, 1))

@@ -1,0 +1,152 @@
+"""The rows of the report: sums over groups of photographs, protocol by protocol."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+
+from training.evaluation.baselines import GAMMA, OTHER_BODIES
+from training.evaluation.bootstrap import Resampling
+from training.evaluation.real import POOLED
+from training.evaluation.report import ReportRow
+from training.evaluation.summary import (
+    Figures,
+    change_figures,
+    difference_figures,
+    error_figures,
+    mean_figures,
+    of_bodies,
+    of_scenes,
+    partial_figures,
+    reliability_figures,
+    verdict_figures,
+    weight_figures,
+)
+from training.evaluation.table import Cases
+
+#: Group of bodies, by how many photographs of each were estimated together -> the least number of photographs.
+POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
+
+
+def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of P0 or P2: of all photographs, by exposure, by kind of scene and by scene."""
+    weights = of_scenes(cases, seed=seed)
+    yield from _errors(protocol, "", cases, weights, list(cases.rows), compared=models)
+    for column in ("exposure", "kind", "scene"):
+        for name, index in cases.groups(column).items():
+            subset = weights.subset(np.array(index))
+            yield from _errors(f"{protocol} by {column}", str(name), cases.part(index), subset, [*models, GAMMA])
+
+
+def stress_rows(conditions: dict[str, Cases], queries: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of P3 under every condition, the first of which is clean, and query."""
+    clean = next(iter(conditions.values()))
+    weights = of_scenes(clean, seed=seed)
+    for table, groups in (("P3", conditions), ("P3 queries", queries)):
+        for group, cases in groups.items():
+            for name in cases.rows:
+                figures = error_figures(cases, weights, name, reference=cases if GAMMA in cases.rows else clean)
+                figures |= change_figures(cases, clean, weights, name)
+                yield _row(table, group, name, cases, figures | partial_figures(cases, weights, name))
+
+
+def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of the real photographs that count and of all, and by kind of body."""
+    counted = without_caution(cases)
+    for table, part in ((protocol, counted), (f"{protocol}, with caution", cases)):
+        weights = of_bodies(part, seed=seed)
+        for row in _errors(table, "", part, weights, list(part.rows), compared=[*ways, OTHER_BODIES]):
+            if (way := row["estimator"]) in ways:
+                row |= verdict_figures(part, way) | weight_figures(part, way, seed=seed)
+            yield row | _bodies(part)
+    yield from _by(f"{protocol} by kind", counted, "kind", seed=seed)
+
+
+def origin_rows(protocol: str, cases: Cases, *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures by what happened to the files after the camera, of the photographs that count and of all."""
+    for table, part in ((protocol, without_caution(cases)), (f"{protocol}, with caution,", cases)):
+        for column in ("editing", "scaling"):
+            yield from _by(f"{table} by file", part, column, seed=seed)
+
+
+def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[ReportRow]:
+    """Yield the mean figures of every body, of the photographs that count."""
+    counted = without_caution(cases)
+    for index in sorted(counted.groups("body key").values()):
+        part = counted.part(index)
+        first, grade = part.first[0], "".join(sorted({row["grade"] for row in part.first}))
+        for name in [*ways, GAMMA, OTHER_BODIES]:
+            figures = {"kind": first["kind"], "grade": grade} | mean_figures(part, name)
+            yield _row(f"{protocol} by body", first["body"], name, part, figures)
+
+
+def pooled_rows(table: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of the bodies of which at least so many photographs were estimated together."""
+    counts = Counter(row["body key"] for row in cases.first)
+    names = [name for way in ways for name in (way + POOLED, way)]
+    for group, least in POOLED_GROUPS.items():
+        part = cases.part([number for number, row in enumerate(cases.first) if counts[row["body key"]] >= least])
+        if len(part):
+            for row in _errors(table, group, part, of_bodies(part, seed=seed), [*names, OTHER_BODIES]):
+                yield row | _bodies(part)
+
+
+def reliability_rows(measured: dict[str, tuple[Cases, Sequence[str]]]) -> Iterator[ReportRow]:
+    """Yield how well uncertainties foretell errors (P5); `measured` holds photographs and models of each protocol."""
+    for error in ("E_est", "shape"):
+        for protocol, (cases, names) in measured.items():
+            for name in names:
+                yield _row(f"P5 {error}", protocol, name, cases, reliability_figures(cases, error, name))
+
+
+def unusual_rows(cases: Cases) -> Iterator[ReportRow]:
+    """Yield how many of the pictures of P6 are accepted, of all and of every kind."""
+    groups = {"": list(range(len(cases)))} | cases.groups("kind")
+    for kind, index in groups.items():
+        part = cases.part(index)
+        for way in part.rows:
+            accepted = verdict_figures(part, way)["accepted"]
+            figures = {"accepted": accepted, "accepted fraction": accepted / len(part)}
+            yield _row("P6 by kind" if kind else "P6", kind, way, part, figures)
+
+
+def without_caution(cases: Cases) -> Cases:
+    """Return the photographs that count in the means."""
+    return cases.part([number for number, row in enumerate(cases.first) if not row["caution"]])
+
+
+def _by(table: str, cases: Cases, column: str, *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of groups of real photographs, bodies resampled in each."""
+    for name, index in cases.groups(column).items():
+        part = cases.part(index)
+        for row in _errors(table, name, part, of_bodies(part, seed=seed), list(part.rows)):
+            yield row | _bodies(part)
+
+
+def _errors(
+    table: str,
+    group: str,
+    cases: Cases,
+    weights: Resampling,
+    estimators: Sequence[str],
+    *,
+    compared: Sequence[str] = (),
+) -> Iterator[ReportRow]:
+    """Yield the errors of estimators, and of the first of `compared` less each other of them."""
+    for name in estimators:
+        figures = error_figures(cases, weights, name)
+        if name in compared[1:]:
+            figures |= difference_figures(cases, weights, compared[0], name)
+        yield _row(table, group, name, cases, figures)
+
+
+def _row(table: str, group: str, estimator: str, cases: Cases, figures: Figures) -> ReportRow:
+    """Return a row of the report."""
+    return {"table": table, "group": group, "estimator": estimator, "photographs": len(cases)} | figures
+
+
+def _bodies(cases: Cases) -> Figures:
+    """Return the number of bodies."""
+    return {"bodies": len({row["body key"] for row in cases.first})}

@@ -1,0 +1,157 @@
+"""The table of an evaluation: one row for each photograph and estimator, in one file of JSON lines."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from collections.abc import Iterable, Sequence
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.errors import CRFNetError
+
+#: The file of the table, in the folder of the evaluation.
+TABLE_FILE = "photographs.jsonl"
+
+#: A row: name of a column -> value. All rows have "protocol", "photograph", "estimator" and "model".
+Row = dict[str, Any]
+
+#: The columns that tell rows apart. "model" is the head of a model's hash, and empty for a baseline.
+KEY = ("protocol", "photograph", "estimator", "model")
+
+#: The code whose change makes earlier rows doubtful, from the project's root.
+MEASURING_CODE = (
+    "crfnet_core/**/*.py",
+    "crfnet_core/data/responses.npz",
+    "crfnet_core/data/priors/*.json",
+    "crfnet_core/data/emor.npz",
+    "training/data/**/*.py",
+    "training/synthesis/camera.py",
+    "training/synthesis/unusual/*.py",
+    "training/evaluation/*.py",
+)
+
+
+class Table:
+    """Rows on disk: each is written as soon as it is measured, and read again by the next run.
+
+    The first line of the file holds the settings that all rows depend on.
+
+    Parameters
+    ----------
+    path : Path
+        The file; made where absent.
+    settings : dict
+        What every row depends on.
+    code : str
+        Hash of the measuring code.
+    """
+
+    def __init__(self, path: Path, settings: dict[str, Any], code: str) -> None:
+        self.path = path
+        self._rows: dict[tuple[str, ...], Row] = {}
+        path.parent.mkdir(parents=True, exist_ok=True)
+        header, *rows = _lines(path) or [settings | {"code": code}]
+        if {name: header.get(name) for name in settings} != settings:
+            raise CRFNetError(f"{path}: was measured with other settings ({header}); take another folder")
+        self.is_of_other_code = header["code"] != code
+        self._remember(rows)
+        if not path.exists():
+            self._append([header])
+
+    def add(self, rows: Iterable[Row]) -> None:
+        """Add rows, and write them at once."""
+        rows = list(rows)
+        self._append(rows)
+        self._remember(rows)
+
+    def lacks(self, protocol: str, photograph: str, estimator: str, model: str = "") -> bool:
+        """Return whether this row has to be measured."""
+        return (protocol, photograph, estimator, model) not in self._rows
+
+    def baselines(self, protocol: str) -> list[str]:
+        """Return the names of the baselines of a protocol, in the order of measuring."""
+        rows = self._rows.values()
+        return list(dict.fromkeys(row["estimator"] for row in rows if row["protocol"] == protocol and not row["model"]))
+
+    def rows(self, protocol: str, estimators: dict[str, str], photographs: Iterable[str]) -> dict[str, list[Row]]:
+        """Return estimator -> its rows of a protocol, in the order of `photographs`.
+
+        Parameters
+        ----------
+        protocol : str
+            The protocol.
+        estimators : dict
+            Name of an estimator -> head of its model's hash, empty for baselines.
+        photographs : iterable of str
+            Names of photographs, all measured.
+        """
+        names = list(photographs)
+        return {
+            estimator: [self._rows[protocol, name, estimator, model] for name in names]
+            for estimator, model in estimators.items()
+        }
+
+    def _remember(self, rows: Iterable[Row]) -> None:
+        self._rows |= {tuple(row[name] for name in KEY): row for row in rows}
+
+    def _append(self, rows: Iterable[Row]) -> None:
+        with self.path.open("a", encoding="utf-8") as file:
+            file.writelines(json.dumps(row) + "\n" for row in rows)
+
+
+class Cases:
+    """The rows of several estimators on the same photographs, side by side.
+
+    Parameters
+    ----------
+    rows : dict
+        Estimator -> its rows on the N photographs, in one order.
+    """
+
+    def __init__(self, rows: dict[str, list[Row]]) -> None:
+        self.rows = rows
+
+    @property
+    def first(self) -> list[Row]:
+        """The rows of the first estimator: for the columns that belong to the photograph."""
+        return next(iter(self.rows.values()))
+
+    def __len__(self) -> int:
+        """Return the number of photographs."""
+        return len(self.first)
+
+    def part(self, index: Sequence[int]) -> Cases:
+        """Return the photographs at some positions."""
+        return Cases({name: [rows[number] for number in index] for name, rows in self.rows.items()})
+
+    def groups(self, column: str) -> dict[Any, list[int]]:
+        """Return value of a column -> positions of the photographs with this value, sorted by value."""
+        groups: dict[Any, list[int]] = {value: [] for value in sorted({row[column] for row in self.first})}
+        for number, row in enumerate(self.first):
+            groups[row[column]].append(number)
+        return groups
+
+    def joined(self, other: Cases) -> Cases:
+        """Return the photographs of both, of the estimators that both have."""
+        return Cases({name: rows + other.rows[name] for name, rows in self.rows.items() if name in other.rows})
+
+
+def code_digest(root: Path = Path(__file__).parents[2]) -> str:
+    """Return a short hash of the measuring code, in a checkout of the repository."""
+    digest = hashlib.sha256()
+    for pattern in MEASURING_CODE:
+        for path in sorted(root.glob(pattern)):
+            digest.update(path.read_bytes())
+    return digest.hexdigest()[:16]
+
+
+def _lines(path: Path) -> list[Row]:
+    """Return the lines of a table; a last line that was cut off is removed from the file."""
+    if not path.exists():
+        return []
+    text = path.read_text(encoding="utf-8")
+    whole = text[: text.rfind("\n") + 1]
+    if whole != text:
+        path.write_text(whole, encoding="utf-8")
+    return [json.loads(line) for line in whole.splitlines()]
