@@ -78,7 +78,7 @@ class Prior:
         total = sum(shares.values())
         return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, evidence, lookalikes)
 
-    def given(self, factors: Mapping[Family, float]) -> Prior:
+    def reweighted(self, factors: Mapping[Family, float]) -> Prior:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""
         shares = {family: share * factors.get(family, 1.0) for family, share in self.shares.items()}
         total = sum(shares.values())

@@ -2,7 +2,6 @@
 
 import json
 import shutil
-from contextlib import suppress
 
 import numpy as np
 import pytest
@@ -11,9 +10,9 @@ from crfnet.configs.studio.looks import read_looks
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.pipeline.calibrations import response_to_compare
-from crfnet_core.errors import CameraError, CRFNetError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.library import CameraLibrary, add_photographs, camera_estimate
+from crfnet_core.library import camera_estimate
 from crfnet_core.library.documents import read_camera
 from crfnet_core.library.library import SHIPPED
 from crfnet_core.network import ResponseNetwork
@@ -98,18 +97,13 @@ def test_damaged_estimates_are_read_or_refused(fuzz, document):
     fuzz(case)
 
 
-def test_damaged_cameras_are_read_or_refused(fuzz, refused, fixed_model, plate, tmp_path):
-    """One camera that was measured, and one of a photograph."""
-    network, library = ResponseNetwork.load(fixed_model), CameraLibrary(tmp_path / "cameras")
-    add_photographs(library, "a", [plate], network=network)
-    kept = [*library.folder.glob("*.json"), min(SHIPPED.glob("*.json"))]
-    documents = [json.loads(path.read_text()) for path in kept]
+def test_damaged_cameras_are_read_or_refused(fuzz, refused, tmp_path):
+    document = json.loads(min(SHIPPED.glob("*.json")).read_text())
 
     def case(generator):
         path = tmp_path / "camera.json"
-        path.write_bytes(damaged_json(documents[generator.integers(2)], generator))
+        path.write_bytes(damaged_json(document, generator))
         if not refused(read_camera, path):
-            with suppress(CameraError):  # names the camera instead of its file
-                camera_estimate(read_camera(path), model=network.config.label)
+            camera_estimate(read_camera(path))
 
     fuzz(case)

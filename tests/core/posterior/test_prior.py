@@ -31,12 +31,12 @@ def test_a_file_of_ones_own_is_scaled_to_a_sum_of_1(tmp_path):
 
 def test_factors_shift_the_shares():
     prior = Prior("p", {Family.PHONE: 0.6, Family.CAMERA: 0.3, Family.FILM: 0.1}, 0.5)
-    shifted = prior.given({Family.PHONE: 0.1, Family.FILM: 1.0})
+    shifted = prior.reweighted({Family.PHONE: 0.1, Family.FILM: 1.0})
     assert shifted.shares == pytest.approx(
         {Family.PHONE: 0.06 / 0.46, Family.CAMERA: 0.3 / 0.46, Family.FILM: 0.1 / 0.46}
     )
     assert (shifted.name, shifted.evidence) == ("p", 0.5)
-    assert prior.given({}).shares == pytest.approx(prior.shares)
+    assert prior.reweighted({}).shares == pytest.approx(prior.shares)
 
 
 @pytest.mark.parametrize(

@@ -1,4 +1,4 @@
-"""What is measured of the library of cameras, on responses that are known."""
+"""Errors of measured cameras on other stacks, on responses that are known."""
 
 from types import SimpleNamespace
 
@@ -7,12 +7,10 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core import ResponseCurve
-from crfnet_core.estimate.result import CameraAnswer
-from crfnet_core.library import Camera, CameraSettings
+from crfnet_core.library import CameraSettings
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real.stacks import Stack
-from training.evaluation import cameras
-from training.evaluation.cameras import Setting, disagreements, of_another_stack
+from training.evaluation.cameras import Setting, of_another_stack
 
 
 def stack(gamma, path):
@@ -40,20 +38,3 @@ def test_a_setting_of_one_stack_is_left_out(setting):
     assert of_another_stack(setting, setting.stacks[:1]) is not None
     alone = Setting("a", "a", setting.stacks[:1], setting.photographs)
     assert of_another_stack(alone, alone.stacks) is None
-
-
-def test_disagreements_are_counted_with_the_own_body_and_with_others(setting, monkeypatch):
-    """Every photograph agrees with its own camera here, and with no other."""
-    other = Setting("other", "other", setting.stacks, setting.photographs)
-    second = Setting("NIKON D90 (2)", "NIKON D90", setting.stacks, setting.photographs)
-    asked = []
-
-    def camera_of(setting, stack):
-        asked.append((setting.name, stack is None))
-        return Camera("own" if stack else "another")
-
-    monkeypatch.setattr(
-        cameras, "compared", lambda own, camera: CameraAnswer("", True, "", agrees=camera.name == "own")
-    )
-    assert disagreements([setting, second, other], camera_of) == (0.0, 1.0)
-    assert sum(is_other for _, is_other in asked) == 4  # the two settings of one body are not compared

@@ -164,7 +164,7 @@ def test_p4_answers_by_the_evidence_of_the_model_and_the_bank_of_the_other_bodie
     data = measured_once[0] / "data"
     nearer = []
     for case, row in zip(real_photographs(data)["real"][:2], measured_once[1].p4["real"].photographs, strict=False):
-        prior_alone = Posterior.of(bank_without_fold(case, data), Prior.load()).curve
+        prior_alone = Posterior.from_evidences(bank_without_fold(case, data), Prior.load()).curve
         found = row.estimators["fixed_model, metadata ignored"].errors.estimation
         nearer.append(estimation_error(case.truth(), prior_alone) - found)
     assert nearer[0] > 1
