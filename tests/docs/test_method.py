@@ -31,7 +31,7 @@ def exists(root, name):
 
     The source is parsed and not imported, so that training needs no torch here.
     """
-    parts = name.split(".")
+    parts = ["ocio" if part == "crfnet" else part for part in name.split(".")]  # the folder of the package crfnet
     for size in range(len(parts), 0, -1):
         path = root.joinpath(*parts[:size])
         source = next((file for file in (path / "__init__.py", path.with_suffix(".py")) if file.is_file()), None)
