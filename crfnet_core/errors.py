@@ -82,7 +82,7 @@ class CalibrationError(CRFNetError):
 
 
 class CameraError(CRFNetError):
-    """A camera that is not in the library, or cannot be read from it, kept in it or used."""
+    """A stored camera that is absent, damaged or cannot be written."""
 
 
 def beside_limits(value: float, *limits: float) -> str:

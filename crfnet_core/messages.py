@@ -6,4 +6,42 @@ option of the command and no button of Blender. Names in braces are the facts of
 
 from collections.abc import Mapping
 
-SENTENCES: Mapping[str, str] = {}
+SENTENCES: Mapping[str, str] = {
+    # library
+    "bad_camera_name": "{name!r} cannot name a camera; it takes 1 to 60 letters, digits, spaces and signs of '.,+()-_,"
+    " a letter or a digit first",
+    "camera_exists": "{folder} has a camera {name!r} already",
+    "camera_folder": "{folder}: cannot be made ({reason}); set {variable} to another folder",
+    "camera_not_measured": "{path}: holds no measured response; measure the camera, or remove the file",
+    "camera_not_removed": "{path}: cannot be removed ({reason})",
+    "camera_version": "{path}: has camera_version {version}, needed is {needed}; update this program",
+    "damaged_calibration": "{path}: is damaged ({reason}); calibrate again",
+    "damaged_camera": "{path}: is damaged ({reason}); restore or remove it",
+    "no_camera": "there is no camera {name!r} in {folder}",
+    "not_a_calibration": "{path}: is not the JSON file of a calibration; calibrate the camera first",
+    "not_a_camera": "{path}: is not the JSON file of a camera; restore or remove it",
+    "other_camera": "the photograph is of {other}, but {name!r} is {camera}",
+    "unreadable_camera": "{path}: cannot be read ({reason}); check its name",
+    # network
+    "altered_model": "{folder}: model.onnx is not the file that model.json describes; restore the pair",
+    "bad_model_config": "{path}: lacks {entries}, or holds something else there; export the model again",
+    "bad_model_json": "{path}: is not JSON with an object; restore it",
+    "bad_output": "{folder}: model.onnx answers with {name} of shape {shape} or not finite, needed is {needed}; export"
+    " the model again",
+    "bad_signature": "{folder}: model.onnx needs one input, and {name} of float {needed}; export the model again",
+    "external_weights": "{folder}: model.onnx has weights in another file; export the model again",
+    "failing_graph": "{folder}: model.onnx fails ({reason}); export the model again",
+    "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",
+    "other_kind_of_model": "{path}: is for {found} (basis, weights, window size), needed is {needed}, with evidence of"
+    " windows or statistics; export the model again",
+    "other_model_here": "{path}: holds another model than the process that sent it; install the same version",
+    "unloadable_graph": "{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})",
+    "unreadable_model": "{path}: cannot be read ({reason}); a model is a folder with model.json and model.onnx",
+    # posterior
+    "bad_lookalikes": "{path}: lookalikes is a share of all photographs, below 1",
+    "bad_prior": '{path}: needed is {{"shares": {{"phone": 0.5, "camera": 0.5}}, "evidence": 0.15}}',
+    "bad_prior_families": "{path}: shares are of {families}",
+    "bad_prior_values": "{path}: its values are numbers from 0 to 1, and one share is above 0",
+    "no_prior": "{name}: there is no prior ({reason}); give {names} or a JSON file",
+    "prior_not_json": "{path}: is not JSON; see crfnet_core/data/priors for examples",
+}

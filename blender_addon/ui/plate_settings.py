@@ -106,7 +106,7 @@ class PlateChoices:
     )
     camera: bpy.props.StringProperty(
         name="Camera",
-        description="A camera of the library of crfnet camera, whose response is used. Empty: estimated from the plate",
+        description="A stored camera, whose measured response is used. Empty: estimated from the plate",
         search=_stored_cameras,
     )
     prior: bpy.props.EnumProperty(

@@ -19,10 +19,10 @@ from crfnet.pipeline import (
     response_lut,
 )
 from crfnet.plates.frames import FrameSequence
-from crfnet.report import offer_words, verdict_lines
+from crfnet.report import verdict_lines
 from crfnet_core import ResponseEstimate
 from crfnet_core.errors import CRFNetError
-from crfnet_core.library import CameraSettings, offered_cameras
+from crfnet_core.library import offered_cameras
 from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
@@ -137,11 +137,9 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
 def _offers(job: Job, estimate: ResponseEstimate) -> tuple[tuple[str, str], ...]:
     """Return the `offers` of a job; none if it asks for a stored camera, or the metadata was left out."""
     options = job.estimation.options
-    if job.estimation.stored is not None or options.camera or not estimate.origins:
+    if job.estimation.stored is not None or options.camera:
         return ()
-    settings = CameraSettings(model=estimate.origins[0].camera)
-    found = offered_cameras(estimate, settings, prior=load_prior(options))
-    return tuple((offer.name, panel_line(f"{offer.name}: {offer_words(offer)}")) for offer in found)
+    return tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in offered_cameras(estimate))
 
 
 def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:

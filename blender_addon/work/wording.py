@@ -37,9 +37,14 @@ _IN_BLENDER = {
     " External Data",
     ", or give the primaries of all with --primaries": "",
     ", or run crfnet calibrate": "",
-    "crfnet camera list shows them": "choose another Camera under Advanced, or none",
     "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
     "pip install 'av', or save it": "save it",
+}
+
+#: The remedy in Blender by the code of an error, whose own sentence names none; it follows the sentence after "; ".
+REMEDIES = {
+    # library
+    "no_camera": "choose another Camera under Advanced, or none",
 }
 
 #: What shows that a word is part of a path, a file name or a quoted name.
@@ -80,6 +85,12 @@ def american(text: str) -> str:
     for of_command, in_blender in _IN_BLENDER.items():
         text = text.replace(of_command, in_blender)
     return " ".join(word if _NAME.search(word) else _BRITISH.sub(_spelled, word) for word in text.split(" "))
+
+
+def problem_line(problem: Exception) -> str:
+    """Return the sentence of an error, with the remedy in Blender."""
+    remedy = REMEDIES.get(getattr(problem, "code", ""))
+    return american(f"{problem}; {remedy}" if remedy else str(problem))
 
 
 def panel_line(line: str) -> str:

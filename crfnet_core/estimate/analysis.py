@@ -9,7 +9,7 @@ from functools import partial
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import ResponseNetwork, pooling
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Levels, refuse_tagged
@@ -153,6 +153,5 @@ def _thumbnail(pixels: Pixels) -> Float64Array:
 
 def _analyzed(source: _Source, network: ResponseNetwork, progress: Progress | None) -> AnalyzedPhotograph:
     """Return what the network reads in a photograph."""
-    predictions = network.predict(network.inputs(source.samples, progress=progress), progress=progress)
-    evidence = predictions.pooled or pooling.robust_mean(predictions.windows)
-    return source.analyzed(evidence=evidence, window_evidences=predictions.windows)
+    predictions = network.predict(source.samples, progress=progress)
+    return source.analyzed(evidence=predictions.pooled, window_evidences=predictions.windows)

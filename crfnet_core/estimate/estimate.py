@@ -124,10 +124,10 @@ def estimate_of(
     bank = bank or ResponseBank.load()
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
-    prior = (prior or Prior.load()).given(metadata_factors(origins)).given({Family.LOG: log_factor(levels)})
+    prior = (prior or Prior.load()).reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     evidences = [photograph.evidence for photograph in photographs]
-    posterior = Posterior.of(bank, prior, evidences, independent=independent)
+    posterior = Posterior.from_evidences(bank, prior, evidences, independent=independent)
     makes = tuple(photograph.make for photograph in photographs)
     recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
     doubts = _doubts(photographs, origins)
@@ -176,7 +176,7 @@ def _window_estimates(
         for window, evidence, kept in zip(
             photo.windows, photo.window_evidences, pooling.agreeing(photo.window_evidences).tolist(), strict=True
         ):
-            alone = Posterior.of(bank, prior, [evidence])
+            alone = Posterior.from_evidences(bank, prior, [evidence])
             found.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, kept))
     return tuple(found)
 
@@ -195,7 +195,7 @@ def _doubts(photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOri
 
 def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[str]) -> Verdict:
     """Return how far to trust the answer of a posterior."""
-    verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.of(posterior)
+    verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior)
     return Verdict.USABLE if doubts and verdict is Verdict.GOOD else verdict
 
 

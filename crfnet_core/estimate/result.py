@@ -54,29 +54,18 @@ class WindowEstimate(EqualByFields):
 
 @dataclass(frozen=True)
 class CameraAnswer:
-    """A stored camera whose response is the answer, or could be, and how far photographs' own estimate is from it.
+    """A stored camera whose measured response is the answer, or could be.
 
     Parameters
     ----------
     name : str
         The camera's, in the library.
-    is_measured : bool
-        Whether its response was measured; else it is estimated from photographs.
     basis : str
-        What it rests on, in words.
-    difference_stops, difference : float, optional
-        Shape error in stops and E_est between the photographs' own estimate and the camera's response; None if there
-        are no photographs to compare.
-    agrees : bool, optional
-        Whether this difference is no larger than usual.
+        The measurement that its response rests on, in words.
     """
 
     name: str
-    is_measured: bool
     basis: str
-    difference_stops: float | None = None
-    difference: float | None = None
-    agrees: bool | None = None
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
@@ -141,7 +130,7 @@ class ResponseEstimate(EqualByFields):
     @property
     def likely_kind(self) -> LikelyKind | None:
         """The most probable kind of response; None if no families are known."""
-        return LikelyKind.of(self.families)
+        return LikelyKind.from_probabilities(self.families)
 
     def to_dict(self) -> dict[str, Any]:
         """Return the estimate as a document of plain lists, texts and numbers, ready for `json.dumps`.

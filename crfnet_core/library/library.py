@@ -2,12 +2,8 @@
 
 from __future__ import annotations
 
-import hashlib
 import os
-import re
-import time
-from collections.abc import Iterator
-from contextlib import contextmanager
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -21,32 +17,24 @@ from crfnet_core.library.documents import camera_document, read_camera
 #: The environment variable that names another data folder, such as one that a studio shares.
 DATA_VARIABLE = "CRFNET_DATA_DIR"
 
-#: The responses of measured cameras that come with this project; ``python -m training.export.cameras`` writes them.
+#: The measured cameras that come with this project; ``python -m training.export.cameras`` writes them.
 SHIPPED = Path(__file__).parents[1] / "data" / "cameras"
-
-#: Seconds to wait for another process that changes the library.
-LOCK_SECONDS = 10.0
-
-#: Most characters of a name that are kept in its file's name.
-LONGEST_STEM = 40
 
 
 @dataclass(frozen=True)
 class CameraLibrary:
     """Cameras in a folder.
 
-    Any JSON file of a camera in the folder counts, whatever it is called: to hand a camera on, copy its file.
+    A file is named after its camera and written whole, so that nothing needs a lock, and copying a file hands its
+    camera on.
 
     Parameters
     ----------
-    folder : str or Path
+    folder : Path
         The folder; it need not exist.
     """
 
     folder: Path
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "folder", Path(self.folder))
 
     @classmethod
     def of_user(cls) -> CameraLibrary:
@@ -61,16 +49,17 @@ class CameraLibrary:
         return cls(SHIPPED)
 
     def cameras(self) -> list[Camera]:
-        """Return the cameras, sorted by name; files that are none or damaged are left out: see `problems`."""
-        return sorted((found for _, found in self._files() if isinstance(found, Camera)), key=_order)
+        """Return the cameras, sorted by name; other and damaged files are left out: see `problems`."""
+        cameras = [camera for camera in self._contents() if isinstance(camera, Camera)]
+        return sorted(cameras, key=lambda camera: name_key(camera.name))
 
     def problems(self) -> list[str]:
-        """Return what is wrong with the files that are left out, one line each."""
-        return [str(found) for _, found in self._files() if isinstance(found, CameraError)]
+        """Return the reason why each other file is left out, one line each."""
+        return [str(problem) for problem in self._contents() if isinstance(problem, CameraError)]
 
-    def find(self, name: str) -> Camera | None:
-        """Return the camera of this name, in upper or lower case; None if there is none."""
-        return next((camera for camera in self.cameras() if name_key(camera.name) == name_key(name)), None)
+    def file_of(self, name: str) -> Path | None:
+        """Return the file of the camera of this name, in upper or lower case; None if there is none."""
+        return next((path for path in self._files() if name_key(path.stem) == name_key(name)), None)
 
     def get(self, name: str) -> Camera:
         """Return the camera of this name.
@@ -80,38 +69,27 @@ class CameraLibrary:
         CameraError
             If there is none, or its file is damaged.
         """
-        if camera := self.find(name):
-            return camera
-        raise self._absent(name)
+        return read_camera(self._present(name))
 
-    def save(self, camera: Camera) -> Path:
-        """Write a camera, in the place of the one of its name if there is one, and return its file.
+    def save(self, camera: Camera, *, overwrite: bool = False) -> Path:
+        """Write a camera and return its file; the folder is made if it is absent.
 
         Raises
         ------
         CameraError
-            If the file cannot be written: see also `target`.
+            If there is a camera of this name that may not be replaced, or the folder cannot be written to.
         """
-        path = self.target(camera.name)
-        atomic_write_text(path, json_text(camera_document(camera)), overwrite=True, error=CameraError)
-        return path
-
-    def target(self, name: str) -> Path:
-        """Return the file that a camera of this name is written to.
-
-        Raises
-        ------
-        CameraError
-            If a file would be replaced that cannot be read as a camera, or holds another one.
-        """
-        if path := self._file_of(name):
-            return path
-        path = self.folder / _file_name(name)
-        found = dict(self._files()).get(path)
-        if isinstance(found, CameraError):
-            raise found
-        if found:
-            raise CameraError(f"{path}: holds the camera {found.name!r}, not {name!r}; rename the file")
+        path = self.file_of(camera.name)
+        if path and not overwrite:
+            raise CameraError("camera_exists", name=camera.name, folder=self.folder)
+        path = path or self.folder / f"{camera.name}.json"
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as problem:
+            raise CameraError(
+                "camera_folder", folder=self.folder, reason=problem.strerror, variable=DATA_VARIABLE
+            ) from None
+        atomic_write_text(path, json_text(camera_document(camera)), overwrite=overwrite, error=CameraError)
         return path
 
     def remove(self, name: str) -> None:
@@ -122,58 +100,29 @@ class CameraLibrary:
         CameraError
             If there is none, or its file cannot be removed.
         """
-        path = self._file_of(name)
-        if path is None:
-            raise self._absent(name)
+        path = self._present(name)
         try:
             path.unlink()
         except OSError as problem:
-            raise CameraError(f"{path}: cannot be removed ({problem.strerror})") from problem
+            raise CameraError("camera_not_removed", path=path, reason=problem.strerror) from problem
 
-    @contextmanager
-    def locked(self) -> Iterator[None]:
-        """Make the folder, and keep other processes from changing the library during a block that reads and writes.
+    def _present(self, name: str) -> Path:
+        """Return the file of a camera that must be there."""
+        if path := self.file_of(name):
+            return path
+        raise CameraError("no_camera", name=name, folder=self.folder)
 
-        Raises
-        ------
-        CameraError
-            If the folder cannot be made, or another process holds the library for `LOCK_SECONDS`.
-        """
-        lock = self.folder / ".lock"
-        due = time.monotonic() + LOCK_SECONDS
-        try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            while not _made(lock):
-                if time.monotonic() > due:
-                    raise CameraError(f"{lock}: another crfnet changes the library; if none runs, remove this file")
-                time.sleep(0.05)
-        except OSError as problem:
-            reason = f"{self.folder}: cannot be written to ({problem.strerror})"
-            raise CameraError(f"{reason}; set {DATA_VARIABLE} to another folder") from None
-        try:
-            yield
-        finally:
-            lock.unlink(missing_ok=True)
+    def _files(self) -> list[Path]:
+        """Return the library's files in the order of their names; files being written begin with a dot."""
+        return sorted(self.folder.glob("[!.]*.json"))
 
-    def _absent(self, name: str) -> CameraError:
-        """Return the error of a camera that is not there, with what is wrong with the library's files."""
-        if self.folder != SHIPPED and CameraLibrary.shipped().find(name):
-            return CameraError(f"{name!r} is a measured camera that comes with crfnet; it cannot be changed or removed")
-        damaged = "".join(f"; {problem}" for problem in self.problems())
-        return CameraError(f"no camera {name!r} in {self.folder}; crfnet camera list shows them{damaged}")
-
-    def _files(self) -> Iterator[tuple[Path, Camera | CameraError]]:
-        """Yield the library's files in the order of their names, each with its camera or with what is wrong."""
-        for path in sorted(self.folder.glob("[!.]*.json")):  # a name with a dot in front is being written
+    def _contents(self) -> Iterator[Camera | CameraError]:
+        """Yield the camera in each file, or the reason why there is none."""
+        for path in self._files():
             try:
-                yield path, read_camera(path)
+                yield read_camera(path)
             except CameraError as problem:
-                yield path, problem
-
-    def _file_of(self, name: str) -> Path | None:
-        """Return the file that holds the camera of this name."""
-        files = {name_key(found.name): path for path, found in self._files() if isinstance(found, Camera)}
-        return files.get(name_key(name))
+                yield problem
 
 
 def find_camera(name: str) -> Camera:
@@ -185,32 +134,27 @@ def find_camera(name: str) -> Camera:
         If there is none, or its file is damaged.
     """
     own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    return own.find(name) or shipped.find(name) or own.get(name)
+    return (own if own.file_of(name) or not shipped.file_of(name) else shipped).get(name)
 
 
-def known_cameras() -> tuple[list[Camera], list[Camera]]:
-    """Return the user's own cameras, and those that come with this project and have no namesake among them."""
+def known_cameras() -> list[Camera]:
+    """Return the user's own cameras, then those that come with this project and have no namesake among them."""
     own = CameraLibrary.of_user().cameras()
     names = {name_key(camera.name) for camera in own}
-    return own, [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
+    return own + [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
 
 
-def _made(lock: Path) -> bool:
-    """Return whether a file that did not exist could be made."""
-    try:
-        lock.touch(exist_ok=False)
-    except FileExistsError:
-        return False
-    return True
+def listed_cameras(text: str = "", models: Collection[str] = ()) -> list[tuple[str, str]]:
+    """Return the names of all cameras that hold a text, each with its `basis`, to choose from.
 
-
-def _order(camera: Camera) -> str:
-    """Return what cameras are sorted by."""
-    return name_key(camera.name)
-
-
-def _file_name(name: str) -> str:
-    """Return a file's name for a camera's: readable, allowed on every system, and another one for every name."""
-    key = name_key(name)
-    readable = re.sub(r"[^a-z0-9]+", "-", key)[:LONGEST_STEM].strip("-") or "camera"
-    return f"{readable}-{hashlib.sha256(key.encode()).hexdigest()[:8]}.json"
+    Parameters
+    ----------
+    text : str
+        The text typed so far, in upper or lower case.
+    models : collection of str
+        Make and model of a plate's cameras, as in `FileOrigin.camera`: such cameras come first.
+    """
+    wanted = {model.casefold() for model in models}
+    cameras = [camera for camera in known_cameras() if text.casefold() in camera.name.casefold()]
+    ordered = sorted(cameras, key=lambda camera: camera.settings.camera.casefold() not in wanted)
+    return [(camera.name, camera.basis) for camera in ordered]

@@ -1,11 +1,10 @@
-"""What a trained network is and how it is run.
+"""The trained network: its folder, and windows to evidence.
 
-runtime      onnxruntime, imported with its telemetry switched off
-model        a model folder: its files and what model.json says
-graph        what a model.onnx may hold, looked at before it is loaded
+model        a model folder: its two files, and the entries of model.json
 session      the graph in onnxruntime, its inputs and outputs checked
-inference    the network itself: windows to inputs, inputs to evidence
+inference    the network itself: windows in, evidence out
 pooling      the paper's way from the windows' evidence to a photograph's, for a network that does not pool by itself
+runtime      onnxruntime, imported with its telemetry switched off
 """
 
 from crfnet_core.network.inference import Predictions, ResponseNetwork

@@ -1,18 +1,17 @@
-"""Run a trained network on the CPU: windows to its inputs, inputs to evidence."""
+"""Run a trained network on the CPU: windows in, evidence out."""
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import ModelError
 from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_graph
+from crfnet_core.network.pooling import robust_mean
 from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
 from crfnet_core.statistics import window_statistics
@@ -21,25 +20,25 @@ from crfnet_core.types import Float32Array, Progress, cores, show_progress
 
 @dataclass(frozen=True)
 class Predictions:
-    """What the network says of one photograph.
+    """The evidence that a network sees in one photograph.
 
     Parameters
     ----------
     windows : tuple of Evidence
-        The evidence of each window by itself.
-    pooled : Evidence or None
-        That of all windows together, if the network pools its windows by itself.
+        Of each window by itself.
+    pooled : Evidence
+        Of all windows together: by the network, or their robust mean if it does not pool.
     """
 
     windows: tuple[Evidence, ...]
-    pooled: Evidence | None = None
+    pooled: Evidence
 
 
 class ResponseNetwork:
-    """An onnxruntime session, made once, and the configuration beside it.
+    """An onnxruntime session, made once, and its configuration.
 
-    Threads may share one. Copies are the network itself, since it never changes. In another process, as of
-    `multiprocessing` or joblib, it is loaded from its folder again, which must still hold the same model.
+    Threads may share one. Another process, as of `multiprocessing` or joblib, loads it from its folder again, which
+    must still hold the same model.
     """
 
     def __init__(self, config: ModelConfig, session: Session, *, folder: Path, threads: int) -> None:
@@ -53,12 +52,6 @@ class ResponseNetwork:
         folder = self._folder.resolve()
         place = folder.name if folder.parent == MODELS.resolve() else str(folder)
         return _load_same, (place, self.config.sha256, self._threads)
-
-    def __copy__(self) -> ResponseNetwork:
-        return self
-
-    def __deepcopy__(self, _: dict[int, Any]) -> ResponseNetwork:
-        return self
 
     @classmethod
     def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
@@ -75,56 +68,24 @@ class ResponseNetwork:
         Raises
         ------
         ModelError
-            If a file is absent or does not match the other, the graph holds what is refused (see
-            `crfnet_core.network.graph`), or the number of threads is negative.
+            If a file is absent or does not match the other, the graph cannot be used, or the number of threads is
+            negative.
         """
         if threads < 0:
-            raise ModelError(f"the number of threads must be 0 (all cores) or more, found {threads}")
+            raise ModelError("negative_threads", threads=threads)
         folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")
-        graph = read_graph(folder / "model.onnx")
-        if hashlib.sha256(graph).hexdigest() != config.sha256:
-            raise ModelError(f"{folder}: model.onnx is not the file that model.json describes; restore the pair")
-        return cls(config, Session(folder, graph, config), folder=folder, threads=threads)
+        return cls(config, Session(folder, read_graph(folder, config), config), folder=folder, threads=threads)
 
-    def inputs(self, windows: Float32Array, *, progress: Progress | None = None) -> Float32Array:
-        """Return what the network reads of `windows`: their statistics, or the windows themselves.
-
-        Statistics are counted in one thread, since numpy's small steps wait for each other's interpreter lock: two
-        threads take a quarter longer. One window at a time keeps the working set in a core's cache.
+    def predict(self, windows: Float32Array, *, progress: Progress | None = None) -> Predictions:
+        """Return the evidence in the windows of one photograph.
 
         Parameters
         ----------
         windows : ndarray, float32, shape (N, 227, 227, 3)
             At least one window, code values in [0, 1]; not changed.
         progress : callable, optional
-            Called with (done, total) after every window, if there is anything to count.
-
-        Returns
-        -------
-        ndarray, float32, shape (N, LENGTH) or (N, 227, 227, 3)
-            Rows for `predict`.
-        """
-        if not self.config.reads_statistics:
-            return windows
-        rows = []
-        for number, window in enumerate(windows, start=1):
-            rows.append(window_statistics(window))
-            show_progress(progress, number, len(windows))
-        return np.stack(rows)
-
-    def predict(self, inputs: Float32Array, *, progress: Progress | None = None) -> Predictions:
-        """Return what the network says of its `inputs`, one row a window.
-
-        Rows of statistics are small and go through the network at once. Windows go one by one, several at the same
-        time in as many threads.
-
-        Parameters
-        ----------
-        inputs : ndarray, float32, shape (N, ...)
-            See `inputs`; not changed.
-        progress : callable, optional
-            Called with (done, total) after every window that goes through the network by itself.
+            Called with (done, total) after every window.
 
         Raises
         ------
@@ -132,12 +93,11 @@ class ResponseNetwork:
             If the network fails, or answers with numbers that are not finite or of another shape than evidence.
         """
         if self.config.reads_statistics:
-            outputs = self._session.run(inputs)
+            outputs = self._session.run(_statistics(windows, progress))
         else:
-            rows = self._run_each(inputs, progress)
-            outputs = [np.concatenate(column) for column in zip(*rows, strict=True)]
-        evidences = [_evidences(outputs[start : start + 3]) for start in range(0, len(outputs), 3)]
-        return Predictions(evidences[0], evidences[1][0] if len(evidences) > 1 else None)
+            outputs = [np.concatenate(column) for column in zip(*self._run_each(windows, progress), strict=True)]
+        evidences = _evidences(outputs[:3])
+        return Predictions(evidences, _evidences(outputs[3:])[0] if outputs[3:] else robust_mean(evidences))
 
     def _run_each(self, windows: Float32Array, progress: Progress | None) -> list[list[Float32Array]]:
         """Return the network's outputs for each window; what `progress` raises stops it within a window's time."""
@@ -152,11 +112,24 @@ class ResponseNetwork:
         return rows
 
 
+def _statistics(windows: Float32Array, progress: Progress | None) -> Float32Array:
+    """Return the statistics of each window, shape (N, LENGTH).
+
+    One thread counts them, since numpy's small steps wait for each other's interpreter lock: two threads take a quarter
+    longer. One window at a time keeps the working set in a core's cache.
+    """
+    rows = []
+    for number, window in enumerate(windows, start=1):
+        rows.append(window_statistics(window))
+        show_progress(progress, number, len(windows))
+    return np.stack(rows)
+
+
 def _load_same(place: str, sha256: str, threads: int) -> ResponseNetwork:
     """Return the network that another process had, from the same folder or from this process's packaged models."""
     network = ResponseNetwork.load(MODELS / place, threads=threads)  # an absolute path stays as it is
     if network.config.sha256 != sha256:
-        raise ModelError(f"{MODELS / place}: holds another model than where it was sent from; install the same crfnet")
+        raise ModelError("other_model_here", path=MODELS / place)
     return network
 
 

@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
-import re
-from collections.abc import Callable
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass
 from pathlib import Path
 from typing import Any
 
@@ -18,25 +17,28 @@ from crfnet_core.statistics.windows import WINDOW_SIZE
 MODELS = Path(__file__).parents[1] / "models"
 DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 
-#: Size in bytes of the largest model.onnx that is read, and characters of the longest text in a model.json.
+#: Size in bytes of the largest model.onnx that is read.
 MAX_GRAPH_SIZE = 256 * 2**20
-MAX_TEXT = 200
+
+#: Basis, number of weights and side of the windows that every network is made for, and the inputs that it may read.
+KIND = ("emor", EVIDENCE_WEIGHTS, WINDOW_SIZE)
+INPUTS = ("windows", "statistics")
 
 
 @dataclass(frozen=True)
 class ModelConfig:
-    """What model.json says of the network beside it.
+    """The entries of model.json.
 
     Parameters
     ----------
     name : str
-        The model's name, that of its folder.
+        The model's and its folder's.
     sha256 : str
         Of model.onnx; checked at load.
     basis : str
         The response model of the outputs: "emor".
     components : int
-        How many of its first weights the evidence is about.
+        Number of its first weights that the evidence is about.
     window_size : int
         Side of a window in samples.
     input_name : str
@@ -46,13 +48,13 @@ class ModelConfig:
         Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, 5), factors (N, 5, 5) and log-odds
         (N, 3); of a network that pools its windows, then the same of all of them together, (1, ...).
     normalization : str
-        What the input holds, in words.
+        The scale of the input, in words.
     opset : int
         Of the ONNX graph.
     training_commit : str
         The commit of this project that the training run began from; see run.json.
     training : dict
-        What it has seen: "scene_kinds", and "held_out_curves", the DoRF curves that it has not.
+        "scene_kinds" that it was trained on, and "held_out_curves", the DoRF curves that it has not seen.
     accuracy : dict
         Figures of the model card.
     """
@@ -77,23 +79,19 @@ class ModelConfig:
         Raises
         ------
         ModelError
-            If the file is absent, is no JSON, lacks an entry or has one of another type, or describes a network of
-            another kind.
+            If the file is absent or is not JSON, lacks an entry, or describes a network of another kind.
         """
         path = Path(path)
-        entries = _read_json(path)
-        missing = [field.name for field in fields(cls) if field.name not in entries]
-        if missing:
-            raise ModelError(f"{path}: lacks {', '.join(missing)}; export the model again")
-        if unfit := [name for name, is_fit in _FIT.items() if not is_fit(entries[name])]:
-            raise ModelError(f"{path}: {', '.join(unfit)} cannot be what a model has; export the model again")
-        entries["output_names"] = tuple(entries["output_names"])
-        config = cls(**{field.name: entries[field.name] for field in fields(cls)})
-        if (config.basis, config.components, config.window_size) != ("emor", EVIDENCE_WEIGHTS, WINDOW_SIZE):
-            raise ModelError(
-                f"{path}: is for {config.components} weights of {config.basis} and windows of {config.window_size};"
-                f" this version needs {EVIDENCE_WEIGHTS} of emor and {WINDOW_SIZE}"
-            )
+        entries = _read_object(path)
+        unfit = [name for name, kind in _KINDS.items() if not isinstance(entries.get(name), kind)]
+        if unfit:
+            raise ModelError("bad_model_config", path=path, entries=", ".join(unfit))
+        names = tuple(map(str, entries["output_names"]))
+        config = cls(**{name: entries[name] for name in _KINDS} | {"output_names": names})
+        kind = (config.basis, config.components, config.window_size)
+        is_evidence = len(set(names)) == len(names) in (3, 6)  # of windows, and of all of them together if it pools
+        if kind != KIND or config.input_name not in INPUTS or not is_evidence:
+            raise ModelError("other_kind_of_model", path=path, found=kind, needed=KIND)
         return config
 
     def write(self, path: Path) -> None:
@@ -119,7 +117,7 @@ def packaged_models() -> list[Path]:
 def model_folder(wanted: str | Path | None = None) -> Path:
     """Return the folder of a model: a path, or the name of a packaged model, of which the version may be left out.
 
-    A folder of that path comes first. What is neither is returned as it is, for an error that names it.
+    A folder of that path comes first. Another text is returned as a path, for an error that names it.
     """
     if wanted is None:
         return DEFAULT_MODEL
@@ -134,69 +132,43 @@ def _version(folder: Path) -> tuple[int, ...]:
     return tuple(map(int, folder.name.rpartition("-")[2].split(".")))
 
 
-def read_graph(path: Path) -> bytes:
-    """Return a model.onnx's bytes, or say why it cannot be read."""
+def read_graph(folder: Path, config: ModelConfig) -> bytes:
+    """Return the content of model.onnx; a ModelError if it cannot be read or model.json describes another."""
+    path = folder / "model.onnx"
     try:
-        return read_bytes(path, most=MAX_GRAPH_SIZE)
+        graph = read_bytes(path, most=MAX_GRAPH_SIZE)
     except OSError as problem:
-        raise _unreadable(path, problem) from None
+        raise ModelError("unreadable_model", path=path, reason=problem.strerror) from None
+    if hashlib.sha256(graph).hexdigest() != config.sha256:
+        raise ModelError("altered_model", folder=folder)
+    return graph
 
 
-def _read_json(path: Path) -> dict[str, Any]:
+def _read_object(path: Path) -> dict[str, Any]:
     """Return the object in a JSON file."""
     try:
         entries = read_json(path)
     except OSError as problem:
-        raise _unreadable(path, problem) from None
+        raise ModelError("unreadable_model", path=path, reason=problem.strerror) from None
     except ValueError:
-        raise ModelError(f"{path}: is not JSON; restore it") from None
+        entries = None
     if not isinstance(entries, dict):
-        raise ModelError(f"{path}: holds no JSON object; restore it")
+        raise ModelError("bad_model_json", path=path)
     return entries
 
 
-def _unreadable(path: Path, problem: OSError) -> ModelError:
-    """Return the error of a model file that cannot be read."""
-    return ModelError(f"{path}: cannot be read ({problem.strerror}); a model is a folder with both files")
-
-
-def _is_text(value: object) -> bool:
-    """Return whether a value can be printed on one line."""
-    return isinstance(value, str) and 0 < len(value) <= MAX_TEXT and value.isprintable()
-
-
-def _is_count(value: object) -> bool:
-    """Return whether a value is an integer, which True is not."""
-    return type(value) is int
-
-
-def _are_outputs(value: object) -> bool:
-    """Return whether a value is a list of different names."""
-    return isinstance(value, list) and all(map(_is_text, value)) and 0 < len(value) == len({*value})
-
-
-def _are_figures(value: object) -> bool:
-    """Return whether a value holds numbers by protocol and name."""
-    return isinstance(value, dict) and all(
-        _is_text(protocol)
-        and isinstance(figures, dict)
-        and all(_is_text(name) and isinstance(figure, int | float) for name, figure in figures.items())
-        for protocol, figures in value.items()
-    )
-
-
-#: Entry of model.json -> whether a value is fit for it. The file is untrusted input, whose texts are printed and drawn.
-_FIT: dict[str, Callable[[Any], bool]] = {
-    "name": _is_text,
-    "sha256": lambda value: isinstance(value, str) and re.fullmatch("[0-9a-f]{64}", value) is not None,
-    "basis": _is_text,
-    "components": _is_count,
-    "window_size": _is_count,
-    "input_name": lambda value: value in ("windows", "statistics"),
-    "output_names": _are_outputs,
-    "normalization": _is_text,
-    "opset": _is_count,
-    "training_commit": _is_text,
-    "training": lambda value: isinstance(value, dict),
-    "accuracy": _are_figures,
+#: Entry of model.json -> its type.
+_KINDS: dict[str, type] = {
+    "name": str,
+    "sha256": str,
+    "basis": str,
+    "components": int,
+    "window_size": int,
+    "input_name": str,
+    "output_names": list,
+    "normalization": str,
+    "opset": int,
+    "training_commit": str,
+    "training": dict,
+    "accuracy": dict,
 }

@@ -64,7 +64,7 @@ class LikelyKind:
     probability: float
 
     @classmethod
-    def of(cls, families: Mapping[Family, float]) -> LikelyKind | None:
+    def from_probabilities(cls, families: Mapping[Family, float]) -> LikelyKind | None:
         """Return the most probable kind by the probabilities of families, the first of equals; None without any."""
         if not families:
             return None

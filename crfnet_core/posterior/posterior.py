@@ -45,7 +45,7 @@ class Posterior(EqualByFields):
     prior: Prior | None = None
 
     @classmethod
-    def of(
+    def from_evidences(
         cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
     ) -> Posterior:
         """Return the posterior: Eq. 24 of docs/METHOD.md.
@@ -108,7 +108,7 @@ class Posterior(EqualByFields):
         spread = float(_weighed(self.weights, self.bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1)))
         if self.prior is None or self.prior.evidence in (0, 1):
             return spread
-        moved = estimation_error(Posterior.of(self.bank, self.prior).curve, self.curve)
+        moved = estimation_error(Posterior.from_evidences(self.bank, self.prior).curve, self.curve)
         doubt = (1 - self.prior.evidence) / 2
         return (1 - doubt) * spread + doubt * (1 / self.prior.evidence - 1) * moved
 

@@ -22,7 +22,7 @@ class Prior:
     Parameters
     ----------
     name : str
-        What it is called in reports.
+        Its name in reports.
     shares : dict
         Family -> share; at least 0, and their sum is 1.
     evidence : float
@@ -48,7 +48,7 @@ class Prior:
         Raises
         ------
         PriorError
-            If there is no such prior, or the file is none.
+            If there is no such prior, or the file does not describe one.
         """
         path = PRIORS / f"{wanted}.json"
         path = path if path.is_file() else Path(wanted)
@@ -56,29 +56,28 @@ class Prior:
             entries = read_json(path)
         except OSError as problem:
             names = ", ".join(packaged_priors())
-            raise PriorError(f"{wanted}: no prior ({problem.strerror}); give {names} or a JSON file") from None
+            raise PriorError("no_prior", name=wanted, reason=problem.strerror, names=names) from None
         except ValueError:
-            raise PriorError(f"{path}: is not JSON; see crfnet_core/data/priors for examples") from None
-        return cls._of_entries(path, entries)
+            raise PriorError("prior_not_json", path=path) from None
+        return cls._from_entries(path, entries)
 
     @classmethod
-    def _of_entries(cls, path: Path, entries: object) -> Prior:
-        """Return the prior that a JSON file describes, or say what is wrong with it."""
-        example = 'it needs {"shares": {"phone": 0.5, "camera": 0.5}, "evidence": 0.15}'
+    def _from_entries(cls, path: Path, entries: object) -> Prior:
+        """Return the prior that a JSON file describes; a PriorError if it describes none."""
         if not isinstance(entries, dict) or set(entries) - {"lookalikes"} != {"shares", "evidence"}:
-            raise PriorError(f"{path}: {example}")
+            raise PriorError("bad_prior", path=path)
         shares, evidence, lookalikes = entries["shares"], entries["evidence"], entries.get("lookalikes", 0.0)
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
-            raise PriorError(f"{path}: shares are of {', '.join(Family)}")
+            raise PriorError("bad_prior_families", path=path, families=", ".join(Family))
         numbers = [*shares.values(), evidence, lookalikes]
         if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-2]):
-            raise PriorError(f"{path}: its values are numbers from 0 to 1, and one share is above 0")
+            raise PriorError("bad_prior_values", path=path)
         if lookalikes == 1:
-            raise PriorError(f"{path}: lookalikes is a share of all photographs, below 1")
+            raise PriorError("bad_lookalikes", path=path)
         total = sum(shares.values())
         return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, evidence, lookalikes)
 
-    def given(self, factors: Mapping[Family, float]) -> Prior:
+    def reweighted(self, factors: Mapping[Family, float]) -> Prior:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""
         shares = {family: share * factors.get(family, 1.0) for family, share in self.shares.items()}
         total = sum(shares.values())

@@ -22,14 +22,14 @@ class Verdict(StrEnum):
     DO_NOT_TRUST = "do not trust"
 
     @classmethod
-    def of(cls, posterior: Posterior) -> Verdict:
+    def from_posterior(cls, posterior: Posterior) -> Verdict:
         """Return the verdict on the answer of a posterior."""
         if sum(posterior.families[family] for family in UNUSUAL) > UNUSUAL_LIMIT:
             return cls.DO_NOT_TRUST
-        return cls.of_errors(posterior.expected_shape_error, posterior.expected_error)
+        return cls.from_errors(posterior.expected_shape_error, posterior.expected_error)
 
     @classmethod
-    def of_errors(cls, stops: float, error: float) -> Verdict:
+    def from_errors(cls, stops: float, error: float) -> Verdict:
         """Return the verdict on an answer by its expected shape error in stops and its expected E_est."""
         if stops > USABLE_STOPS:
             return cls.DO_NOT_TRUST

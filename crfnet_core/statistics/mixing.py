@@ -125,7 +125,7 @@ def half_resolution_parts(planes: Uint8Array) -> dict[str, Float32Array]:
 
     JPEG and video keep colour at half the resolution, so there the channels of single samples were never independent.
     """
-    lines = Lines.of(half_resolution(planes))
+    lines = Lines.from_planes(half_resolution(planes))
     mixtures = [Mixtures.among(lines.samples_in_a_row(stride, 5)) for stride in HALF_RESOLUTION_STRIDES]
     sums, counts = _stacked(map(disagreement_sums, mixtures))
     return {"half_resolution_disagreement": sums, "half_resolution_disagreement_counts": counts}

@@ -50,7 +50,7 @@ class Lines(NamedTuple):
     columns: Uint8Array
 
     @classmethod
-    def of(cls, planes: Uint8Array) -> Lines:
+    def from_planes(cls, planes: Uint8Array) -> Lines:
         """Return the lines of planes (3, N, N)."""
         return cls(np.ascontiguousarray(planes[:, ::2]), np.ascontiguousarray(planes[:, :, ::2]))
 

@@ -26,7 +26,7 @@ def window_statistics(window: Float32Array) -> Float32Array:
         The parts of `crfnet_core.statistics.layout`, packed: `unpack` gives them back by name.
     """
     planes = code_planes(window)
-    lines = Lines.of(planes)
+    lines = Lines.from_planes(planes)
     triples = [Triples.among(lines.samples_in_a_row(stride, 3)) for stride in STRIDES]
     return pack(
         {

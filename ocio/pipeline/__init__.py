@@ -30,7 +30,7 @@ from .estimates import (
     sampled_photographs,
 )
 from .folders import OutputPlan, plan_outputs, write_outputs
-from .loading import load_camera_response, load_network, load_prior, model_label
+from .loading import load_camera_response, load_network, load_prior
 from .manifest import PhotographRecord, check_records
 from .photographs import find_photographs
 
@@ -51,7 +51,6 @@ __all__ = [
     "load_camera_response",
     "load_network",
     "load_prior",
-    "model_label",
     "plan_calibration",
     "plan_each",
     "plan_each_linear",

@@ -9,7 +9,7 @@ from pathlib import Path
 
 from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
 from crfnet_core.estimate.result import CameraAnswer
-from crfnet_core.library import CameraSettings, offered_cameras, with_camera
+from crfnet_core.library import offered_cameras, with_camera
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device
 from crfnet_core.photograph.metadata.color_tags import ColorTags
@@ -165,7 +165,7 @@ def estimate_photographs(
         estimate=estimate,
         plates=tuple(kept.plates),
         alphas=tuple(kept.alphas),
-        offers=tuple(offered_cameras(estimate, kept.settings[0], prior=prior)) if is_offering else (),
+        offers=offered_cameras(estimate) if is_offering else (),
     )
 
 
@@ -175,7 +175,7 @@ class _Kept:
 
     Parameters
     ----------
-    facts, settings : list
+    facts : list
         Of each photograph, and of each frame of a movie.
     previews : list of ndarray
         That of the first photograph.
@@ -184,7 +184,6 @@ class _Kept:
     """
 
     facts: list[PhotoFacts] = field(default_factory=list)
-    settings: list[CameraSettings] = field(default_factory=list)
     previews: list[Float32Array] = field(default_factory=list)
     tags: list[ColorTags] = field(default_factory=list)
     plates: list[PlateSource] = field(default_factory=list)
@@ -195,7 +194,6 @@ class _Kept:
         for path in paths:
             for index, (plate, photo) in enumerate(photographs_of(file_source(path, frames))):
                 self.facts.append(PhotoFacts.of(photo))
-                self.settings.append(CameraSettings.of(photo.metadata))
                 if not self.previews:
                     stride = _stride(self.facts[0])
                     self.previews.append(photo[::stride, ::stride].copy())
@@ -269,7 +267,7 @@ def _estimate(
         seed=options.seed,
         progress=progress,
     )
-    return with_camera(estimate, camera, prior=prior) if camera else estimate
+    return with_camera(estimate, camera) if camera else estimate
 
 
 def _device(told: str | None) -> Device | None:

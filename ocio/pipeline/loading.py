@@ -2,11 +2,9 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.library import Camera, camera_estimate, find_camera
-from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 
 from ..options import EstimateOptions
@@ -51,22 +49,7 @@ def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
     Raises
     ------
     CameraError
-        If there is no such camera, or it has no evidence of the model.
-    PriorError, ModelError
-        If there is no such prior or model.
+        If there is no such camera, or its file is damaged.
     """
     camera = load_camera(options)
-    if camera is None:
-        return None
-    return camera_estimate(camera, model=model_label(options.model), prior=load_prior(options))
-
-
-def model_label(model: Path | None) -> str:
-    """Return the label of a model without loading its network; None stands for the default.
-
-    Raises
-    ------
-    ModelError
-        If the model folder is absent, incomplete or altered.
-    """
-    return ModelConfig.read(model_folder(model) / "model.json").label
+    return None if camera is None else camera_estimate(camera)

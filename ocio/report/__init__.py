@@ -13,15 +13,7 @@ from .calibration import (
     calibration_provenance,
     comparison_lines,
 )
-from .cameras import (
-    camera_line,
-    camera_summary,
-    disagreement_lines,
-    offer_lines,
-    offer_words,
-    photograph_documents,
-    photograph_lines,
-)
+from .cameras import camera_line, camera_summary, offer_lines
 from .documents import estimate_document, lut_document, model_document, plate_document
 from .facts import PhotoFacts, agreeing, basis, curve_error_words, provenance, shape_error_words
 from .words import (
@@ -51,7 +43,6 @@ __all__ = [
     "camera_summary",
     "comparison_lines",
     "curve_error_words",
-    "disagreement_lines",
     "estimate_document",
     "file_lines",
     "light_lines",
@@ -60,10 +51,7 @@ __all__ = [
     "model_document",
     "model_lines",
     "offer_lines",
-    "offer_words",
     "oiiotool_lines",
-    "photograph_documents",
-    "photograph_lines",
     "plate_document",
     "plate_lines",
     "provenance",

@@ -8,7 +8,6 @@ import numpy as np
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.estimate.estimate import ResponseEstimate
-from crfnet_core.estimate.result import CameraAnswer
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
@@ -72,22 +71,10 @@ def expected_errors(estimate: ResponseEstimate) -> str:
 def basis(estimate: ResponseEstimate) -> str:
     """Return the stored camera, or the prior and what the files say of their making; empty if it is not known."""
     if estimate.camera:
-        return camera_words(estimate.camera)
+        return f'response of the camera "{estimate.camera.name}", {estimate.camera.basis}'
     if not estimate.prior:
         return ""
     return f"prior: {estimate.prior}; {_metadata_words(estimate)}"
-
-
-def camera_words(camera: CameraAnswer) -> str:
-    """Return a stored camera, what its response rests on, and how far the photographs' own estimate is from it."""
-    words = f'response of the camera "{camera.name}", {camera.basis}'
-    return words if camera.agrees is None else f"{words}; the photographs' own estimate is {agreement(camera)}"
-
-
-def agreement(camera: CameraAnswer) -> str:
-    """Return how far the photographs that were compared with a stored camera are from it."""
-    more = "" if camera.agrees else ", more than usual"
-    return f"{camera.difference_stops:.2f} stop (E_est {camera.difference:.2f}) away{more}"
 
 
 def agreeing(estimate: ResponseEstimate) -> str:

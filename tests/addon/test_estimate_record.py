@@ -84,7 +84,7 @@ def test_what_the_photographs_are_recognized_as_comes_back(found, curves):
 
 
 def test_the_stored_camera_is_kept(found):
-    camera = CameraAnswer("写真機", True, "measured from 6 exposures", 0.1, 0.5, False)
+    camera = CameraAnswer("写真機", "measured from 6 exposures")
     assert estimate_of(entries_of(dataclasses.replace(found, camera=camera))).camera == camera
 
 

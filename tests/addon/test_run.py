@@ -62,7 +62,7 @@ def test_pixels_from_blender_have_no_metadata(make_job):
 
 def test_a_prior_that_is_absent_is_told_before_the_network_is_loaded(make_job, calls, tmp_path):
     loads = calls(run_module, "_load_network")
-    with pytest.raises(PriorError, match="no prior"):
+    with pytest.raises(PriorError, match="there is no prior"):
         run(make_job(prior=tmp_path / "none.json"))
     assert loads == []
 

@@ -30,12 +30,9 @@ class FakeNetwork:
         self.windows, self.pooled = tuple(windows), pooled
         self.config = SimpleNamespace(label="fake 000000000000")
 
-    def inputs(self, windows, *, progress=None):
-        return windows
-
     def predict(self, windows, *, progress=None):
         assert windows.shape == (len(self.windows), 227, 227, 3)
-        return Predictions(self.windows, self.pooled)
+        return Predictions(self.windows, self.pooled or robust_mean(self.windows))
 
 
 def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg", metadata=None):
@@ -84,7 +81,7 @@ def test_the_mean_evidence_leaves_outliers_out():
 def test_a_network_without_pooling_is_pooled_by_the_rule(bank):
     windows = [evidence_for(row) for row in rows_around(bank.weights[3], [-0.1, 0.0, 0.1])]
     estimate = asked(photo(), FakeNetwork(windows))
-    expected = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3])])
+    expected = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3])])
     np.testing.assert_allclose(estimate.curve.brightness, expected.curve.brightness, atol=1e-9)
     assert estimate.uncertainty == pytest.approx(expected.expected_error)
 
@@ -111,13 +108,13 @@ def test_the_windows_that_are_kept_are_those_that_count(bank, seed):
 def test_the_estimate_says_what_the_posterior_says(bank):
     evidence = evidence_for(bank.weights[4])
     estimate = asked(photo(), FakeNetwork([evidence] * 2, pooled=evidence))
-    expected = Posterior.of(bank, even_prior(), [evidence])
+    expected = Posterior.from_evidences(bank, even_prior(), [evidence])
     assert (estimate.uncertainty, estimate.shape_uncertainty) == (
         expected.expected_error,
         expected.expected_shape_error,
     )
     assert estimate.families == expected.families
-    assert estimate.verdict is Verdict.of(expected)
+    assert estimate.verdict is Verdict.from_posterior(expected)
     np.testing.assert_array_equal(estimate.band, expected.band())
     basis = EmorBasis.load()
     np.testing.assert_array_equal(estimate.weights, basis.project(expected.curve.brightness))
@@ -135,7 +132,7 @@ def test_each_window_has_the_answer_of_its_own_evidence(bank):
 def test_the_default_is_the_prior_of_cameras_over_the_packaged_bank():
     evidence = evidence_for(np.zeros(5), precision=0.5)
     estimate = estimate_response(photo(), network=FakeNetwork([evidence]), windows=1)
-    expected = Posterior.of(ResponseBank.load(), Prior.load(DEFAULT_PRIOR), [evidence])
+    expected = Posterior.from_evidences(ResponseBank.load(), Prior.load(DEFAULT_PRIOR), [evidence])
     assert estimate.prior == DEFAULT_PRIOR
     assert estimate.families == pytest.approx(expected.families)
 

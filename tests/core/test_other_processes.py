@@ -60,21 +60,18 @@ def test_another_model_in_its_folder_is_refused(fixed_model, tmp_path):
     sent = pickle.dumps(ResponseNetwork.load(folder))
     for path in DEFAULT_MODEL.iterdir():
         shutil.copyfile(path, folder / path.name)
-    with pytest.raises(ModelError, match="holds another model"):
+    with pytest.raises(ModelError) as caught:
         pickle.loads(sent)
+    assert caught.value.code == "other_model_here"
 
 
 def test_an_absent_folder_is_named(fixed_model, tmp_path):
     folder = shutil.copytree(fixed_model, tmp_path / "model")
     sent = pickle.dumps(ResponseNetwork.load(folder))
     shutil.rmtree(folder)
-    with pytest.raises(ModelError, match=r"model\.json: cannot be read"):
+    with pytest.raises(ModelError) as caught:
         pickle.loads(sent)
-
-
-def test_copies_of_a_network_are_itself(fixed_model):
-    network = ResponseNetwork.load(fixed_model)
-    assert copy.copy(network) is copy.deepcopy(network) is network
+    assert caught.value.code == "unreadable_model"
 
 
 def test_a_curve_is_sent_without_its_tables():

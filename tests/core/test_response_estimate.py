@@ -49,7 +49,7 @@ CHANGES = {
     "model": "other",
     "photos": ("a.jpg",),
     "recognition": Recognition(Kind.LIMITED_RANGE, "reason", "advice"),
-    "camera": CameraAnswer("a", is_measured=True, basis="measured"),
+    "camera": CameraAnswer("a", basis="measured"),
 }
 
 
@@ -89,7 +89,7 @@ def test_estimates_cannot_be_hashed_and_curves_can(estimate):
 
 def test_posteriors_compare():
     bank, weights = small_bank(), np.zeros(5)
-    one, same, other = (Posterior.of(bank, even_prior(), [evidence_for(weights + d)]) for d in (0, 0, 0.1))
+    one, same, other = (Posterior.from_evidences(bank, even_prior(), [evidence_for(weights + d)]) for d in (0, 0, 0.1))
     assert one == same != other
     assert evidence_for(weights) == evidence_for(weights) != evidence_for(weights + 0.1)
     assert bank == small_bank() != ResponseBank(bank.brightness, bank.families[::-1])

@@ -11,12 +11,13 @@ import pytest
 from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
+from crfnet_core.library import CameraLibrary
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.metadata.encodings import Encoding
 from crfnet_core.photograph.metadata.origin import SHAPES
 from crfnet_core.posterior import Family, Verdict
-from tests.helpers.cameras import photograph
+from tests.helpers.cameras import camera, photograph
 from tests.helpers.schemas import problems_by, read_schema
 
 
@@ -60,14 +61,15 @@ def test_what_linearize_prints(crfnet, plate, fixed_model, tmp_path, problems):
 
 def test_what_a_stored_camera_says(crfnet, plate, fixed_model, tmp_path, problems, monkeypatch):
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
+    CameraLibrary.of_user().save(camera("a", make="SONY", model="ILCE-7M3"))
     photo = photograph(plate, tmp_path / "photo.jpg")
     model = ("--model", fixed_model, "--json")
-    assert problems(json.loads(crfnet("camera", "add", "a", photo, *model).out)["estimate"]) == []
-    for name, camera in (("own", ()), ("stored", ("--camera", "a"))):
-        done = crfnet("estimate", photo, "--out", tmp_path / name, *camera, "--no-sheet", *model)
+    assert problems(json.loads(crfnet("camera", "show", "a", "--json").out)["estimate"]) == []
+    for name, stored in (("own", ()), ("stored", ("--camera", "a"))):
+        done = crfnet("estimate", photo, "--out", tmp_path / name, *stored, "--no-sheet", *model)
         (document,) = json.loads(done.out)["estimates"]
         assert problems(document) == []
-        assert ("known_cameras" in document, document["camera"] is None) == ((not camera,) * 2)
+        assert ("known_cameras" in document, document["camera"] is None) == ((not stored,) * 2)
 
 
 def test_what_the_api_gives_is_what_the_command_writes(plate, fixed_model, written):

@@ -1,28 +1,23 @@
-"""Model folders and JSON documents: whatever is in them, the answer is one line."""
+"""JSON documents, the one of a model among them: whatever is in them, the answer is one line."""
 
 import json
 import shutil
-from contextlib import suppress
 
-import numpy as np
 import pytest
 
 from crfnet.configs.studio.looks import read_looks
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.pipeline.calibrations import response_to_compare
-from crfnet_core.errors import CameraError, CRFNetError
+from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.library import CameraLibrary, add_photographs, camera_estimate
+from crfnet_core.library import camera_estimate
 from crfnet_core.library.documents import read_camera
 from crfnet_core.library.library import SHIPPED
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
 from crfnet_core.posterior.prior import PRIORS
-from tests.helpers.hostile_models import evidence_graph, model, write_model
 from tests.helpers.mutations import mutated, mutated_text, mutated_value
-
-WINDOWS = np.full((1, 227, 227, 3), 0.5, np.float32)
 
 
 def damaged_json(document, generator):
@@ -35,20 +30,6 @@ def damaged_json(document, generator):
             return mutated_text(text, generator, ("[" * 5000, "NaN", "{", "}")).encode(errors="surrogatepass")
         case _:
             return json.dumps(mutated_value(document, generator)).encode()
-
-
-def test_damaged_models_are_run_or_refused(fuzz, refused, fixed_model, tmp_path):
-    """The hash in model.json is right, as that of a hostile model would be."""
-    graphs = [(fixed_model / "model.onnx").read_bytes(), model(evidence_graph())]
-
-    def run(folder):
-        ResponseNetwork.load(folder).predict(WINDOWS)
-
-    def case(generator):
-        graph = mutated(graphs[generator.integers(2)], generator)
-        refused(run, write_model(tmp_path / "m", graph))
-
-    fuzz(case)
 
 
 def test_damaged_descriptions_of_models_are_refused(fuzz, refused, fixed_model, tmp_path):
@@ -98,18 +79,13 @@ def test_damaged_estimates_are_read_or_refused(fuzz, document):
     fuzz(case)
 
 
-def test_damaged_cameras_are_read_or_refused(fuzz, refused, fixed_model, plate, tmp_path):
-    """One camera that was measured, and one of a photograph."""
-    network, library = ResponseNetwork.load(fixed_model), CameraLibrary(tmp_path / "cameras")
-    add_photographs(library, "a", [plate], network=network)
-    kept = [*library.folder.glob("*.json"), min(SHIPPED.glob("*.json"))]
-    documents = [json.loads(path.read_text()) for path in kept]
+def test_damaged_cameras_are_read_or_refused(fuzz, refused, tmp_path):
+    document = json.loads(min(SHIPPED.glob("*.json")).read_text())
 
     def case(generator):
         path = tmp_path / "camera.json"
-        path.write_bytes(damaged_json(documents[generator.integers(2)], generator))
+        path.write_bytes(damaged_json(document, generator))
         if not refused(read_camera, path):
-            with suppress(CameraError):  # names the camera instead of its file
-                camera_estimate(read_camera(path), model=network.config.label)
+            camera_estimate(read_camera(path))
 
     fuzz(case)

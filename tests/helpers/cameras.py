@@ -1,4 +1,4 @@
-"""Photographs of cameras: scenes of the bundled light through known responses, with EXIF."""
+"""Cameras with known responses, and photographs with EXIF."""
 
 from __future__ import annotations
 
@@ -7,7 +7,14 @@ from typing import Any
 
 import numpy as np
 
+from crfnet_core import ResponseCurve
+from crfnet_core.library import Camera, CameraSettings
 from tests.helpers.images import read_image, write_image
+
+
+def camera(name: str, gamma: float = 2.2, *, stops: float = 0.1, **settings: Any) -> Camera:
+    """Return a camera whose response is a power law, measured on six exposures."""
+    return Camera(name, ResponseCurve.gamma(gamma), 0.05, stops, "6 exposures", CameraSettings(**settings))
 
 
 def photograph(plate: Path, path: Path, *, seed: int = 0, **header: Any) -> Path:

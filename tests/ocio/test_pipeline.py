@@ -117,7 +117,7 @@ class TestEstimates:
         [
             (None, r"no prior \(.*\); give any, camera or a JSON file"),
             ("no JSON", "is not JSON"),
-            ("{}", 'needs {"shares"'),
+            ("{}", 'needed is {"shares"'),
             ('{"shares": {"fim": 1}, "evidence": 1}', "shares are of phone, compact"),
         ],
     )

@@ -54,7 +54,7 @@ def test_a_disagreement_stops_the_export(exported, tmp_path, name):
 def test_the_exported_folder_loads(exported):
     network = ResponseNetwork.load(exported / "model")
     assert network.config.name == "model"
-    found = network.predict(network.inputs(np.zeros((2, 227, 227, 3), np.float32)))
+    found = network.predict(np.zeros((2, 227, 227, 3), np.float32))
     for evidence in (found.pooled, *found.windows):
         assert all(np.isfinite(part).all() for part in (evidence.location, evidence.factor, evidence.log_odds))
         assert (evidence.location.shape, evidence.factor.shape, evidence.log_odds.shape) == ((5,), (5, 5), (3,))

@@ -51,21 +51,21 @@ def cameras(tmp_path):
 def test_a_stack_becomes_a_camera_with_the_uncertainty_of_its_measurement(cameras):
     (camera,) = cameras({})
     assert (camera.name, camera.basis) == ("NIKON D90", "measured from 11 exposures (grade A), ISO 200")
-    assert camera_estimate(camera, model="any").uncertainty == pytest.approx(0.5, abs=0.01)
-    assert camera.measured.shape_stops == 0.05
+    assert camera_estimate(camera).uncertainty == pytest.approx(0.5, abs=0.01)
+    assert camera.shape_stops == 0.05
 
 
 def test_stacks_that_agree_are_one_setting_of_which_the_most_certain_is_kept(cameras):
     other = {"stack": "b", "gt": "gt/2.21.csv", "uncertainty_L2": "0.3", "iso": "800"}
     (camera,) = cameras({}, other)
     assert camera.basis == "measured from 11 exposures (grade A, the best of 2 stacks), ISO 200 to 800"
-    assert camera.measured.scale_stops < camera.measured.shape_stops
+    assert camera.scale_stops < camera.shape_stops
 
 
 def test_stacks_that_differ_are_settings_of_their_own(cameras):
     found = cameras({"stack": "b", "gt": "gt/1.8.csv", "uncertainty_L2": "0.6"}, {})
     assert [camera.name for camera in found] == ["NIKON D90 (1)", "NIKON D90 (2)"]
-    assert found[1].measured.curve.brightness[512] == pytest.approx(ResponseCurve.gamma(1.8).brightness[512], abs=1e-4)
+    assert found[1].curve.brightness[512] == pytest.approx(ResponseCurve.gamma(1.8).brightness[512], abs=1e-4)
 
 
 @pytest.mark.parametrize(
@@ -83,5 +83,5 @@ def test_what_is_uncertain_developed_or_unknown_is_left_out(cameras, change):
 
 def test_a_reason_for_caution_is_kept(cameras):
     (camera,) = cameras({"use": "caution: few frames", "exif_make": "", "exif_model": ""})
-    assert camera.measured.warnings == ("measured with caution: few frames",)
+    assert camera.warnings == ("measured with caution: few frames",)
     assert camera.settings.camera == "NIKON D90"

@@ -12,7 +12,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from crfnet_core.library import Camera, CameraLibrary
-from training.data.real.stacks import measured_response, settings_of_bodies
+from training.data.real.stacks import measured_camera, settings_of_bodies
 
 
 def measured_cameras(data: Path) -> list[Camera]:
@@ -24,7 +24,7 @@ def measured_cameras(data: Path) -> list[Camera]:
         The data folder.
     """
     return [
-        Camera(name, measured=measured_response(stacks))
+        measured_camera(name, stacks)
         for settings in settings_of_bodies(data).values()
         for name, stacks in settings.items()
     ]
@@ -38,7 +38,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     library = CameraLibrary.shipped()
     for camera in library.cameras():
         library.remove(camera.name)
-    library.folder.mkdir(exist_ok=True)
     for camera in measured_cameras(data):
         print(library.save(camera).name, camera.basis)
     return 0

@@ -1,4 +1,4 @@
-"""`crfnet camera`: the responses of cameras, kept to be used again."""
+"""`crfnet camera`: measured responses of cameras, kept to be used again."""
 
 from __future__ import annotations
 
@@ -10,24 +10,19 @@ from crfnet_core.files import atomic_write_text, json_text
 from crfnet_core.library import (
     Camera,
     CameraLibrary,
-    add_measured,
-    add_photographs,
     camera_document,
     camera_estimate,
-    differences,
     find_camera,
     read_calibration,
-    remove_photographs,
 )
-from crfnet_core.network import ResponseNetwork
 
 from ... import pipeline, report
-from ...interchange.files import write_response
-from .printing import print_json, print_lines, progress_bar
+from ...luts.files import write_lut
+from .printing import print_json, print_lines
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Do what `crfnet camera add`, `list`, `show`, `remove` or `export` asks for."""
+    """Run `crfnet camera add`, `list`, `show`, `remove` or `export`."""
     actions: dict[str, Callable[[argparse.Namespace], None]] = {
         "add": _add,
         "list": _list,
@@ -39,35 +34,20 @@ def run(arguments: argparse.Namespace) -> None:
 
 
 def _add(arguments: argparse.Namespace) -> None:
-    """Add photographs or a measured response to a camera."""
-    photos, calibration = arguments.photos, arguments.from_calibration
-    if bool(photos) == bool(calibration):
-        raise CameraError("give photographs, or --from-calibration FILE: one of them")
-    library = CameraLibrary.of_user()
-    if calibration:
-        measured = read_calibration(calibration)
-        camera = add_measured(library, arguments.name, measured, overwrite=arguments.overwrite)
-        notes = []
-    else:
-        network = ResponseNetwork.load(arguments.model)
-        with progress_bar("photographs") as progress:
-            done = add_photographs(library, arguments.name, photos, network=network, progress=progress)
-        camera = done.camera
-        notes = [f"{photograph.name} is there already and counts once." for photograph in done.known]
+    """Keep the measured response of a calibration."""
+    camera = read_calibration(arguments.from_calibration, arguments.name)
+    path = CameraLibrary.of_user().save(camera, overwrite=arguments.overwrite)
     if not arguments.json:
-        print_lines([f"Kept in {library.folder}.", *notes])
-    _print_camera(camera, arguments)
+        print_lines([f"Written: {path}."])
+    _print_camera(camera, as_json=arguments.json)
 
 
 def _list(arguments: argparse.Namespace) -> None:
     """List the user's cameras, and those that come with this project."""
     own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
     if arguments.json:
-        summaries = {
-            name: list(map(report.camera_summary, library.cameras()))
-            for name, library in (("cameras", own), ("shipped", shipped))
-        }
-        print_json({"folder": str(own.folder), **summaries, "problems": own.problems()})
+        cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (own, shipped))
+        print_json({"folder": str(own.folder), "cameras": cameras, "shipped": others, "problems": own.problems()})
         return
     print_lines([f"Yours, in {own.folder}:", *_indented(own)])
     print_lines(["Measured, with crfnet:", *_indented(shipped)])
@@ -75,53 +55,40 @@ def _list(arguments: argparse.Namespace) -> None:
 
 
 def _show(arguments: argparse.Namespace) -> None:
-    """Show what is known of a camera."""
-    _print_camera(find_camera(arguments.name), arguments)
+    """Show how good the response of a camera is."""
+    _print_camera(find_camera(arguments.name), as_json=arguments.json)
 
 
 def _remove(arguments: argparse.Namespace) -> None:
-    """Remove a camera, or photographs of it."""
-    library, name = CameraLibrary.of_user(), arguments.name
-    if arguments.photos:
-        left = report.camera_summary(remove_photographs(library, name, arguments.photos))
-    else:
-        library.get(name)  # a wrong name makes no folder
-        with library.locked():
-            library.remove(name)
-        left = None
+    """Remove a camera of the user's."""
+    library = CameraLibrary.of_user()
+    library.remove(arguments.name)
     if arguments.json:
-        print_json({"folder": str(library.folder), "removed": arguments.photos or [name], "camera": left})
+        print_json({"folder": str(library.folder), "removed": arguments.name})
     else:
-        print_lines(
-            [f"Removed: {', '.join(arguments.photos or [name])}.", *([f"Now {left['basis']}."] if left else [])]
-        )
+        print_lines([f"Removed: {arguments.name}."])
 
 
 def _export(arguments: argparse.Namespace) -> None:
-    """Write the response of a camera as a LUT, for another program, or as the library keeps it."""
+    """Write the response of a camera as a LUT, or as the library keeps it."""
     camera, out = find_camera(arguments.name), arguments.out
-    notes: tuple[str, ...] = ()
     if out.suffix.lower() == ".json":
         atomic_write_text(out, json_text(camera_document(camera)), overwrite=arguments.overwrite, error=CameraError)
     else:
-        lut = pipeline.response_lut(camera_estimate(camera, model=pipeline.model_label(arguments.model)))
-        notes = write_response(out, lut, overwrite=arguments.overwrite)
+        write_lut(out, pipeline.response_lut(camera_estimate(camera)), overwrite=arguments.overwrite)
     if arguments.json:
-        print_json({"camera": camera.name, "written": str(out), "notes": notes})
+        print_json({"camera": camera.name, "written": str(out)})
     else:
-        print_lines([*(f"{note}." for note in notes), f"Written: {out}."])
+        print_lines([f"Written: {out}."])
 
 
-def _print_camera(camera: Camera, arguments: argparse.Namespace) -> None:
-    """Print how good a camera's response is, its photographs, and which of them disagree."""
-    model = pipeline.model_label(arguments.model)
-    estimate, found = camera_estimate(camera, model=model), differences(camera, model=model)
-    if arguments.json:
-        photographs = report.photograph_documents(camera, found)
-        print_json(report.camera_summary(camera) | {"photographs": photographs, "estimate": estimate.to_dict()})
-        return
-    print_lines([report.camera_line(camera), *report.photograph_lines(camera, found, model=model)])
-    print_lines([*report.verdict_lines(estimate), *report.disagreement_lines(camera, found)])
+def _print_camera(camera: Camera, *, as_json: bool) -> None:
+    """Print a camera and how good its response is."""
+    estimate = camera_estimate(camera)
+    if as_json:
+        print_json(report.camera_summary(camera) | {"estimate": estimate.to_dict()})
+    else:
+        print_lines([report.camera_line(camera), *report.verdict_lines(estimate)])
 
 
 def _indented(library: CameraLibrary) -> list[str]:

@@ -5,8 +5,7 @@ import pytest
 
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
-from crfnet_core.library import Camera, CameraSettings, MeasuredResponse
-from crfnet_core.library.answer import camera_estimate
+from crfnet_core.library import Camera, CameraSettings, camera_estimate
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import scale_error, shape_error
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
@@ -76,7 +75,7 @@ def test_the_true_response_in_file_codes_compares_well(found, response):
 def test_the_jump_to_the_largest_code_is_no_uncertainty_of_the_camera(response):
     """E_est of a camera follows from stops by the slope; at the jump that would be 40 times too steep."""
     errors = [
-        camera_estimate(Camera("a", MeasuredResponse(curve, 0.02, 0.05, "8 exposures", CameraSettings())), model="")
+        camera_estimate(Camera("a", curve, 0.02, 0.05, "8 exposures", CameraSettings()))
         for curve in (response, in_file_codes(response, WHITE))
     ]
     assert errors[1].uncertainty == pytest.approx(WHITE * errors[0].uncertainty, rel=0.02)

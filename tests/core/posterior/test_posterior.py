@@ -16,7 +16,7 @@ def bank():
 @pytest.fixture(scope="module")
 def blurred(bank):
     """A posterior that no response has alone."""
-    return Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3], precision=1.0)])
+    return Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3], precision=1.0)])
 
 
 def curves(bank):
@@ -25,7 +25,7 @@ def curves(bank):
 
 def test_no_evidence_returns_the_prior(bank):
     prior = even_prior(unexplained=0.2)
-    posterior = Posterior.of(bank, prior)
+    posterior = Posterior.from_evidences(bank, prior)
     for family, members in SMALL_BANK.items():
         np.testing.assert_allclose(posterior.weights[bank.members(family)], 0.2 / len(members))
     unknown = dict.fromkeys((Family.COMPACT, Family.DEVELOPED, Family.EDITED), 0)
@@ -34,7 +34,7 @@ def test_no_evidence_returns_the_prior(bank):
 
 @pytest.mark.parametrize("number", [1, 3, 6])
 def test_sharp_evidence_at_a_response_returns_it(bank, number):
-    posterior = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[number], precision=300)])
+    posterior = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[number], precision=300)])
     true = curves(bank)[number]
     assert posterior.weights[number] > 0.999
     assert estimation_error(true, posterior.curve) < 0.1
@@ -47,20 +47,22 @@ def test_sharp_evidence_at_a_response_returns_it(bank, number):
 def test_two_photographs_multiply(bank):
     first, second = (evidence_for(bank.weights[number], precision=0.7) for number in (2, 5))
     prior = even_prior()
-    alone, other, both = (Posterior.of(bank, prior, asked).weights for asked in ([first], [second], [first, second]))
-    product = alone * other / Posterior.of(bank, prior).weights
+    alone, other, both = (
+        Posterior.from_evidences(bank, prior, asked).weights for asked in ([first], [second], [first, second])
+    )
+    product = alone * other / Posterior.from_evidences(bank, prior).weights
     np.testing.assert_allclose(both, product / product.sum(), rtol=1e-9)
-    again = Posterior.of(bank, prior, [first, first], independent=0.5)
+    again = Posterior.from_evidences(bank, prior, [first, first], independent=0.5)
     np.testing.assert_allclose(again.weights, alone, rtol=1e-9)
 
 
 def test_the_exponent_of_the_prior_weakens_the_evidence_among_ordinary_responses(bank):
     evidence, prior = evidence_for(bank.weights[4], precision=0.7), even_prior(evidence=0.5)
-    whole, half = (Posterior.of(bank, asked, [evidence]).weights for asked in (even_prior(), prior))
-    start = Posterior.of(bank, prior).weights
+    whole, half = (Posterior.from_evidences(bank, asked, [evidence]).weights for asked in (even_prior(), prior))
+    start = Posterior.from_evidences(bank, prior).weights
     product = (start * (whole / start) ** 0.5)[bank.ordinary]
     np.testing.assert_allclose(half[bank.ordinary], product / product.sum(), rtol=1e-9)
-    unmoved = Posterior.of(bank, even_prior(evidence=0), [evidence]).weights[bank.ordinary]
+    unmoved = Posterior.from_evidences(bank, even_prior(evidence=0), [evidence]).weights[bank.ordinary]
     np.testing.assert_allclose(unmoved, start[bank.ordinary] / start[bank.ordinary].sum())
 
 
@@ -72,17 +74,17 @@ def test_lookalikes_bound_what_pixels_say_for_unusual_families(bank, lookalikes,
     """
     evidence = evidence_for(bank.weights[4], precision=0.7)
     ordinary = np.exp(evidence.log_likelihoods(bank))[bank.ordinary]
-    start = Posterior.of(bank, even_prior()).weights[bank.ordinary]
+    start = Posterior.from_evidences(bank, even_prior()).weights[bank.ordinary]
     log_odds = (-50.0, float(np.log(16 * (start @ ordinary) / start.sum())), -50.0)
     shares = {Family.PHONE: 4 / 15, Family.CAMERA: 4 / 15, Family.FILM: 4 / 15, Family.LOG: 0.2}
     prior = Prior("p", shares, 0.3, lookalikes)
-    posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[4], precision=0.7, log_odds=log_odds)])
+    posterior = Posterior.from_evidences(bank, prior, [evidence_for(bank.weights[4], precision=0.7, log_odds=log_odds)])
     assert posterior.families[Family.LOG] == pytest.approx(share)
 
 
 def test_a_family_without_a_share_stays_without(bank):
     prior = Prior("p", {Family.PHONE: 1.0}, 1.0)
-    posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[3], precision=300)])
+    posterior = Posterior.from_evidences(bank, prior, [evidence_for(bank.weights[3], precision=300)])
     assert posterior.families[Family.PHONE] == pytest.approx(1)
     assert posterior.unexplained == pytest.approx(0)
 
@@ -90,7 +92,7 @@ def test_a_family_without_a_share_stays_without(bank):
 def test_the_unexplained_compete_with_all_responses_together(bank):
     """By hand: prior times evidence of the family, against the sum over the bank."""
     prior, evidence = even_prior(unexplained=0.3), evidence_for(bank.weights[3], log_odds=(-6, -6, -1.5))
-    posterior = Posterior.of(bank, prior, [evidence])
+    posterior = Posterior.from_evidences(bank, prior, [evidence])
     explained = sum(
         0.7 / len(SMALL_BANK) / bank.members(family).sum() * np.exp(likelihood)
         for family, likelihood in zip(bank.families, evidence.log_likelihoods(bank), strict=True)
@@ -101,7 +103,9 @@ def test_the_unexplained_compete_with_all_responses_together(bank):
 
 def test_the_families_sum_to_1_and_overwhelming_evidence_is_no_overflow(bank):
     for log_odds in ((-2000, -2000, 2000), (-2000, -2000, -2000), (2000, -2000, -2000)):
-        posterior = Posterior.of(bank, even_prior(unexplained=0.1), [evidence_for(bank.weights[3], log_odds=log_odds)])
+        posterior = Posterior.from_evidences(
+            bank, even_prior(unexplained=0.1), [evidence_for(bank.weights[3], log_odds=log_odds)]
+        )
         assert sum(posterior.families.values()) == pytest.approx(1)
         assert np.isfinite(posterior.weights).all()
         assert np.isfinite([posterior.expected_error, posterior.expected_shape_error]).all()
@@ -109,7 +113,7 @@ def test_the_families_sum_to_1_and_overwhelming_evidence_is_no_overflow(bank):
 
 def test_the_answer_is_the_geometric_mean_of_the_inverses(bank):
     """By hand: inverses of powers are powers, and their weighted geometric mean has the mean exponent."""
-    posterior = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3])])
+    posterior = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3])])
     exponents = 1 / np.array([power for family in SMALL_BANK.values() for power in family])
     expected = ResponseCurve.gamma(float(posterior.weights @ exponents))
     assert shape_error(expected, posterior.curve) < 0.02
@@ -128,9 +132,9 @@ def test_the_expected_errors_are_means_of_the_metrics_over_the_bank(blurred, ban
 def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
     """The evidence of exponent 0.2 would move it four times as far again, if it were right; the share is 0.4."""
     prior = even_prior(evidence=0.2)
-    before = Posterior.of(bank, prior).curve
+    before = Posterior.from_evidences(bank, prior).curve
     for number in (1, 3, 6):
-        posterior = Posterior.of(bank, prior, [evidence_for(bank.weights[number], precision=2.0)])
+        posterior = Posterior.from_evidences(bank, prior, [evidence_for(bank.weights[number], precision=2.0)])
         spread = posterior.weights @ [estimation_error(true, posterior.curve) for true in curves(bank)]
         expected = 0.6 * spread + 0.4 * 4 * estimation_error(before, posterior.curve)
         assert posterior.expected_error == pytest.approx(expected, rel=1e-2)
@@ -139,7 +143,7 @@ def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
 @pytest.mark.parametrize("exponent", [0.0, 1.0])
 def test_evidence_that_counts_in_full_or_not_at_all_leaves_no_such_doubt(bank, exponent):
     evidence = evidence_for(bank.weights[3], precision=1.0)
-    posterior = Posterior.of(bank, even_prior(evidence=exponent), [evidence])
+    posterior = Posterior.from_evidences(bank, even_prior(evidence=exponent), [evidence])
     errors = [estimation_error(true, posterior.curve) for true in curves(bank)]
     assert posterior.expected_error == pytest.approx(posterior.weights @ errors, rel=1e-2)
 
@@ -156,7 +160,7 @@ def test_the_band_holds_nine_tenths_of_the_weight():
     irradiance = np.linspace(0, 1, 1024)
     powers = np.linspace(0.3, 0.8, 400)
     bank = ResponseBank((irradiance ** powers[:, None]).astype(np.float32), (Family.CAMERA,) * 400)
-    posterior = Posterior.of(bank, Prior("p", {Family.CAMERA: 1.0}, 1.0))
+    posterior = Posterior.from_evidences(bank, Prior("p", {Family.CAMERA: 1.0}, 1.0))
     lower, upper = posterior.band()
     assert lower.shape == upper.shape == (1024,)
     assert (lower <= upper).all()
@@ -167,7 +171,7 @@ def test_the_band_holds_nine_tenths_of_the_weight():
 
 
 def test_the_band_of_a_certain_answer_lies_between_its_neighbors(bank):
-    lower, upper = Posterior.of(bank, even_prior(), [evidence_for(bank.weights[3], precision=3000)]).band()
+    lower, upper = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3], precision=3000)]).band()
     knots = np.linspace(0, 1023, 65).round().astype(int)
     assert (lower >= bank.brightness[4] - 1e-6)[knots].all()
     assert (upper <= bank.brightness[2] + 1e-6)[knots].all()
@@ -186,17 +190,17 @@ def test_the_band_of_a_certain_answer_lies_between_its_neighbors(bank):
 def test_the_verdict_follows_the_expected_stops_and_the_family(families, spread, expected):
     powers = 0.45 * np.exp([[-spread], [spread]])
     bank = ResponseBank((np.linspace(0, 1, 1024) ** powers).astype(np.float32), families)
-    posterior = Posterior.of(bank, Prior("p", {families[0]: 1.0}, 1.0))
-    assert Verdict.of(posterior) is expected
+    posterior = Posterior.from_evidences(bank, Prior("p", {families[0]: 1.0}, 1.0))
+    assert Verdict.from_posterior(posterior) is expected
     stops = posterior.expected_shape_error
     if families[0] is Family.CAMERA:
-        assert Verdict.of(posterior) == (
+        assert Verdict.from_posterior(posterior) == (
             Verdict.GOOD if stops <= GOOD_STOPS else Verdict.USABLE if stops <= USABLE_STOPS else Verdict.DO_NOT_TRUST
         )
 
 
 def test_a_picture_that_nothing_explains_is_not_to_be_trusted(bank):
     evidence = evidence_for(bank.weights[3], precision=300, log_odds=(-20, -20, 3))
-    sure = Posterior.of(bank, even_prior(unexplained=0.5), [evidence])
-    assert Verdict.of(sure) is Verdict.DO_NOT_TRUST
-    assert Verdict.of(Posterior.of(bank, even_prior(), [evidence])) is Verdict.GOOD
+    sure = Posterior.from_evidences(bank, even_prior(unexplained=0.5), [evidence])
+    assert Verdict.from_posterior(sure) is Verdict.DO_NOT_TRUST
+    assert Verdict.from_posterior(Posterior.from_evidences(bank, even_prior(), [evidence])) is Verdict.GOOD

@@ -31,47 +31,40 @@ def test_a_file_of_ones_own_is_scaled_to_a_sum_of_1(tmp_path):
 
 def test_factors_shift_the_shares():
     prior = Prior("p", {Family.PHONE: 0.6, Family.CAMERA: 0.3, Family.FILM: 0.1}, 0.5)
-    shifted = prior.given({Family.PHONE: 0.1, Family.FILM: 1.0})
+    shifted = prior.reweighted({Family.PHONE: 0.1, Family.FILM: 1.0})
     assert shifted.shares == pytest.approx(
         {Family.PHONE: 0.06 / 0.46, Family.CAMERA: 0.3 / 0.46, Family.FILM: 0.1 / 0.46}
     )
     assert (shifted.name, shifted.evidence) == ("p", 0.5)
-    assert prior.given({}).shares == pytest.approx(prior.shares)
+    assert prior.reweighted({}).shares == pytest.approx(prior.shares)
 
 
 @pytest.mark.parametrize(
-    ("entries", "said"),
+    ("entries", "code"),
     [
-        ("{", "is not JSON"),
-        ([1], 'it needs {"shares"'),
-        ({"shares": {"phone": 1}}, 'it needs {"shares"'),
-        ({"shares": {"phone": 1}, "evidence": 1, "more": 1}, 'it needs {"shares"'),
-        ({"shares": [0.5], "evidence": 1}, "shares are of phone, compact"),
-        ({"shares": {"telephone": 1}, "evidence": 1}, "shares are of phone, compact"),
-        ({"shares": {"phone": -0.1}, "evidence": 1}, "numbers from 0 to 1"),
-        ({"shares": {"phone": 1}, "evidence": 1.5}, "numbers from 0 to 1"),
-        ({"shares": {"phone": "1"}, "evidence": 1}, "numbers from 0 to 1"),
-        ({"shares": {"phone": 1}, "evidence": 1, "lookalikes": 1}, "lookalikes is a share of all photographs, below 1"),
-        ({"shares": {"phone": 0, "log": 0}, "evidence": 1}, "one share is above 0"),
-        ({"shares": {}, "evidence": 1}, "one share is above 0"),
-        ('{"shares": {"phone": NaN}, "evidence": 1}', "is not JSON"),
+        ("{", "prior_not_json"),
+        ('{"shares": {"phone": NaN}, "evidence": 1}', "prior_not_json"),
+        ([1], "bad_prior"),
+        ({"shares": {"phone": 1}}, "bad_prior"),
+        ({"shares": {"phone": 1}, "evidence": 1, "more": 1}, "bad_prior"),
+        ({"shares": [0.5], "evidence": 1}, "bad_prior_families"),
+        ({"shares": {"telephone": 1}, "evidence": 1}, "bad_prior_families"),
+        ({"shares": {"phone": -0.1}, "evidence": 1}, "bad_prior_values"),
+        ({"shares": {"phone": 1}, "evidence": 1.5}, "bad_prior_values"),
+        ({"shares": {"phone": "1"}, "evidence": 1}, "bad_prior_values"),
+        ({"shares": {"phone": 0, "log": 0}, "evidence": 1}, "bad_prior_values"),
+        ({"shares": {"phone": 1}, "evidence": 1, "lookalikes": 1}, "bad_lookalikes"),
     ],
 )
-def test_a_file_that_is_no_prior_is_refused_in_one_line(tmp_path, entries, said):
+def test_a_file_that_describes_no_prior_is_refused_in_one_line(tmp_path, entries, code):
     path = written(tmp_path, entries)
     with pytest.raises(PriorError) as caught:
         Prior.load(path)
+    assert caught.value.code == code
     assert str(caught.value).startswith(f"{path}: ")
-    assert said in str(caught.value)
-    assert "\n" not in str(caught.value)
 
 
 def test_an_unknown_name_lists_the_known_ones():
-    with pytest.raises(PriorError, match=r"nonesuch: no prior .* give any, camera or a JSON file"):
+    with pytest.raises(PriorError) as caught:
         Prior.load("nonesuch")
-
-
-def test_a_file_that_is_no_text_is_refused(tmp_path):
-    (tmp_path / "own.json").write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(PriorError, match="is not JSON"):
-        Prior.load(tmp_path / "own.json")
+    assert (caught.value.code, caught.value.facts["names"]) == ("no_prior", "any, camera")

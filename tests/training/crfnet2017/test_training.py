@@ -204,7 +204,6 @@ def test_the_model_folder_says_what_torch_says(model, work_folder):
     assert assert_parity(model, work_folder / "golden.npz") < PARITY
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
     found = ResponseNetwork.load(model).predict(np.random.default_rng(0).random((3, 227, 227, 3), np.float32))
-    assert found.pooled is None
     assert np.stack([evidence.location for evidence in found.windows]).std(axis=0).min() > 0
     for evidence in found.windows:
         np.testing.assert_allclose(evidence.factor, LIKELIHOOD.factor, rtol=1e-6)

@@ -155,7 +155,7 @@ def test_p4_answers_by_the_evidence_of_the_model_and_the_bank_of_the_other_bodie
     nearer = []
     for case in real_photographs(data)["real"][:2]:
         bank = bank_without_fold(case, replace(bundled_test_set(), data=data))
-        prior_alone = Posterior.of(bank, Prior.load()).curve
+        prior_alone = Posterior.from_evidences(bank, Prior.load()).curve
         (row,) = photographs(out, photograph=case.name, estimator="fixed_model, metadata ignored")
         nearer.append(estimation_error(case.truth(), prior_alone) - row["E_est"])
     assert nearer[0] > 1

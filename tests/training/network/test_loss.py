@@ -91,6 +91,6 @@ def test_the_errors_are_those_of_the_core_s_posterior(bank, competitors):
     (evidence,), tensors = drawn(1)
     counts = {family: float(bank.members(family).sum()) for family in bank.families if family not in UNUSUAL}
     prior = Prior("p", {family: count / sum(counts.values()) for family, count in counts.items()}, 1.0)
-    mean = Posterior.of(bank, prior, [evidence]).mean_weights
+    mean = Posterior.from_evidences(bank, prior, [evidence]).mean_weights
     found = EvidenceLoss(*competitors).errors(tensors, torch.zeros(1, 11, dtype=torch.float64))
     assert float(found) == pytest.approx(np.linalg.norm(mean), abs=1e-5)

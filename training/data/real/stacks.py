@@ -14,7 +14,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.library import CameraSettings, MeasuredResponse
+from crfnet_core.library import Camera, CameraSettings
 from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
@@ -96,17 +96,18 @@ def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
     }
 
 
-def measured_response(stacks: Sequence[Stack]) -> MeasuredResponse:
-    """Return the response of a setting: that of the first of its stacks, smoothed, with the sensitivities of all.
+def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
+    """Return the camera of a setting: the response of its first stack, smoothed, with the sensitivities of all.
 
-    Unsmoothed its slope in stops changes within a code by up to eleven times near white: the plate gets bands there.
+    Without smoothing, its slope in stops changes within a code by up to eleven times near white: the plate gets bands.
     """
     first = stacks[0]
     total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
     shape = min(SHAPE_STOPS, total)
     best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
-    return MeasuredResponse(
+    return Camera(
+        name=name,
         curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
@@ -125,7 +126,7 @@ def _is_taken(row: Mapping[str, str]) -> bool:
 
 def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
     """Return the stack of a row."""
-    settings = CameraSettings.of(metadata_of_case(row))
+    settings = CameraSettings.from_metadata(metadata_of_case(row))
     return Stack(
         measured=folder / row["gt"],
         settings=settings if settings.camera else replace(settings, model=row["body"]),
