@@ -6,4 +6,12 @@ option of the command and no button of Blender. Names in braces are the facts of
 
 from collections.abc import Mapping
 
-SENTENCES: Mapping[str, str] = {}
+SENTENCES: Mapping[str, str] = {
+    # HEIC, AVIF and JPEG XL
+    "deep_avif_coding": "{path}: AVIF of {samples} samples and matrix {matrix} is not read; save it as 16-bit PNG",
+    "deep_avif_package_missing": "{path}: AVIF of {bits} bits needs PyAV: pip install av, or save it as 16-bit PNG",
+    "deep_avif_tiles": "{path}: AVIF of {bits} bits in tiles is not read; save it as 16-bit PNG",
+    "heif_package_missing": "{path}: {kind} needs the package {package}; pip install pi-heif pillow",
+    "jxl_linear": "{path}: this JPEG XL file is decoded to linear light, as lossy ones with a camera's ICC profile are;"
+    " give the original that it was made from",
+}
