@@ -1,28 +1,31 @@
-"""The frames of a movie as a source of plates, and as photographs."""
+"""The frames of a movie as a source of plates, and as photographs: decoded in order from the start."""
 
 from __future__ import annotations
 
+from bisect import insort
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
+import OpenImageIO as oiio
 
+from crfnet_core.photograph.orientation import upright
 from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.yuv import alpha_of, rgb_codes
 
 from ..errors import PlateError
 from ..plates.frame_files import EncodedFrame, FrameLoader
 from ..plates.frame_numbers import format_frames, parse_frames
-from .conversion import alpha_of, rgb_codes, upright
-from .decoding import decoded
-from .header import frame_header, movie_metadata
-from .library import ffmpeg_line
-from .stream import MovieStream, read_stream
+from .library import ffmpeg_line, opened
+from .stream import MovieStream, Picture, decoded_packet, read_stream, video_packets
 
 if TYPE_CHECKING:
     from av import VideoFrame
+    from av.container import InputContainer
+    from av.video.stream import VideoStream
 
 #: The code of white in linear plates' sources: 16 bits keep what lies between the codes of the stream after YUV to RGB.
 WHITE = 65535
@@ -64,13 +67,13 @@ class MovieFrames:
         """
         wanted = None if frames is None else parse_frames(frames)
         movie = read_stream(path)
-        count = len(movie.index.times)
+        existing = range(1, movie.frame_count + 1)
         if wanted is None:
-            return cls(movie, tuple(range(1, count + 1)))
-        numbers = tuple(number for number in wanted if 1 <= number <= count)
+            return cls(movie, tuple(existing))
+        numbers = tuple(number for number in wanted if number in existing)
         if not numbers:
-            raise PlateError(f"{path}: there are {format_frames(range(1, count + 1))}; check the frames")
-        return cls(movie, numbers, tuple(number for number in wanted if not 1 <= number <= count))
+            raise PlateError("no_such_frames", path=path, frames=format_frames(existing))
+        return cls(movie, numbers, tuple(number for number in wanted if number not in existing))
 
     @property
     def paths(self) -> tuple[Path, ...]:
@@ -84,7 +87,7 @@ class MovieFrames:
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
         """Yield what returns each frame, for positions that ascend: it is decoded at once, and converted when called.
 
-        A frame that cannot be decoded raises a PlateError when called.
+        A frame that cannot be decoded, or has another form than the first, raises a PlateError when called.
         """
         for number, frame in decoded(self.movie, [self.numbers[position] for position in positions]):
             yield partial(_encoded, self.movie, number, frame)
@@ -92,39 +95,125 @@ class MovieFrames:
     def photos(self, numbers: Iterable[int]) -> Iterator[tuple[int, Photo]]:
         """Yield frames with their numbers, ascending, as photographs: codes of the stream's own depth.
 
-        Damaged frames are left out.
+        Key frames are decoded alone, if no other frame is asked for. Damaged frames are left out.
         """
-        for number, frame in decoded(self.movie, numbers):
+        wanted = set(numbers)
+        decode = _decoded_keys if wanted <= set(self.movie.key_numbers) else decoded
+        for number, frame in decode(self.movie, wanted):
             if frame is not None:
                 yield number, _photo(self.movie, number, frame)
 
 
+def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, VideoFrame | None]]:
+    """Yield frames, ascending by number, each once; None for a frame that is damaged or absent.
+
+    Parameters
+    ----------
+    movie : MovieStream
+        See `read_stream`.
+    numbers : iterable of int
+        Numbers of frames, from 1.
+
+    Raises
+    ------
+    PlateError
+        If the movie cannot be opened any more.
+    """
+    pending = sorted(set(numbers), reverse=True)
+    if not pending:
+        return
+    with opened(movie.path) as (container, stream):
+        for number, frame in enumerate(_in_order(container, stream), 1):
+            if number == pending[-1]:
+                yield pending.pop(), frame
+            if not pending:
+                return
+    yield from ((number, None) for number in reversed(pending))
+
+
+def _in_order(container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
+    """Yield all frames as shown; None in the place, by its time, of a packet that cannot be decoded."""
+    damaged: list[int] = []
+    for packet in container.demux(stream):
+        frames = decoded_packet(packet)
+        if frames is None and packet.pts is not None and not packet.is_discard:
+            insort(damaged, packet.pts)
+        for frame in frames or ():
+            while damaged and frame.pts is not None and damaged[0] < frame.pts:
+                damaged.pop(0)
+                yield None
+            yield None if frame.is_corrupt else frame
+    yield from (None for _ in damaged)
+
+
+def _decoded_keys(movie: MovieStream, numbers: set[int]) -> Iterator[tuple[int, VideoFrame | None]]:
+    """Yield key frames, ascending by number, each decoded alone; None for one that is damaged."""
+    with opened(movie.path) as (container, stream):
+        stream.codec_context.skip_frame = "NONKEY"
+        keys = (packet for packet in video_packets(container, stream) if packet.is_keyframe)
+        for number, packet in zip(movie.key_numbers, keys, strict=False):
+            if number in numbers:
+                yield number, _decoded_alone(stream, packet)
+
+
+def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
+    """Return the frame of a packet; None if it is damaged."""
+    import av
+
+    try:
+        frames = [*packet.decode(), *stream.decode(None)]  # without a next packet the decoder hands it out
+    except av.FFmpegError:
+        frames = []
+    stream.codec_context.flush_buffers()
+    return frames[0] if frames and not frames[0].is_corrupt else None
+
+
 def frame_name(path: Path, number: int) -> str:
-    """Return what the report calls a frame."""
+    """Return the name of a frame in reports."""
     return f"{path.name} frame {number}"
+
+
+def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
+    """Refuse a frame of another size, coding, turn or interlacing than the first."""
+    picture = Picture.from_frame(movie.path, frame, movie.codec)
+    if picture != movie.picture:
+        raise PlateError("movie_changes", path=movie.path, frame=number, form=picture, first=movie.picture)
 
 
 def _encoded(movie: MovieStream, number: int, frame: VideoFrame | None) -> EncodedFrame:
     """Return the encoded samples of a frame, upright."""
     if frame is None:
-        raise PlateError(
-            f"{movie.path}: frame {number} cannot be decoded; copy the movie again, or extract its frames:"
-            f" {ffmpeg_line(movie.path)}"
-        )
-    samples, alpha = upright(rgb_codes(frame, movie.coding, WHITE), movie.turn), alpha_of(frame)
-    if alpha is not None:
-        alpha = upright(alpha, movie.turn)
-    return EncodedFrame(samples, WHITE, alpha, frame_header(movie, number), movie.color)
+        raise PlateError("frame_undecodable", path=movie.path, frame=number, line=ffmpeg_line(movie.path))
+    _check_form(movie, number, frame)
+    turn = movie.picture.turn
+    samples, alpha = upright(rgb_codes(frame, movie.picture.coding, WHITE), turn), alpha_of(frame)
+    return EncodedFrame(
+        samples, WHITE, None if alpha is None else upright(alpha, turn), _frame_header(movie), movie.color
+    )
+
+
+def _frame_header(movie: MovieStream) -> Any:
+    """Return OpenImageIO's header of a frame: size, pixel aspect, frame rate, maker and model."""
+    header = oiio.ImageSpec(*movie.picture.size, 3, oiio.UINT16)
+    header.attribute("PixelAspectRatio", float(movie.pixel_aspect))
+    if movie.rate:
+        header.attribute("FramesPerSecond", oiio.TypeRational, movie.rate.as_integer_ratio())
+    metadata = movie.file_metadata
+    for name, text in (("Make", metadata.make), ("Model", metadata.model)):
+        if text:
+            header.attribute(name, text)
+    return header
 
 
 def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
     """Return a frame as a photograph, upright."""
+    _check_form(movie, number, frame)
     largest = 2**movie.bit_depth - 1
-    codes = upright(rgb_codes(frame, movie.coding, largest), movie.turn)
+    codes = upright(rgb_codes(frame, movie.picture.coding, largest), movie.picture.turn)
     return Photo(
         pixels=np.divide(codes, np.float32(largest), dtype=np.float32),
         bit_depth=movie.bit_depth,
         is_gray=bool((codes == codes[..., :1]).all()),
         path=movie.path.with_name(frame_name(movie.path, number)),
-        metadata=movie_metadata(movie),
+        metadata=movie.file_metadata,
     )

@@ -1,4 +1,4 @@
-"""PyAV, an optional dependency: what to do where it is absent or cannot decode; and which files are movies."""
+"""PyAV, an optional dependency: the remedy where it is absent or cannot decode; and which files are movies."""
 
 from __future__ import annotations
 
@@ -22,18 +22,21 @@ QUICKTIME_BOXES = (b"ftyp", b"moov", b"mdat", b"wide", b"free", b"skip", b"pnot"
 #: Brands of files that begin like MP4 and hold still pictures: HEIF, AVIF, Canon's camera raw.
 STILL_BRANDS = (*HEIC_BRANDS, *AVIF_BRANDS, b"mif1", b"mif2", b"msf1", b"miaf", b"crx ")
 
-#: How other movies begin: Matroska and WebM, MXF, MPEG program and elementary streams, Flash, Windows Media.
+#: First bytes of other movies: Matroska, MXF, MPEG, Flash, Windows Media, Ogg, Y4M, IVF, NUT, and bare H.264 or HEVC.
 SIGNATURES = (
-    *(b"\x1a\x45\xdf\xa3", b"\x06\x0e\x2b\x34", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3"),
-    *(b"FLV\x01", b"\x30\x26\xb2\x75"),
+    *(b"\x1a\x45\xdf\xa3", b"\x06\x0e\x2b\x34", b"\x00\x00\x01\xba", b"\x00\x00\x01\xb3", b"FLV\x01"),
+    *(b"\x30\x26\xb2\x75", b"OggS", b"YUV4MPEG2 ", b"DKIF", b"nut/multimedia", b"\x00\x00\x00\x01"),
 )
 
-#: Distances in bytes between the sync bytes of an MPEG transport stream, and where the first one stands.
+#: Distances in bytes between the sync bytes of an MPEG transport stream, and the place of the first one.
 _TRANSPORT = ((188, 0), (192, 4))
+
+#: Seconds after which opening is given up: FFmpeg walks through all boxes, and 48 MB of empty ones take it ten.
+OPENING = 60
 
 
 def is_movie(path: Path) -> bool:
-    """Return whether a file is a movie, by how it begins; False for what is no readable file, such as a pipe."""
+    """Return whether a file is a movie, by its first bytes; False for a pipe and for unreadable files."""
     try:
         if not path.is_file():
             return False
@@ -60,33 +63,28 @@ def ffmpeg_line(path: Path, *, filters: str = "") -> str:
 
 @contextmanager
 def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
-    """Yield a movie, opened, and its first video stream.
+    """Yield a movie, opened, and the video stream that FFmpeg ranks best: not a cover or a thumbnail.
 
     Raises
     ------
     PlateError
-        If PyAV is absent, the file is no movie or holds no video, or, in the block, something cannot be decoded.
+        If PyAV is absent, the file is not a movie or holds no video, or, in the block, something cannot be decoded.
     """
     try:
         import av
     except ImportError:
-        raise PlateError(
-            f"{path}: is a movie, which needs PyAV: pip install 'crfnet[video]', or extract its frames:"
-            f" {ffmpeg_line(path)}"
-        ) from None
+        raise PlateError("pyav_missing", path=path, line=ffmpeg_line(path)) from None
     try:
-        with av.open(f"file:{path}") as container:
-            if not container.streams.video:
-                raise PlateError(f"{path}: holds no video; give a movie with a picture")
-            stream = container.streams.video[0]
-            stream.thread_type = "AUTO"
+        with av.open(f"file:{path}", metadata_errors="replace", timeout=(OPENING, None)) as container:
+            stream = container.streams.best("video")
+            if not isinstance(stream, av.VideoStream) or stream.codec_context is None:
+                raise PlateError("no_video", path=path)
+            stream.thread_type = "SLICE"  # threads by frame would report an error at another frame
             yield container, stream
-    except av.FFmpegError as problem:
-        raise undecodable(path, problem.strerror or type(problem).__name__) from problem
+    except (av.FFmpegError, UnicodeDecodeError) as problem:
+        raise undecodable(path, getattr(problem, "strerror", "") or type(problem).__name__) from problem
 
 
 def undecodable(path: Path, reason: str) -> PlateError:
     """Return the error of a movie that PyAV cannot decode."""
-    return PlateError(
-        f"{path}: cannot be decoded ({reason}); copy it again, or extract its frames: {ffmpeg_line(path)}"
-    )
+    return PlateError("movie_undecodable", path=path, reason=reason, line=ffmpeg_line(path))

@@ -1,20 +1,20 @@
-"""The frames of a movie from which a response is estimated: spread over it, and chosen by what they show."""
+"""The frames of a movie from which a response is estimated: spread over it, and neither black, white nor alike."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
 import numpy as np
 
-from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.types import Float32Array
 
 from ..defaults import FRAMES_ANALYZED
 from .frames import MovieFrames
+from .library import undecodable
 
 #: Where in each part of the movie a frame is looked for, in turn.
-PLACES = (0.5, 0.2, 0.8)
+PLACES = (0.5, 0.7, 0.9)
 
 #: Brightness in [0, 1] between which a frame shows something, and the least fraction of its samples there.
 DARK, LIGHT, FRACTION = 0.08, 0.98, 0.1
@@ -29,10 +29,9 @@ SAMPLES = 96
 def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator[tuple[int, Photo]]:
     """Yield up to `count` frames for an estimate, one at a time, ascending, each with its number.
 
-    The movie is cut into `count` parts. Of each part its key frame nearest to the middle is taken, since that is
-    decoded alone and has the best quality, or the frame in the middle where there is none. If it is nearly black or
-    white, or shows the same as one that was taken, other places in the part are tried. If no frame of the movie
-    passes, the middle ones are taken as they are.
+    They are key frames if there are enough, which are decoded alone and have the best quality. They are cut into
+    `count` parts; of each, the first of the frames at `PLACES` is taken that is not nearly black or white and does not
+    show the same as one before. If no frame of the movie passes, the middle ones are taken as they are.
 
     Parameters
     ----------
@@ -43,44 +42,35 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
 
     Raises
     ------
-    PhotoError
+    PlateError
         If none of these frames can be decoded.
     """
-    parts = [part.tolist() for part in np.array_split(frames.numbers, count) if len(part)]
-    seen: list[Float32Array] = []
-    for part in parts:
-        yield from _telling_photo(frames, part, seen)
+    keys = sorted(set(frames.numbers) & set(frames.movie.key_numbers))
+    parts = [part.tolist() for part in np.array_split(keys if len(keys) >= count else frames.numbers, count)]
+    candidates = {part[int(place * len(part))]: index for index, part in enumerate(parts) if part for place in PLACES}
+    seen: dict[int, Float32Array] = {}
+    for number, photo in frames.photos(candidates):
+        glimpse, part = _glimpse(photo), candidates[number]
+        if part not in seen and _shows_something(glimpse) and _is_new(glimpse, seen.values()):
+            seen[part] = glimpse
+            yield number, photo
     if not seen:
         yield from _middle_photos(frames, parts)
 
 
-def _telling_photo(frames: MovieFrames, part: Sequence[int], seen: list[Float32Array]) -> Iterator[tuple[int, Photo]]:
-    """Yield the first frame of a part that shows something new, if there is one, and note what it shows."""
-    for number in _candidates(part, frames.movie.index.key_numbers):
-        for _, photo in frames.photos([number]):
-            glimpse = _glimpse(photo)
-            if _shows_something(glimpse) and all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in seen):
-                seen.append(glimpse)
-                yield number, photo
-                return
+def _is_new(glimpse: Float32Array, others: Iterable[Float32Array]) -> bool:
+    """Return whether a frame differs from all others."""
+    return all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in others)
 
 
 def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Iterator[tuple[int, Photo]]:
     """Yield the frame in the middle of each part, whatever it shows."""
     is_empty = True
-    for number, photo in frames.photos(part[len(part) // 2] for part in parts):
+    for number, photo in frames.photos(part[len(part) // 2] for part in parts if part):
         is_empty = False
         yield number, photo
     if is_empty:
-        raise PhotoError(f"{frames.movie.path}: none of its frames can be decoded; copy it again")
-
-
-def _candidates(part: Sequence[int], key_numbers: Sequence[int]) -> list[int]:
-    """Return the frames of a part to look at, each once: at `PLACES`, or the nearest key frames."""
-    numbers = set(part)
-    keys = [number for number in key_numbers if number in numbers]
-    places = [part[min(len(part) - 1, int(place * len(part)))] for place in PLACES]
-    return list(dict.fromkeys(min(keys, key=lambda key: abs(key - place)) if keys else place for place in places))
+        raise undecodable(frames.movie.path, "none of its frames")
 
 
 def _glimpse(photo: Photo) -> Float32Array:

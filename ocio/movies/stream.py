@@ -1,31 +1,33 @@
-"""What a movie says of its pictures, read once: size, coding, times, timecode and tags."""
+"""The description of a movie, read once: its picture, which no frame may change, its frames and its metadata."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
+from io import BytesIO
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.cicp import cicp_tags
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
+from crfnet_core.photograph.orientation import UPRIGHT, Turn
+from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
-from .color import Coding
-from .conversion import bit_depth
-from .index import FrameIndex, read_index
 from .library import ffmpeg_line, opened, undecodable
-from .log_tags import log_curve
-from .timecode import Timecode
 
 if TYPE_CHECKING:
     from av import VideoFrame
     from av.container import InputContainer
     from av.video.stream import VideoStream
+
+#: The time of a frame, in the time base of its stream, and whether it is a key frame.
+Entry: TypeAlias = tuple[int | None, bool]
 
 #: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full.
 JPEG_CODECS = ("mjpeg", "mjpegb")
@@ -33,10 +35,68 @@ JPEG_CODECS = ("mjpeg", "mjpegb")
 #: Codecs as people know them; others by FFmpeg's name.
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
 
+#: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one found counts.
+MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
+MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
+FIRMWARE = ("com.apple.quicktime.software",)
+
+#: Metadata by FFmpeg's names, in lower case -> a text in it -> the log curve that it names.
+LOG_TAGS = {
+    "com.arri.camera.colorgammasxs": {"log-c": "ARRI LogC3"},
+    "com.panasonic.semi-pro.metadata.xml": {"<capturegamma>v-log</capturegamma>": "Panasonic V-Log"},
+}
+
+#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display.
+_IPT_PROFILE = 5
+
+
+@dataclass(frozen=True)
+class Picture:
+    """The form of a frame's samples, which all frames of a movie have in common.
+
+    Parameters
+    ----------
+    width, height : int
+        As stored.
+    samples : str
+        FFmpeg's name of the pixel format.
+    coding : Coding
+        How it codes RGB.
+    turn : Turn
+        How a stored picture becomes upright.
+    is_interlaced : bool
+        Whether a frame holds two fields.
+    """
+
+    width: int
+    height: int
+    samples: str
+    coding: Coding
+    turn: Turn
+    is_interlaced: bool
+
+    @classmethod
+    def from_frame(cls, path: Path, frame: VideoFrame, codec: str) -> Picture:
+        """Return the form of a decoded frame; raise a PlateError if its samples are not read."""
+        coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS)
+        if coding is None:
+            raise undecodable(path, f"pixels of {frame.format.name}, matrix {int(frame.colorspace)} of H.273")
+        return cls(frame.width, frame.height, frame.format.name, coding, _turn(frame), frame.interlaced_frame)
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Width and height of the upright picture."""
+        return (self.height, self.width) if self.turn[0] == 0 else (self.width, self.height)
+
+    def __str__(self) -> str:
+        """Return the form in words."""
+        fields = "interlaced" if self.is_interlaced else "progressive"
+        return f"{self.size[0]} x {self.size[1]}, {self.samples}, {self.coding}, {fields}"
+
 
 @dataclass(frozen=True)
 class MovieStream:
-    """What a movie says of its pictures.
+    """The description of a movie.
 
     Parameters
     ----------
@@ -44,57 +104,68 @@ class MovieStream:
         The movie.
     codec : str
         Name of the codec.
-    width, height : int
-        The picture in pixels, upright.
+    picture : Picture
+        Of its first frame.
     bit_depth : int
         Bits per sample.
-    coding : Coding
-        How it codes RGB.
-    turn : tuple of int
-        How a stored picture becomes upright: see `upright`.
     pixel_aspect : Fraction
         Width of a pixel divided by its height, upright.
     rate : Fraction
         Frames per second, on average; 0 if unknown.
-    timecode : Timecode or None
-        Of the first frame.
-    is_interlaced : bool
-        Whether the frames hold two fields.
     color : ColorTags
         Primaries and transfer function as tagged.
     metadata : mapping of str to str
         Of the file and of its video, by FFmpeg's names in lower case.
-    index : FrameIndex
-        The times of the frames.
+    frame_count : int
+        How many frames it holds.
+    key_numbers : tuple of int
+        Numbers of the frames that are decoded alone, ascending; the first frame of a movie has number 1.
     """
 
     path: Path
     codec: str
-    width: int
-    height: int
+    picture: Picture
     bit_depth: int
-    coding: Coding
-    turn: tuple[int, int, int, int]
     pixel_aspect: Fraction
     rate: Fraction
-    timecode: Timecode | None
-    is_interlaced: bool
     color: ColorTags
     metadata: Mapping[str, str]
-    index: FrameIndex
+    frame_count: int
+    key_numbers: tuple[int, ...]
 
     def __str__(self) -> str:
-        """Return one line for people: what the movie is, and what it does not say."""
-        count, rate = len(self.index.times), f" at {float(self.rate):.6g} per second" if self.rate else ""
+        """Return one line for people: the movie, and the values taken for properties that it does not state."""
+        (width, height), rate = self.picture.size, f" at {float(self.rate):.6g} per second" if self.rate else ""
+        interlaced = "interlaced: its frames mix two moments, so deinterlace it for linear plates"
         parts = [
-            f"{self.codec}, {self.width} x {self.height}, {self.bit_depth} bits, {count} frames{rate}",
-            f"{self.coding.matrix}, {'full' if self.coding.is_full_range else 'limited'} range",
+            f"{self.codec}, {width} x {height}, {self.bit_depth} bits, {self.frame_count} frames{rate}",
+            str(self.picture.coding),
             f"tagged {self.color.transfer}" if self.color.transfer else "",
-            f"timecode {self.timecode}" if self.timecode else "",
-            *(f"the stream {assumption}" for assumption in self.coding.assumptions),
-            "interlaced: its frames mix two moments, so deinterlace it for linear plates" if self.is_interlaced else "",
+            f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
+            *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
+            interlaced if self.picture.is_interlaced else "",
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
+
+    @property
+    def file_metadata(self) -> FileMetadata:
+        """The evidence beside the pixels, as of a photograph's file."""
+        width, height = self.picture.size
+        make, model, software = map(self._text, (MAKES, MODELS, FIRMWARE))
+        return FileMetadata(
+            width=width,
+            height=height,
+            make=make,
+            model=model,
+            software=software,
+            file_format="movie",
+            color=self.color,
+        )
+
+    def _text(self, names: tuple[str, ...]) -> str:
+        """Return the printable characters of the first metadata found."""
+        text = next((self.metadata[name] for name in names if name in self.metadata), "")
+        return "".join(filter(str.isprintable, text[:LONGEST_TEXT])).strip()
 
 
 def check_progressive(movie: MovieStream) -> None:
@@ -105,15 +176,13 @@ def check_progressive(movie: MovieStream) -> None:
     PlateError
         If it is interlaced, with the line by which FFmpeg deinterlaces it.
     """
-    if movie.is_interlaced:
-        raise PlateError(
-            f"{movie.path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
-            f" {ffmpeg_line(movie.path, filters='bwdif=send_frame')} (without -vf, if both fields show the same moment)"
-        )
+    if movie.picture.is_interlaced:
+        line = ffmpeg_line(movie.path, filters="bwdif=send_frame")
+        raise PlateError("movie_interlaced", path=movie.path, line=line)
 
 
 def read_stream(path: Path) -> MovieStream:
-    """Return what a movie says of its pictures; decodes the first frame only.
+    """Return the description of a movie; reads it to its end, but decodes the first frame only.
 
     Raises
     ------
@@ -121,90 +190,121 @@ def read_stream(path: Path) -> MovieStream:
         If PyAV is absent, or the movie is damaged, too large, or codes its pictures in a way that is not read.
     """
     with opened(path) as (container, stream):
-        metadata = _metadata(container, stream)
-        frame = _first_frame(path, container, stream)
-        container.seek(0)
-        try:
-            index = read_index(container, stream)
-        except PlateError as problem:
-            raise undecodable(path, str(problem)) from None
-        return _described(path, stream, frame, metadata, index)
+        context = stream.codec_context
+        if context.width * context.height > MAX_PIXELS:
+            raise PlateError("movie_too_large", path=path, width=context.width, height=context.height)
+        if _dolby_vision_profile(stream) == _IPT_PROFILE:
+            raise PlateError("dolby_vision", path=path, profile=_IPT_PROFILE)
+        packets, frame = _survey(container, stream)
+        if frame is None:
+            raise undecodable(path, "it holds no frame")
+        return _described(path, container, stream, _shown(packets, frame), frame)
+
+
+def video_packets(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
+    """Yield the packets of a stream that belong to shown frames, in the order of the file."""
+    return (packet for packet in container.demux(stream) if packet.size and not packet.is_discard)
+
+
+def decoded_packet(packet: Any) -> list[Any] | None:
+    """Return the frames that a packet completes; None if it is damaged, as FFmpeg passes it over."""
+    import av
+
+    try:
+        return list(packet.decode())
+    except av.FFmpegError:
+        return None
+
+
+def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None]:
+    """Return the time of each frame and whether it is a key frame, in the order of the file, and the first frame."""
+    packets, first = [], None
+    for packet in container.demux(stream):
+        if first is None:
+            first = next(iter(decoded_packet(packet) or ()), None)
+        if packet.size and not packet.is_discard:
+            packets.append((packet.pts, packet.is_keyframe))
+    return packets, first
+
+
+def _shown(packets: Sequence[Entry], first: VideoFrame) -> list[Entry]:
+    """Return the entries without frames at the start that refer to pictures before the first key frame."""
+    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
+    end = keys[1] if len(keys) > 1 else len(packets)
+    return [entry for entry in packets[:end] if not _is_before(entry[0], first.pts)] + list(packets[end:])
+
+
+def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
+    """Return the numbers of the key frames: their places in the file, behind the frames shown before them."""
+    keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
+    return tuple(
+        start + 1 + sum(_is_before(time, packets[start][0]) for time, _ in packets[start:end])
+        for start, end in zip(keys, [*keys[1:], len(packets)], strict=True)
+    )
+
+
+def _is_before(time: int | None, other: int | None) -> bool:
+    """Return whether both times are known and the first is earlier."""
+    return time is not None and other is not None and time < other
 
 
 def _described(
-    path: Path, stream: VideoStream, frame: VideoFrame, metadata: Mapping[str, str], index: FrameIndex
+    path: Path, container: InputContainer, stream: VideoStream, packets: list[Entry], frame: VideoFrame
 ) -> MovieStream:
-    """Return what a stream and its first frame say."""
-    turn, aspect = _turn(frame), stream.sample_aspect_ratio or Fraction(1)
-    is_turned = turn[0] == 0
-    name = stream.codec_context.codec.canonical_name
-    rate = Fraction(stream.average_rate or 0)
+    """Return the description of a movie by its stream, its packets and its first frame."""
+    codec = stream.codec_context.codec.canonical_name
+    parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
+    metadata = {key.lower(): value for part in parts for key, value in part.items()}
+    picture = Picture.from_frame(path, frame, codec)
+    aspect = stream.sample_aspect_ratio or Fraction(1)
     return MovieStream(
         path=path,
-        codec=CODEC_NAMES.get(name, name),
-        width=frame.height if is_turned else frame.width,
-        height=frame.width if is_turned else frame.height,
+        codec=CODEC_NAMES.get(codec, codec),
+        picture=picture,
         bit_depth=bit_depth(frame),
-        coding=_coding(path, frame, name),
-        turn=turn,
-        pixel_aspect=1 / aspect if is_turned else aspect,
-        rate=rate,
-        timecode=Timecode.parse(metadata.get("timecode", ""), rate),
-        is_interlaced=frame.interlaced_frame,
-        color=_color(path, frame, metadata),
+        pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
+        rate=Fraction(stream.average_rate or 0),
+        color=_color(frame, metadata),
         metadata=metadata,
-        index=index,
+        frame_count=len(packets),
+        key_numbers=_key_numbers(packets),
     )
 
 
-def _first_frame(path: Path, container: InputContainer, stream: VideoStream) -> VideoFrame:
-    """Return the first frame, after checking its size."""
-    if stream.codec_context.width * stream.codec_context.height > MAX_PIXELS:
-        raise PlateError(f"{path}: claims {stream.codec_context.width} x {stream.codec_context.height} pixels; crop it")
-    frame = next(container.decode(stream), None)
-    if frame is None:
-        raise undecodable(path, "it holds no frame")
-    return frame
-
-
-def _coding(path: Path, frame: VideoFrame, codec: str) -> Coding:
-    """Return how a frame codes RGB, or refuse what is not read."""
-    form = frame.format
-    is_rgb = form.is_rgb or form.has_palette
-    coding = Coding.of(
-        matrix=frame.colorspace,
-        color_range=frame.color_range,
-        is_rgb=is_rgb,
-        is_gray=not is_rgb and len(form.components) < 3,
-        is_jpeg=codec in JPEG_CODECS,
-        lines=frame.height,
-    )
-    bits = bit_depth(frame)
-    if coding is None or form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
-        raise undecodable(path, f"pixels of {form.name}, matrix {frame.colorspace} of H.273")
-    return coding
-
-
-def _color(path: Path, frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
-    """Return primaries and transfer function as the stream tags them, or else the log curve that its maker names."""
+def _color(frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
+    """Return primaries and transfer function as the stream tags them, or else the log curve that metadata names."""
     tags = cicp_tags((frame.color_primaries, frame.color_trc))
-    if tags.transfer or not (curve := log_curve(path, metadata)):
+    texts = {name: "".join(metadata.get(name, "").lower().split()) for name in LOG_TAGS}
+    curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
+    if tags.transfer or not curves:
         return tags
-    return ColorTags(tags.primaries, curve, " and ".join(filter(None, (tags.source, "the maker's entry"))))
+    return ColorTags(tags.primaries, curves[0], " and ".join(filter(None, (tags.source, "the maker's entry"))))
 
 
-def _turn(frame: VideoFrame) -> tuple[int, int, int, int]:
-    """Return a, b, c, d of the display matrix as -1, 0 or 1; as stored for other angles than quarter turns."""
+def _turn(frame: VideoFrame) -> Turn:
+    """Return the turn of the display matrix; as stored for other angles than quarter turns."""
     matrix: Any = frame.side_data.get("DISPLAYMATRIX")
     if matrix is None:
-        return 1, 0, 0, 1
+        return UPRIGHT
     values = np.frombuffer(matrix, np.int32)[[0, 1, 3, 4]] / 65536
     a, b, c, d = (round(float(value)) for value in values)
     is_quarter = bool(np.allclose(values, (a, b, c, d), atol=0.01)) and abs(a * d - b * c) == 1
-    return (a, b, c, d) if is_quarter else (1, 0, 0, 1)
+    return (a, b, c, d) if is_quarter else UPRIGHT
 
 
-def _metadata(container: InputContainer, stream: VideoStream) -> dict[str, str]:
-    """Return the metadata of all streams, of the file, and of the video, the last of one name winning."""
-    parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
-    return {key.lower(): value for part in parts for key, value in part.items()}
+def _dolby_vision_profile(stream: VideoStream) -> int:
+    """Return the profile of Dolby Vision, or 0: of the box that FFmpeg would write, as PyAV does not give it."""
+    import av
+
+    if stream.codec_context.codec.canonical_name != "hevc":
+        return 0
+    header, options = BytesIO(), {"movflags": "empty_moov", "strict": "unofficial"}
+    try:
+        with av.open(header, "w", format="mp4", options=options) as container:
+            container.add_stream_from_template(stream)
+            container.start_encoding()
+            content = header.getvalue()
+    except (av.FFmpegError, ValueError):
+        return 0
+    at = content.find(b"dvcC")
+    return content[at + 6] >> 1 if at >= 0 else 0

@@ -1,39 +1,19 @@
-"""Tiny movies that FFmpeg makes, and its own frames of them."""
+"""Tiny movies that PyAV writes."""
 
 from __future__ import annotations
 
-import functools
 import shutil
 import subprocess
+from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-#: A test picture that moves, with noise; its chroma changes from pixel to pixel.
-SOURCE = "testsrc2=size=128x96:rate=24:duration={seconds},noise=alls=20:allf=t"
-
-#: Options by which FFmpeg encodes what users have.
-CODECS = {
-    "h264": ("h264.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv420p"),
-    "h264 full range": ("h264_full.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -color_range pc"),
-    "h264 4:2:2": ("h264_422.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv422p"),
-    "hevc": ("hevc.mp4", "-c:v libx265 -preset ultrafast -x265-params log-level=error -pix_fmt yuv420p"),
-    "hevc 10 bits": ("hevc10.mp4", "-c:v libx265 -preset ultrafast -x265-params log-level=error -pix_fmt yuv420p10le"),
-    "prores": ("prores.mov", "-c:v prores_ks -profile:v 3 -pix_fmt yuv422p10le"),
-    "prores 4444": ("prores4444.mov", "-c:v prores_ks -profile:v 4444 -pix_fmt yuv444p10le"),
-    "vp9": ("vp9.webm", "-c:v libvpx-vp9 -deadline realtime -cpu-used 8 -pix_fmt yuv420p"),
-    "av1": ("av1.mp4", "-c:v libaom-av1 -cpu-used 8 -usage realtime -pix_fmt yuv420p"),
-    "av1 10 bits": ("av1_10.mkv", "-c:v libaom-av1 -cpu-used 8 -usage realtime -pix_fmt yuv420p10le"),
-    "motion jpeg": ("mjpeg.mov", "-c:v mjpeg -q:v 2 -pix_fmt yuvj420p"),
-    "uncompressed": ("raw.mov", "-c:v rawvideo -pix_fmt uyvy422 -tag:v 2vuy"),
-    "animation": ("rle.mov", "-c:v qtrle -pix_fmt rgb24"),
-}
-
-
-#: Options by which FFmpeg encodes two fields a frame.
-INTERLACED = "-vf interlace -c:v libx264 -preset ultrafast -flags +ildct+ilme -pix_fmt yuv420p"
+#: Options of an encoder that loses nothing.
+LOSSLESS = {"qp": "0"}
 
 
 def run_ffmpeg(*arguments: object) -> bytes:
@@ -49,27 +29,75 @@ def run_ffmpeg(*arguments: object) -> bytes:
     return done.stdout
 
 
-def make_movie(
-    path: Path, options: str = "-c:v libx264 -preset ultrafast", *, seconds: float = 0.25, source: str = SOURCE
-) -> Path:
-    """Write a movie of a moving test picture, 24 frames per second, and return its path."""
-    run_ffmpeg("-f", "lavfi", "-i", source.format(seconds=seconds), *options.split(), path)
-    return path
-
-
-@functools.cache
-def ffmpeg_frames(
-    path: Path, matrix: str, full: bool, centered: bool, bits: int, size: tuple[int, int], crop: str = "null"
-) -> NDArray[np.integer]:
-    """Return FFmpeg's own frames as RGB codes of `bits`, converted by zimg, shape (frames, H, W, 3)."""
-    form = "gbrp" if bits == 8 else f"gbrp{bits}le"
-    options = (
-        f"matrixin={matrix}:rangein={'full' if full else 'limited'}:matrix=gbr:range=full:filter=bilinear"
-        f":dither=none:chromalin={'center' if centered else 'left'}"
-    )
-    convert = "null" if matrix == "gbr" else f"zscale={options}"
-    filters = f"{crop},{convert},format={form}"
-    raw = run_ffmpeg("-i", path, "-vsync", "passthrough", "-vf", filters, "-f", "rawvideo", "-")
+def pictures(count: int, size: tuple[int, int] = (128, 96)) -> Iterator[NDArray[np.uint8]]:
+    """Yield RGB pictures, shape (H, W, 3): a texture that moves, and frame n has a bar of code 8 n at its top."""
     width, height = size
-    planes = np.frombuffer(raw, np.uint8 if bits == 8 else "<u2").reshape(-1, 3, height, width)  # G, B, R
-    return planes[:, [2, 0, 1]].transpose(0, 2, 3, 1)
+    x, y = np.meshgrid(np.arange(width), np.arange(height))
+    for number in range(1, count + 1):
+        waves = [127 + 110 * np.sin((x + 7 * number) / (9 + k)) * np.cos(y / (11 + 2 * k)) for k in range(3)]
+        picture = np.stack(waves, 2).astype(np.uint8)
+        picture[: height // 8] = 8 * number % 256
+        yield picture
+
+
+def write_movie(
+    path: Path,
+    count: int = 6,
+    *,
+    codec: str = "libx264",
+    form: str = "yuv420p",
+    size: tuple[int, int] = (128, 96),
+    options: Mapping[str, str] | None = None,
+    tags: Mapping[str, int] | None = None,
+    metadata: Mapping[str, str] | None = None,
+    images: Any = None,
+    times: Any = None,
+    is_interlaced: bool = False,
+    muxer: Mapping[str, str] | None = None,
+    **stream_attributes: Any,
+) -> Path:
+    """Write a movie of 24 frames per second and return its path.
+
+    Parameters
+    ----------
+    path : Path
+        Its suffix names the container.
+    count : int
+        How many frames it has.
+    codec, form, size, options
+        The encoder with its options, the pixel format and the size.
+    tags : mapping
+        Attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
+    metadata : mapping
+        Of the file.
+    images : iterable of ndarray, uint8, shape (H, W, 3)
+        The pictures; `pictures` by default.
+    times : iterable of int
+        The times of the frames in 1/24 second; consecutive by default.
+    is_interlaced : bool
+        Whether the frames are encoded as two fields.
+    muxer, stream_attributes
+        Options of the container; attributes of the stream.
+    """
+    av = pytest.importorskip("av", reason="needs PyAV: the extra video")
+    if codec not in av.codecs_available:
+        pytest.skip(f"needs a PyAV with {codec}")
+    options = {"preset": "ultrafast", **(options or {})} if codec.startswith("libx26") else dict(options or {})
+    if codec == "libx265":
+        options = {"x265-params": "log-level=error", **options}
+    with av.open(str(path), "w", options=dict(muxer or {})) as container:
+        container.metadata.update(metadata or {})
+        stream = container.add_stream(codec, rate=24, options=options)
+        stream.width, stream.height, stream.pix_fmt = *size, form
+        for name, value in {**(tags or {}), **({"flags": 1 << 18 | 1 << 29} if is_interlaced else {})}.items():
+            setattr(stream.codec_context, name, value)
+        for name, value in stream_attributes.items():
+            setattr(stream, name, value)
+        color = {f"dst_{name}": value for name, value in (tags or {}).items() if name in ("color_range", "colorspace")}
+        images = pictures(count, size) if images is None else images
+        for time, image in zip(range(count) if times is None else times, images, strict=False):
+            frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form, **color)
+            frame.pts = time
+            container.mux(stream.encode(frame))
+        container.mux(stream.encode())
+    return path

@@ -7,7 +7,6 @@ header_checks    what a header must say: size, depth, colour
 jpeg_files       JPEG: checks before decoding, and the standard image of one with a gain map
 png_files        PNG: what its chunks say of colours
 heif             HEIC and AVIF, which OpenImageIO's wheel cannot read
-heif_boxes       what the boxes of such a file say of its picture: colour, depth, gain map
 problems         the errors of files that cannot be decoded
 """
 

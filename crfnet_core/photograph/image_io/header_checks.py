@@ -15,6 +15,9 @@ MAX_PIXELS = 250_000_000
 RAW_PHOTOMETRIC, PALETTE_PHOTOMETRIC = (32803, 34892), 3
 OTHER_PHOTOMETRIC = {5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
+#: The profile that libjxl makes for pixels that it has decoded to linear light.
+LINEAR_JXL_PROFILE = "RGB_D65_SRG_Rel_Lin"
+
 
 def check_size(path: Path, width: int, height: int) -> None:
     """Refuse a picture of more than `MAX_PIXELS`."""
@@ -45,6 +48,13 @@ def checked_bit_depth(path: Path, header: Any) -> int:
     if not stored or bits < 8:
         raise PhotoError(f"{path}: holds {bits}-bit {sample} samples; needs 8 to 16 bits, unsigned: convert it")
     return bits if bits in (8, 10, 12) else 16
+
+
+def check_is_encoded(path: Path, header: Any, kind: str) -> None:
+    """Refuse a lossy JPEG XL whose ICC profile libjxl cannot name: libjxl decodes it to linear light."""
+    profile = header.get_string_attribute("ICCProfile:profile_description")
+    if kind == "JPEG XL" and profile == LINEAR_JXL_PROFILE:
+        raise PhotoError("jxl_linear", path=path)
 
 
 def _check_color(path: Path, header: Any) -> None:

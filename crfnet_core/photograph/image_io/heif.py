@@ -1,14 +1,16 @@
 """Read HEIC and AVIF, for which OpenImageIO's wheel has no reader.
 
-HEIC is decoded by pi-heif, and AVIF of 8 bits by Pillow, on which pi-heif builds. Pillow has no more than 8 bits, so
-AVIF of 10 and 12 bits is decoded by PyAV, which is an optional dependency.
+HEIC is decoded by pi-heif, and AVIF of 8 bits by Pillow. Both stop at 8 bits of AVIF, so AVIF of 10 and 12 bits is
+decoded by PyAV, which is an optional dependency.
 """
 
 from __future__ import annotations
 
+import re
 import tempfile
 import warnings
 from collections.abc import Mapping
+from contextlib import suppress
 from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -20,30 +22,28 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.header_checks import check_size
-from crfnet_core.photograph.image_io.heif_boxes import HeifProperties, heif_properties
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
-from crfnet_core.photograph.photo import CodeValues
+from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
+from crfnet_core.photograph.photo import CodeArray, CodeValues
+from crfnet_core.photograph.yuv import Coding, rgb_codes
 
-#: EXIF's Orientation, and how each turns the rows and columns as stored: transposed?, rows reversed?, columns reversed?
+#: EXIF's Orientation.
 _ORIENTATION = 0x0112
-_TURNS = {
-    2: (False, False, True),
-    3: (False, True, True),
-    4: (False, True, False),
-    5: (True, False, False),
-    6: (True, False, True),
-    7: (True, True, True),
-    8: (True, True, False),
-}
 
 #: Metadata, as pi-heif and Pillow name it.
 _SEGMENTS = ("exif", "xmp", "icc_profile")
 
-#: What the decoders raise for damaged files.
+#: Errors of the decoders for damaged files.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
 
-#: Bytes at the start of a file that hold the boxes which describe the main picture.
+#: Bytes at the start of a file in which the boxes `ftyp` and `meta` are looked for (ISO/IEC 14496-12).
 _HEAD_BYTES = 1 << 20
+
+#: Marks of a gain map: Apple's auxiliary picture, and the item and brand of ISO 21496-1.
+_GAIN_MAPS = (b"urn:com:apple:photo:2020:aux:hdrgainmap", b"tmap")
+
+#: The fields of CICP, as pi-heif names them.
+_CICP = ("color_primaries", "transfer_characteristics", "matrix_coefficients", "full_range_flag")
 
 
 @dataclass(frozen=True)
@@ -74,26 +74,50 @@ def read_heif(path: Path, kind: str) -> CodeValues:
     PhotoError
         If the file is damaged or too large, or the library that decodes it is not installed.
     """
-    with path.open("rb") as file:
-        properties = heif_properties(file.read(_HEAD_BYTES))
-    check_size(path, properties.width, properties.height)
-    if not properties.has_named_items:
+    boxes = _boxes(path)
+    if not _has_named_items(boxes):
         raise problems.damaged(path, kind, "the type of an item is no text")
     try:
-        picture = _heic(path) if kind == "HEIC" else _avif(path, properties.bit_depth)
+        import pi_heif
+
+        main = None
+        with suppress(*_DAMAGE if kind == "AVIF" else ()):  # Pillow also reads AVIF that pi-heif does not
+            main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
+            check_size(path, *main.size)
+        info = main.info if main else {}
+        picture = _heic(main) if kind == "HEIC" else _avif(path, info.get("bit_depth", 8))
     except ImportError as problem:
-        raise PhotoError(f"{path}: {kind} needs the package {problem.name}; pip install 'pi-heif' 'pillow'") from None
+        raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
         raise problems.damaged(path, kind, str(problem)) from None
-    return _code_values(picture, kind, properties)
+    nclx = info.get("nclx_profile")
+    cicp = tuple(int(nclx[name]) for name in _CICP) if nclx else ()
+    return _code_values(picture, kind, cicp, has_gain_map=any(mark in boxes for mark in _GAIN_MAPS))
 
 
-def _heic(path: Path) -> _Picture:
+def _boxes(path: Path) -> bytes:
+    """Return the boxes `ftyp` and `meta`; where the second is not found, the first alone."""
+    with path.open("rb") as file:
+        head = file.read(_HEAD_BYTES)
+    files = head[: int.from_bytes(head[:4])]
+    start = max(0, head.find(b"meta", len(files)) - 4)
+    return files + (head[start : start + int.from_bytes(head[start : start + 4])] if start else b"")
+
+
+def _has_named_items(boxes: bytes) -> bool:
+    """Return whether the types and names of all items (`infe`) are UTF-8; pi-heif 1.4 ends the process at others."""
+    for match in re.finditer(b"infe", boxes):
+        end = match.start() - 4 + int.from_bytes(boxes[match.start() - 4 : match.start()])
+        entry = boxes[match.end() : end]
+        try:
+            entry[10 if entry[:1] > b"\2" else 8 :].decode()  # behind the version, the flags and the numbers
+        except UnicodeDecodeError:
+            return False
+    return True
+
+
+def _heic(main: Any) -> _Picture:
     """Return the picture of a HEIC file; libheif turns it upright."""
-    import pi_heif
-
-    main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
-    check_size(path, *main.size)
     samples, info = np.array(main), main.info  # a copy: its memory goes with `main`
     bit_depth = 8 if samples.dtype == np.uint8 else info["bit_depth"]
     if bit_depth > 8:
@@ -113,15 +137,12 @@ def _avif(path: Path, bit_depth: int) -> _Picture:
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # `check_size` has its own limit
         with Image.open(path, formats=["AVIF"]) as image:
-            exif = image.getexif()
-            orientation = exif.get(_ORIENTATION, 1)
+            check_size(path, *image.size)
+            exif, info = Image.Exif(), dict(image.info)
+            exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
             samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
-            info = dict(image.info)
-    return _Picture(
-        samples=_upright(np.atleast_3d(samples), orientation),
-        bit_depth=max(8, bit_depth),
-        segments=_segments(info),
-    )
+    turn = EXIF_TURNS.get(exif.get(_ORIENTATION, 1), UPRIGHT)
+    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), _segments(info))
 
 
 def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
@@ -129,46 +150,35 @@ def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
     return {name: info[name] for name in _SEGMENTS if info.get(name)}
 
 
-def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> NDArray[np.uint16]:
-    """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV."""
+def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
+    """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
+
+    Matrix and range are those of the file's box, which FFmpeg puts into the stream; a frame has those of its header.
+    """
     try:
         import av
     except ImportError:
-        raise PhotoError(
-            f"{path}: AVIF of {bit_depth} bits needs PyAV: pip install 'av', or save it as 16-bit PNG"
-        ) from None
-    with av.open(str(path)) as container:
+        raise PhotoError("deep_avif_package_missing", path=path, bits=bit_depth) from None
+    with av.open(str(path), metadata_errors="replace") as container:
+        context = container.streams.video[0].codec_context
+        nclx = (int(context.colorspace), int(context.color_range) == 2) if context.color_range else None
         frame = next(container.decode(video=0))
     if (frame.width, frame.height) != size:
-        raise PhotoError(f"{path}: AVIF of {bit_depth} bits in tiles cannot be read; save it as 16-bit PNG")
-    return _rgb_codes(frame, bit_depth)
+        raise PhotoError("deep_avif_tiles", path=path, bits=bit_depth)
+    coding = Coding.from_frame(frame, is_still=True, nclx=nclx)
+    if coding is None:
+        raise PhotoError("deep_avif_coding", path=path, samples=frame.format.name, matrix=int(frame.colorspace))
+    return rgb_codes(frame, coding, 2**bit_depth - 1)
 
 
-def _rgb_codes(frame: Any, bit_depth: int) -> NDArray[np.uint16]:
-    """Return the RGB codes of a decoded frame, shape (H, W, 3): its own matrix and range, full range in the result."""
-    rgb = frame.reformat(
-        format="rgb48le", src_colorspace=frame.colorspace, src_color_range=frame.color_range, dst_color_range="JPEG"
-    )
-    wide = rgb.to_ndarray().astype(np.float32)
-    codes: NDArray[np.uint16] = np.rint(wide * np.float32((2**bit_depth - 1) / 65535)).astype(np.uint16)
-    return codes
-
-
-def _upright(samples: NDArray[Any], orientation: int) -> NDArray[Any]:
-    """Return samples (H, W, C) turned as an EXIF orientation says."""
-    is_transposed, are_rows, are_columns = _TURNS.get(orientation, (False, False, False))
-    turned = samples.swapaxes(0, 1) if is_transposed else samples
-    return np.ascontiguousarray(turned[:: -1 if are_rows else 1, :: -1 if are_columns else 1])
-
-
-def _code_values(picture: _Picture, kind: str, properties: HeifProperties) -> CodeValues:
+def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gain_map: bool) -> CodeValues:
     """Return the samples as three channels and alpha, with a header as OpenImageIO would give it."""
     samples, channels = picture.samples, picture.samples.shape[2]
-    header = _header(picture, properties)
+    header = _header(picture, cicp)
     has_alpha = channels in (2, 4)
     is_associated = picture.is_associated and has_alpha
     alpha = ("multiplied" if is_associated else "straight") if has_alpha else ""
-    metadata = replace(metadata_of_header(header, kind), has_gain_map=properties.has_gain_map, alpha=alpha)
+    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map, alpha=alpha)
     return CodeValues(
         codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
         alpha=samples[..., -1] if has_alpha else None,
@@ -179,17 +189,20 @@ def _code_values(picture: _Picture, kind: str, properties: HeifProperties) -> Co
     )
 
 
-def _header(picture: _Picture, properties: HeifProperties) -> Any:
+def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
     for attribute in _segment_attributes(picture):
         if not attribute.name.startswith(("jpeg:", "oiio:")):
-            header.attribute(attribute.name, attribute.type, attribute.value)
+            value = attribute.value
+            if isinstance(value, str):  # EXIF may hold other bytes than UTF-8, which OpenImageIO gives as surrogates
+                value = value.encode(errors="replace").decode()
+            header.attribute(attribute.name, attribute.type, value)
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
-    if properties.cicp is not None:
-        header.attribute("CICP", oiio.TypeDesc("int[4]"), properties.cicp)
+    if cicp:
+        header.attribute("CICP", oiio.TypeDesc("int[4]"), cicp)
     return header
 
 

@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import file_kind
-from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
+from crfnet_core.photograph.image_io.header_checks import check_is_encoded, checked_bit_depth
 from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jpeg_files import base_image, checked_jpeg_header
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
@@ -78,6 +78,7 @@ def read_metadata(path: str | Path) -> FileMetadata:
             if _has_gain_map(header, kind):
                 return _read_base_image(path).metadata
             checked_bit_depth(path, header)
+            check_is_encoded(path, header, kind)
             return metadata_of_header(header, kind, jpeg)
 
 
@@ -126,6 +127,7 @@ def _read(path: Path, kind: str) -> CodeValues:
         if _has_gain_map(header, kind):
             return _read_base_image(path)
         bit_depth = checked_bit_depth(path, header)
+        check_is_encoded(path, header, kind)
         values = _samples(source, header)
         problem = problems.oiio_message(source)
     if values is None or problem:

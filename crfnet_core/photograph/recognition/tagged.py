@@ -9,8 +9,6 @@ from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
 
 #: Encoding by the name that tags give it -> colour space of OpenColorIO's ACES studio config.
 TAGGED_SPACES = COLOR_SPACES | {
-    "Apple Log 2": "Apple Log 2",
-    "Sony S-Log3 in S-Gamut3": "S-Log3 S-Gamut3",
     "HLG": "Rec.2100-HLG - Display",
     "PQ": "Rec.2100-PQ - Display",
 }

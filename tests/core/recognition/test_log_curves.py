@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet.movies import log_tags
+from crfnet.movies.stream import LOG_TAGS
 from crfnet_core.photograph.metadata import cicp
 from crfnet_core.photograph.recognition import COLOR_SPACES, log_curves
 from crfnet_core.photograph.recognition.tagged import TAGGED_SPACES
@@ -81,8 +81,9 @@ def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
     ocio = pytest.importorskip("PyOpenColorIO")
     names = set(ocio.Config.CreateFromFile("ocio://studio-config-latest").getColorSpaceNames())
     assert set(TAGGED_SPACES.values()) <= names
-    assert set(TAGGED_SPACES) <= {*log_curves(), *cicp.TRANSFERS.values(), *log_tags.TEXTS.values()}
-    assert {*log_tags.TEXTS.values(), log_tags.ARRI_CURVE} <= {*log_curves(), *TAGGED_SPACES}
+    curves = {curve for marks in LOG_TAGS.values() for curve in marks.values()}
+    assert set(TAGGED_SPACES) <= {*log_curves(), *cicp.TRANSFERS.values(), *curves}
+    assert curves <= {*log_curves(), *TAGGED_SPACES}
 
 
 @pytest.mark.parametrize("name", log_curves())

@@ -7,7 +7,7 @@ import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
 from tests.helpers.folders import listed
-from tests.helpers.movies import make_movie
+from tests.helpers.movies import write_movie
 
 
 @pytest.fixture
@@ -53,8 +53,7 @@ def test_a_pattern_may_name_its_frames(estimated, shot):
 
 def test_frames_of_a_movie_are_chosen(estimated, tmp_path):
     pytest.importorskip("av", reason="needs PyAV: the extra video")
-    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
-    movie = make_movie(tmp_path / "clip.mp4", "-c:v libx264 -preset ultrafast -g 1", seconds=1, source=source)
+    movie = write_movie(tmp_path / "clip.mp4", 24, size=(320, 240), options={"g": "1"})
     found = estimated(movie, "--frames", "10-12")
     assert set(found) <= {f"clip.mp4 frame {number}" for number in (10, 11, 12)}
     assert found

@@ -14,10 +14,10 @@ import pytest
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.configs.files import load_config
 from crfnet.luts.files import read_lut
-from crfnet.movies import decoding
+from crfnet.movies.frames import WHITE, MovieFrames
 from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed, tree
-from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
+from tests.helpers.movies import run_ffmpeg, write_movie
 from tests.helpers.plates import read_exr
 from tests.helpers.processes import start_interruptible
 
@@ -34,11 +34,9 @@ def av():
 
 @pytest.fixture(scope="module")
 def movie(tmp_path_factory):
-    """24 frames of 320 x 240, large enough for windows, with a timecode."""
+    """24 frames of 320 x 240, large enough for windows."""
     path = tmp_path_factory.mktemp("movie") / "clip.mp4"
-    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
-    options = "-c:v libx264 -preset ultrafast -g 6 -pix_fmt yuv420p -timecode 01:00:00:00"
-    return make_movie(path, options, seconds=1, source=source)
+    return write_movie(path, 24, size=(320, 240), options={"g": "6"})
 
 
 @pytest.fixture
@@ -55,24 +53,9 @@ def test_every_frame_becomes_a_linear_plate(linearize, movie, look, tmp_path):
     assert done.out.startswith("clip.mp4: H.264, 320 x 240, 8 bits, 24 frames at 24 per second; BT.601, limited range")
     assert listed(tmp_path / "linear") == [f"l.{number:04d}.exr" for number in range(1, 25)]
     pixels, header = read_exr(tmp_path / "linear" / "l.0013.exr")
-    assert header.get_string_attribute("smpte:TimeCode") == "01:00:00:12"
     assert header.getattribute("FramesPerSecond") == (24, 1)
-    run_ffmpeg(
-        "-i",
-        movie,
-        "-vf",
-        "zscale=matrixin=170m:rangein=limited:matrix=gbr:range=full:filter=bilinear:dither=none,format=gbrp",
-        tmp_path / "f.%04d.png",
-    )
-    photo = read_photo(tmp_path / "f.0013.png")
-    codes = np.stack(
-        [
-            np.interp(pixels[..., channel], read_lut(look / "plate.spi1d").values, np.linspace(0, 255, 4081))
-            for channel in range(3)
-        ],
-        2,
-    )
-    assert np.abs(codes - photo.pixels * 255).max() <= 1
+    samples = next(MovieFrames.find(movie, "13").loaders([0]))().samples / WHITE
+    np.testing.assert_allclose(pixels, read_lut(look / "plate.spi1d").apply(samples), rtol=1e-5, atol=1e-6)
 
 
 @needs_av
@@ -84,23 +67,13 @@ def test_some_frames_become_linear_plates(linearize, tmp_path):
 
 
 @needs_av
-def test_a_run_goes_on_without_decoding_everything_again(linearize, tmp_path, monkeypatch):
+def test_a_run_goes_on_where_it_was_interrupted(linearize, tmp_path):
     linearize()
     complete = tree(tmp_path / "linear")
     for number in (22, 23):
         (tmp_path / "linear" / f"l.{number:04d}.exr").unlink()
-    seen = []
-
-    def watched(*arguments):
-        for number, frame in actual(*arguments):
-            seen.append(number)
-            yield number, frame
-
-    actual = decoding._decoded_from
-    monkeypatch.setattr(decoding, "_decoded_from", watched)
     assert len(json.loads(linearize("--json").out)["skipped"]) == 22
     assert tree(tmp_path / "linear") == complete
-    assert not set(seen) & set(range(2, 19)), "the first frame, for its tags, and the last group of pictures"
 
 
 @needs_av
@@ -114,8 +87,7 @@ def test_finished_frames_are_replaced_when_asked(linearize, tmp_path):
 @needs_av
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_an_interrupted_run_leaves_whole_frames(look, tmp_path):
-    source = "testsrc2=size=640x480:rate=24:duration={seconds}"
-    movie = make_movie(tmp_path / "a.mp4", "-c:v libx264 -preset ultrafast -pix_fmt yuv420p", seconds=4, source=source)
+    movie = write_movie(tmp_path / "a.mp4", 96, size=(640, 480))
     out = tmp_path / "linear"
     arguments = [
         sys.executable,
@@ -145,7 +117,7 @@ def test_without_a_lut_the_response_is_estimated_from_the_movie(crfnet, fixed_mo
     arguments = ("linearize", movie, "--out", tmp_path / "l.%04d.exr", "--model", fixed_model, "--frames", "1-12")
     done = crfnet(*arguments)
     assert done.code == 0
-    assert "Response estimated from clip.mp4 frame 1 and " in done.out
+    assert "Response estimated from clip.mp4 frame 2 and " in done.out
     assert len(listed(tmp_path)) == 12
 
 
@@ -154,14 +126,14 @@ def test_an_estimate_of_a_movie(crfnet, fixed_model, movie, tmp_path):
     done = crfnet("estimate", movie, "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
     assert done.code == 0
     assert "clip.mp4: H.264" in done.out
-    assert "clip.mp4 frame 1: 320 x 240, 8 bits" in done.out
+    assert "clip.mp4 frame 2: 320 x 240, 8 bits" in done.out
     assert "file metadata used: the file names no camera, a frame of a movie" in done.out
-    assert "The linear plate is frame 1; the whole movie, with the LUT:" in done.out
+    assert "The linear plate is frame 2; the whole movie, with the LUT:" in done.out
     names = {"clip.spi1d", "clip.cube", "clip.clf", "config.ocio", "clip_linear.exr", "clip.json"}
     assert set(listed(tmp_path / "look")) == names
     found = json.loads((tmp_path / "look" / "clip.json").read_text())
     assert found["movies"][0].startswith("clip.mp4: H.264")
-    first = {"name": "clip.mp4 frame 1", "width": 320, "height": 240, "bit_depth": 8, "has_gain_map": False}
+    first = {"name": "clip.mp4 frame 2", "width": 320, "height": 240, "bit_depth": 8, "has_gain_map": False}
     assert found["photographs"][0] == first
     assert read_exr(tmp_path / "look" / "clip_linear.exr")[0].shape == (240, 320, 3)
 
@@ -206,8 +178,8 @@ def test_without_pyav_it_says_what_to_do(crfnet, look, movie, tmp_path, monkeypa
 @pytest.mark.parametrize(
     ("more", "message"),
     [
-        (("--frames", "100-200"), "there are 1-24; check the frames"),
-        (("--frames", "0"), "there are 1-24; check the frames"),
+        (("--frames", "100-200"), "there are 1-24; check the name and the frames"),
+        (("--frames", "0"), "there are 1-24; check the name and the frames"),
         (("--frames", "x"), "frames 'x'"),
         (("--out", "a.exr"), "one name for 24 frames"),
     ],
@@ -222,9 +194,7 @@ def test_bad_frames_are_refused_in_one_line(linearize, tmp_path, monkeypatch, mo
 
 @needs_av
 def test_log_footage_is_refused_with_its_color_space(crfnet, movie, tmp_path):
-    options = "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -color_trc smpte2084"
-    source = "testsrc2=size=320x240:rate=24:duration={seconds}"
-    path = make_movie(tmp_path / "hdr.mp4", options, source=source)
+    path = write_movie(tmp_path / "hdr.mp4", size=(320, 240), tags={"color_trc": 16})
     for arguments in (("estimate", path, "--out", tmp_path / "out"), ("linearize", path, "--out", tmp_path / "%d.exr")):
         done = crfnet(*arguments)
         assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
@@ -249,13 +219,13 @@ def test_an_interlaced_movie_is_estimated_from_but_linearized_after_deinterlacin
     crfnet, fixed_model, look, tmp_path, monkeypatch
 ):
     monkeypatch.chdir(tmp_path)
-    make_movie(tmp_path / "clip.mp4", INTERLACED, source="testsrc2=size=320x240:rate=24:duration={seconds}")
+    write_movie(tmp_path / "clip.mp4", 24, size=(320, 240), is_interlaced=True)
     done = crfnet("estimate", "clip.mp4", "--out", "look", "--model", fixed_model, "--no-sheet")
     assert (done.code, "; interlaced: its frames mix two moments" in done.out) == (0, True)
     done = crfnet("linearize", "clip.mp4", "--lut", look / "plate.spi1d", "--out", "linear/clip.%04d.exr")
     assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
     assert "clip.mp4: is interlaced" in done.err
-    run_ffmpeg(*shlex.split(re.search(r"ffmpeg (-i .*\.png) \(without", done.err)[1]))
+    run_ffmpeg(*shlex.split(re.search(r"ffmpeg (-i .*\.png) \(leave", done.err)[1]))
     frames = listed(tmp_path)
     assert {"clip.0001.png", "clip.0003.png"} <= set(frames)
     done = crfnet("linearize", "clip.%04d.png", "--lut", look / "plate.spi1d", "--out", "linear/clip.%04d.exr")

@@ -1,5 +1,6 @@
 """The frames from which a response is estimated."""
 
+import numpy as np
 import pytest
 
 from crfnet.defaults import FRAMES_ANALYZED, PRIORS
@@ -10,53 +11,49 @@ from crfnet.pipeline import estimate_photographs
 from crfnet_core.errors import PhotoError
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
-from tests.helpers.movies import SOURCE, make_movie
+from tests.helpers.movies import pictures, write_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
 
-H264 = "-c:v libx264 -preset ultrafast -pix_fmt yuv420p -g 6"
+KEYS = {"options": {"g": "6"}}
 
 
 def chosen(path, frames=None):
     return [number for number, _ in chosen_photos(MovieFrames.find(path, frames))]
 
 
-def test_frames_are_spread_over_the_movie(tmp_path):
-    numbers = chosen(make_movie(tmp_path / "a.mp4", H264, seconds=4))
+def test_frames_are_key_frames_spread_over_the_movie(tmp_path):
+    numbers = chosen(write_movie(tmp_path / "a.mp4", 96, **KEYS))
     assert len(numbers) == FRAMES_ANALYZED
-    assert numbers == sorted(set(numbers))
-    assert all((number - 1) // 12 == part for part, number in enumerate(numbers)), "one in each eighth of 96"
-    assert all(number % 6 == 1 for number in numbers), "key frames"
+    assert [(number - 1) // 12 for number in numbers] == list(range(8)), "one in each eighth"
+    assert all(number % 6 == 1 for number in numbers)
 
 
 def test_frames_are_chosen_of_those_asked_for(tmp_path):
-    path = make_movie(tmp_path / "a.mp4", H264, seconds=4)
+    path = write_movie(tmp_path / "a.mp4", 48, **KEYS)
     assert set(chosen(path, "20-40x3")) <= set(range(20, 41, 3))
-    assert chosen(path, "7") == [7]
+    assert chosen(path, "8") == [8]
 
 
-def test_black_and_white_frames_are_passed_over(tmp_path):
-    source = "testsrc2=size=128x96:rate=24:duration={seconds}"
-    source += ",drawbox=t=fill:color=black:enable='lt(n,48)',drawbox=t=fill:color=white:enable='between(n,48,71)'"
-    numbers = chosen(make_movie(tmp_path / "a.mp4", H264, seconds=4, source=source))
-    assert numbers
-    assert min(numbers) > 72
-
-
-def test_a_picture_that_stands_still_is_taken_once(tmp_path):
-    source = "testsrc2=size=128x96:rate=24:duration={seconds},loop=loop=-1:size=1:start=0"
-    numbers = chosen(make_movie(tmp_path / "a.mp4", f"{H264} -frames:v 96", seconds=1, source=source))
-    assert len(numbers) == 1
+@pytest.mark.parametrize(("count", "is_still"), [(96, False), (24, True)])
+def test_black_and_white_and_repeated_frames_are_passed_over(tmp_path, count, is_still):
+    images = [
+        np.full_like(image, 255 * (n > count // 4)) if n < count // 2 else image
+        for n, image in enumerate(pictures(count))
+    ]
+    if is_still:
+        images = [images[-1]] * count
+    numbers = chosen(write_movie(tmp_path / "a.mp4", count, images=images, options={"g": "1"}))
+    assert len(numbers) == 1 if is_still else min(numbers) > count // 2
 
 
 def test_a_black_movie_gives_its_frames_all_the_same(tmp_path):
-    path = make_movie(tmp_path / "a.mp4", H264, source="color=black:size=128x96:rate=24:duration={seconds}")
-    assert chosen(path) == [1, 2, 3, 4, 5, 6]
+    assert chosen(write_movie(tmp_path / "a.mp4", images=[np.zeros((96, 128, 3), np.uint8)] * 6)) == [1, 2, 3, 4, 5, 6]
 
 
 def test_frames_have_names_bits_and_metadata(tmp_path):
-    options = "-c:v libx265 -preset ultrafast -x265-params log-level=error -pix_fmt yuv420p10le"
-    number, photo = next(iter(chosen_photos(MovieFrames.find(make_movie(tmp_path / "a.mp4", options)))))
+    path = write_movie(tmp_path / "a.mp4", codec="libx265", form="yuv420p10le")
+    number, photo = next(iter(chosen_photos(MovieFrames.find(path))))
     assert photo.path.name == f"a.mp4 frame {number}"
     assert photo.bit_depth == 10
     assert (photo.metadata.width, photo.metadata.height) == (128, 96)
@@ -65,11 +62,8 @@ def test_frames_have_names_bits_and_metadata(tmp_path):
 
 
 def test_a_published_curve_is_answered_with_its_color_space_unless_metadata_is_ignored(tmp_path, fixed_model):
-    path = make_movie(tmp_path / "a.mp4", f"{H264} -color_trc arib-std-b67", source=SOURCE.replace("128x96", "320x240"))
+    path = write_movie(tmp_path / "a.mp4", size=(320, 240), tags={"color_trc": 18})
     network, prior = ResponseNetwork.load(fixed_model), Prior.load(PRIORS[0])
-    with pytest.raises(PhotoError) as told:
+    with pytest.raises(PhotoError, match="HLG"):
         estimate_photographs([path], network, prior, EstimateOptions())
-    message = str(told.value)
-    assert message.startswith(f"{path} frame 1: is encoded as HLG: so says its metadata (CICP)")
-    assert 'in ACES configs "Rec.2100-HLG - Display"' in message
     assert estimate_photographs([path], network, prior, EstimateOptions(use_metadata=False)).movies

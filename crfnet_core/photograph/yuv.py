@@ -1,12 +1,13 @@
-"""YUV to RGB (ITU-T H.273, 8.3): exact to half a code, chroma interpolated linearly at its place.
+"""YUV to RGB (ITU-T H.273, 8.3) for movies and AVIF: exact to half a code, chroma interpolated linearly at its place.
 
-FFmpeg's own scaler is as exact for 8 bits only: with 10 bits it is up to 3.5 codes off, and it takes chroma of 4:2:2
-to lie between the luma samples, which video's does not.
+FFmpeg's scaler is as exact for 8 bits only: with 10 bits it is up to 3.5 codes off, it garbles 4:2:0 of odd width, it
+leaves gray in limited range, and it places chroma of 4:2:2 between the luma samples.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -15,16 +16,109 @@ from numpy.typing import NDArray
 from crfnet_core.photograph.photo import CodeArray
 from crfnet_core.types import Float32Array
 
-from .color import Coding
-
 if TYPE_CHECKING:
     from av import VideoFrame
+
+#: H.273 MatrixCoefficients -> name, and the weights of red and blue in luma.
+MATRICES = {
+    1: ("BT.709", 0.2126, 0.0722),
+    4: ("FCC", 0.30, 0.11),
+    5: ("BT.601", 0.299, 0.114),
+    6: ("BT.601", 0.299, 0.114),
+    7: ("SMPTE 240M", 0.212, 0.087),
+    9: ("BT.2020", 0.2627, 0.0593),
+}
+
+#: MatrixCoefficients of RGB, and of a stream that does not say.
+_RGB, _UNSPECIFIED = 0, 2
+
+#: AVColorRange: full, where black is code 0 and white the largest.
+_FULL_RANGE = 2
+
+#: Lines from which an untagged video is taken to have the matrix of BT.709, below it BT.601.
+HD_LINES = 720
 
 #: Rows converted at a time, which keeps the memory for intermediate values small.
 _ROWS = 64
 
 #: Chroma subsampling, horizontal and vertical -> FFmpeg's name.
 _SUBSAMPLING = {(1, 1): "444", (2, 1): "422", (2, 2): "420", (4, 1): "411", (1, 2): "440"}
+
+
+@dataclass(frozen=True)
+class Coding:
+    """How a frame codes RGB.
+
+    Parameters
+    ----------
+    matrix : str
+        Name of the matrix; "RGB" if the frame holds RGB or gray.
+    red, blue : float
+        Weights of red and blue in luma (K_R and K_B of H.273, 8.3).
+    is_full_range : bool
+        Whether black is code 0 and white the largest; otherwise 16 and 235, times 2 ** (bits - 8).
+    is_centered : bool
+        Whether chroma samples lie between luma samples horizontally, as in still pictures, or on them, as in video.
+    assumptions : tuple of str
+        Properties that the frame does not state, and the value taken instead, in words.
+    """
+
+    matrix: str
+    red: float
+    blue: float
+    is_full_range: bool
+    is_centered: bool
+    assumptions: tuple[str, ...] = ()
+
+    def __str__(self) -> str:
+        """Return matrix and range in words."""
+        return f"{self.matrix}, {'full' if self.is_full_range else 'limited'} range"
+
+    @classmethod
+    def from_frame(cls, frame: VideoFrame, *, is_still: bool, nclx: tuple[int, bool] | None = None) -> Coding | None:
+        """Return the coding of a decoded frame; None if its matrix or its samples are not read.
+
+        Parameters
+        ----------
+        frame : av.VideoFrame
+            As decoded.
+        is_still : bool
+            Whether it is a still picture (JPEG or AVIF), for which untagged means BT.601 in full range.
+        nclx : (int, bool), optional
+            Matrix and full range flag of the container, which override the frame's.
+        """
+        form, bits = frame.format, bit_depth(frame)
+        if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
+            return None
+        if form.is_rgb or form.has_palette:
+            return cls("RGB", 0.0, 0.0, is_full_range=True, is_centered=False)
+        matrix, color_range = int(frame.colorspace), int(frame.color_range)
+        if nclx:
+            matrix, color_range = nclx[0], _FULL_RANGE if nclx[1] else 1
+        if len(form.components) < 3:
+            return cls._gray(color_range, is_still=is_still)
+        return cls._yuv(matrix, color_range, frame.height, is_still=is_still)
+
+    @classmethod
+    def _gray(cls, color_range: int, *, is_still: bool) -> Coding:
+        """Return the coding of gray, which has no matrix; untagged it is full range, as FFmpeg takes it."""
+        is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
+        assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()
+        return cls("RGB", 0.0, 0.0, is_full_range=is_full, is_centered=False, assumptions=assumptions)
+
+    @classmethod
+    def _yuv(cls, matrix: int, color_range: int, lines: int, *, is_still: bool) -> Coding | None:
+        """Return the coding of luma and chroma."""
+        assumptions = []
+        if matrix in (_UNSPECIFIED, _RGB):
+            matrix = 5 if is_still or lines < HD_LINES else 1
+            assumptions.append(f"does not say its matrix: {MATRICES[matrix][0]} taken, as it has {lines} lines")
+        if color_range == 0:
+            assumptions.append("does not say its range: limited taken")
+        if matrix not in MATRICES:
+            return None
+        is_full = color_range == _FULL_RANGE or (color_range == 0 and is_still)
+        return cls(*MATRICES[matrix], is_full, is_still, () if is_still else tuple(assumptions))
 
 
 def bit_depth(frame: VideoFrame) -> int:
@@ -47,7 +141,7 @@ def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
     Returns
     -------
     ndarray, uint8 or uint16, shape (H, W, 3)
-        Codes 0 to `largest`, rounded. What limited range holds below black and above white is cut off.
+        Codes 0 to `largest`, rounded; limited range is cut off below black and above white.
     """
     planes = _planes(frame)
     height, width = planes[0].shape
@@ -66,23 +160,6 @@ def alpha_of(frame: VideoFrame) -> Float32Array | None:
         return None
     alpha: Float32Array = np.divide(planes[-1], np.float32(2 ** bit_depth(frame) - 1), dtype=np.float32)
     return alpha
-
-
-def upright(pixels: NDArray[Any], turn: tuple[int, int, int, int]) -> NDArray[Any]:
-    """Return pixels, shape (H, W, ...), turned and mirrored by quarter turns.
-
-    Parameters
-    ----------
-    pixels : ndarray, shape (H, W, ...)
-        As stored.
-    turn : tuple of int
-        a, b, c, d of the display matrix, each -1, 0 or 1: x' = a x + c y, y' = b x + d y, with y downwards.
-    """
-    a, b, c, d = turn
-    if a == 0:
-        pixels = pixels.swapaxes(0, 1)
-    columns, rows = (c, b) if a == 0 else (a, d)
-    return np.ascontiguousarray(pixels[:: rows or 1, :: columns or 1])
 
 
 def _planes(frame: VideoFrame) -> list[NDArray[Any]]:
@@ -155,7 +232,7 @@ def _full_size(plane: NDArray[Any], rows: NDArray[np.intp], shape: tuple[int, ..
 def _neighbors(
     positions: NDArray[np.intp], ratio: int, count: int, *, is_centered: bool
 ) -> tuple[NDArray[np.intp], NDArray[np.intp], Float32Array]:
-    """Return, for positions of luma, the two chroma samples beside each, and the weight of the second."""
+    """Return, for positions of luma, its two neighboring chroma samples and the weight of the second."""
     offset = (ratio - 1) / 2 if is_centered else 0.0
     places = np.clip((positions - offset) / ratio, 0, count - 1)
     first = places.astype(np.intp)

@@ -1,0 +1,297 @@
+"""Frames of movies: all of them, in order, upright; and movies that are refused in one line."""
+
+import os
+import struct
+import sys
+import time
+from fractions import Fraction
+
+import numpy as np
+import pytest
+
+from crfnet.errors import PlateError
+from crfnet.movies.frames import WHITE, MovieFrames, decoded
+from crfnet.movies.library import is_movie
+from crfnet.movies.stream import check_progressive, read_stream
+from crfnet_core.photograph.metadata import file_origin
+from tests.helpers.images import write_image
+from tests.helpers.movies import pictures, write_movie
+
+av = pytest.importorskip("av", reason="needs PyAV: the extra video")
+
+B_FRAMES = {"preset": "fast", "g": "8", "bf": "3"}
+
+#: File, frames and how it is written: codecs and containers that users have, and clocks that trip decoders.
+MOVIES = {
+    "h264": ("a.mp4", 24, {"options": B_FRAMES}),
+    "hevc 10 bits": (
+        "a.mp4",
+        24,
+        {"codec": "libx265", "form": "yuv420p10le", "options": {"x265-params": "log-level=error:crf=2"}},
+    ),
+    "prores": ("a.mov", 6, {"codec": "prores_ks", "form": "yuv422p10le"}),
+    "prores 4444": ("a.mov", 6, {"codec": "prores_ks", "form": "yuva444p10le"}),
+    "vp9": ("a.webm", 6, {"codec": "libvpx-vp9"}),
+    "av1 10 bits": ("a.mkv", 6, {"codec": "libsvtav1", "form": "yuv420p10le"}),
+    "motion jpeg": ("a.avi", 6, {"codec": "mjpeg", "form": "yuvj420p", "options": {"qmin": "1", "qmax": "2"}}),
+    "mpeg4 in avi": ("a.avi", 12, {"codec": "mpeg4", "options": {"bf": "2", "qmin": "1", "qmax": "2"}}),
+    "flash": ("a.flv", 12, {}),
+    "dnxhd": (
+        "a.mov",
+        6,
+        {"codec": "dnxhd", "form": "yuv422p", "size": (256, 144), "options": {"profile": "dnxhr_hq"}},
+    ),
+    "animation": ("a.mov", 6, {"codec": "qtrle", "form": "rgb24"}),
+    "uncompressed": ("a.mov", 6, {"codec": "rawvideo", "form": "uyvy422"}),
+    "odd size": ("a.mkv", 6, {"codec": "ffv1", "size": (131, 97)}),
+    "bare h264": ("a.h264", 12, {}),
+    "y4m": ("a.y4m", 3, {"codec": "wrapped_avframe"}),
+    "transport stream": ("a.ts", 24, {"options": B_FRAMES}),
+    "wrapped clock": ("a.ts", 24, {"muxer": {"output_ts_offset": str((2**33 - 30000) / 90000)}}),
+    "negative times": ("a.mkv", 24, {"times": range(-12, 12)}),
+    "equal times": ("a.mkv", 12, {"codec": "ffv1", "times": [number // 2 for number in range(12)]}),
+    "uneven times": ("a.mp4", 12, {"times": [number * number for number in range(12)]}),
+}
+
+
+def bars(frames):
+    """The number that each frame shows, by the code of the bar at its top; None for a frame that fails."""
+    numbers = []
+    for load in frames.loaders(range(len(frames.numbers))):
+        try:
+            numbers.append(round(load().samples[2, 64, 1] / WHITE * 255 / 8))
+        except PlateError:
+            numbers.append(None)
+    return numbers
+
+
+def refusal(path, call=read_stream):
+    with pytest.raises(PlateError) as caught:
+        call(path)
+    assert "\n" not in str(caught.value)
+    return caught.value.code
+
+
+@pytest.fixture
+def movie(tmp_path):
+    return write_movie(tmp_path / "clip.mp4", 24, options=B_FRAMES)
+
+
+@pytest.mark.parametrize("name", MOVIES)
+def test_all_frames_are_there_in_order(tmp_path, name):
+    file, count, options = MOVIES[name]
+    path = write_movie(tmp_path / file, count, **options)
+    frames = MovieFrames.find(path)
+    assert is_movie(path)
+    assert frames.numbers == tuple(range(1, count + 1))
+    assert bars(frames) == list(range(1, count + 1))
+    assert frames.movie.bit_depth == {"prores 4444": 12, "prores": 10}.get(name, 10 if "10 bits" in name else 8)
+    picture = next(pictures(1, options.get("size", (128, 96)))) / 255
+    assert np.abs(next(frames.loaders([0]))().samples / WHITE - picture).mean() < 0.02
+
+
+@pytest.mark.parametrize("name", ["h264", "hevc 10 bits", "transport stream"])
+def test_key_frames_are_decoded_alone(tmp_path, name):
+    file, count, options = MOVIES[name]
+    frames = MovieFrames.find(
+        write_movie(tmp_path / file, 3 * count, **{**options, "options": {**options["options"], "g": "8"}})
+    )
+    keys = frames.movie.key_numbers
+    assert len(keys) >= 2 or name.startswith("hevc")
+    everything = dict(frames.photos(frames.numbers))
+    for number, photo in frames.photos(keys):
+        np.testing.assert_array_equal(photo.pixels, everything[number].pixels)
+    assert {number for number, _ in frames.photos(keys)} == set(keys)
+
+
+def test_two_transport_streams_in_one_file_give_all_frames(tmp_path):
+    content = write_movie(tmp_path / "a.ts", 12, options=B_FRAMES).read_bytes()
+    (tmp_path / "b.ts").write_bytes(2 * content)
+    assert bars(MovieFrames.find(tmp_path / "b.ts")) == 2 * list(range(1, 13))
+
+
+def test_frames_are_chosen_and_missing_ones_named(movie):
+    frames = MovieFrames.find(movie, "20-30x5,9")
+    assert (frames.numbers, frames.missing) == ((9, 20), (25, 30))
+    assert bars(frames) == [9, 20]
+    assert list(decoded(frames.movie, [])) == []
+    assert refusal(movie, lambda path: MovieFrames.find(path, "100")) == "no_such_frames"
+
+
+def test_a_damaged_frame_fails_and_the_others_keep_their_numbers(tmp_path):
+    path = write_movie(tmp_path / "a.mov", 12, codec="prores_ks", form="yuv422p10le")
+    content = bytearray(path.read_bytes())
+    place = content.index(b"icpf", len(content) // 2) + 4
+    content[place : place + 60] = bytes(60)
+    path.write_bytes(content)
+    numbers = bars(MovieFrames.find(path))
+    assert numbers.count(None) == 1
+    assert all(shown in (None, number) for number, shown in enumerate(numbers, 1))
+
+
+CHANGES = {
+    "range": {"tags": {"color_range": 2, "colorspace": 1}},
+    "interlacing": {"is_interlaced": True},
+    "size": {"size": (64, 48)},
+}
+
+
+@pytest.mark.parametrize("change", CHANGES)
+def test_a_change_midway_is_refused(tmp_path, change):
+    first = {"tags": {"color_range": 1, "colorspace": 1}} if change == "range" else {}
+    parts = [write_movie(tmp_path / f"{n}.ts", 6, **each) for n, each in enumerate((first, CHANGES[change]))]
+    (tmp_path / "a.ts").write_bytes(b"".join(part.read_bytes() for part in parts))
+    frames = MovieFrames.find(tmp_path / "a.ts")
+    *_, last = frames.loaders(range(12))
+    assert refusal(None, lambda _: last()) == "movie_changes"
+    assert refusal(None, lambda _: list(frames.photos(frames.numbers))) == "movie_changes"
+
+
+def test_interlaced_movies_are_named_and_not_linearized(tmp_path, movie):
+    found = read_stream(write_movie(tmp_path / "a.mp4", is_interlaced=True))
+    assert "; interlaced: its frames mix two moments" in str(found)
+    assert refusal(None, lambda _: check_progressive(found)) == "movie_interlaced"
+    check_progressive(read_stream(movie))
+
+
+@pytest.mark.parametrize(("degrees", "quarters"), [(90, 1), (180, 2), (270, 3)])
+def test_frames_are_upright(tmp_path, degrees, quarters):
+    image = next(pictures(1))
+    paths = [tmp_path / "stored.mov", tmp_path / "turned.mov"]
+    for path, angle in zip(paths, (0, degrees), strict=True):
+        with av.open(str(path), "w") as container:
+            stream = container.add_stream("qtrle", rate=24)
+            stream.width, stream.height, stream.pix_fmt = 128, 96, "rgb24"
+            if angle:
+                stream.set_display_rotation(angle)
+            frame = av.VideoFrame.from_ndarray(image, format="rgb24")
+            container.mux([*stream.encode(frame), *stream.encode()])
+    stored, turned = (MovieFrames.find(path) for path in paths)
+    frame = next(turned.loaders([0]))()
+    assert frame.samples.shape[:2] == turned.movie.picture.size[::-1] == (frame.header.height, frame.header.width)
+    np.testing.assert_array_equal(frame.samples, np.rot90(next(stored.loaders([0]))().samples, quarters))
+
+
+def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path):
+    with av.open(str(tmp_path / "a.mov"), "w") as container:
+        thumbnail, film = container.add_stream("mjpeg", rate=24), container.add_stream("libx264", rate=24)
+        thumbnail.width, thumbnail.height, thumbnail.pix_fmt = 64, 64, "yuvj420p"
+        film.disposition = av.stream.Disposition.default
+        film.width, film.height, film.pix_fmt = 128, 96, "yuv420p"
+        for stream, form, count, size in ((thumbnail, "yuvj420p", 1, (64, 64)), (film, "yuv420p", 12, (128, 96))):
+            for image in pictures(count, size):
+                frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form)
+                container.mux(stream.encode(frame))
+            container.mux(stream.encode())
+    found = read_stream(tmp_path / "a.mov")
+    assert (found.codec, found.picture.size, found.frame_count) == ("H.264", (128, 96), 12)
+
+
+def test_alpha_is_kept(tmp_path):
+    path = write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuva444p10le", options={"profile": "4444"})
+    np.testing.assert_allclose(next(MovieFrames.find(path).loaders([0]))().alpha, 1, atol=0.01)
+
+
+def with_box(path, box):
+    """Insert a box in front of the decoder configuration of a HEVC movie whose header stands at the end."""
+    content = path.read_bytes()
+    at = content.index(b"hvcC") - 4
+    assert content.index(b"mdat") < at
+    content = bytearray(content[:at] + box + content[at:])
+    for name in (b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd", b"hev1"):
+        place = content.index(name) - 4
+        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(box))
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize(("profile", "code"), [(5, "dolby_vision"), (8, "")])
+def test_dolby_vision_of_profile_5_is_refused(tmp_path, profile, code):
+    path = write_movie(tmp_path / "a.mp4", codec="libx265")
+    with_box(path, struct.pack(">I4s", 32, b"dvcC") + bytes([1, 0, profile << 1, 13, 0]) + bytes(19))
+    assert (refusal(path) if code else read_stream(path).codec) == (code or "HEVC")
+
+
+def test_metadata_that_is_not_utf8_is_read(tmp_path):
+    path = write_movie(tmp_path / "a.mov", metadata={"title": "Voigt"})
+    content = path.read_bytes()
+    assert b"Voigt" in content
+    path.write_bytes(content.replace(b"Voigt", b"Vo\xefgt"))
+    assert read_stream(path).metadata["title"] == "Vo\ufffdgt"
+
+
+def test_maker_model_rate_and_timecode(tmp_path):
+    tags = {"com.apple.quicktime.make": "Apple", "com.apple.quicktime.model": "iPhone", "timecode": "01:00:00:00"}
+    path = write_movie(tmp_path / "a.mov", metadata=tags, muxer={"movflags": "use_metadata_tags"})
+    found = read_stream(path)
+    assert (found.rate, "timecode 01:00:00:00" in str(found)) == (Fraction(24), True)
+    assert file_origin(found.file_metadata).words == ("taken by Apple iPhone, a phone", "a frame of a movie")
+    header = next(MovieFrames.find(path).loaders([0]))().header
+    assert header.getattribute("FramesPerSecond") == (24, 1)
+    assert header.get_string_attribute("Model") == "iPhone"
+
+
+@pytest.mark.parametrize(
+    ("tags", "metadata", "transfer"),
+    [
+        ({"color_trc": 16}, {}, "PQ"),
+        ({"color_trc": 1}, {}, ""),
+        ({}, {"com.arri.camera.ColorGammaSxS": "LOG-C"}, "ARRI LogC3"),
+        (
+            {},
+            {"com.panasonic.Semi-Pro.metadata.xml": "<a><CaptureGamma> V-Log </CaptureGamma></a>"},
+            "Panasonic V-Log",
+        ),
+    ],
+)
+def test_published_curves_are_known_by_tags_and_metadata(tmp_path, tags, metadata, transfer):
+    path = write_movie(tmp_path / "a.mov", tags=tags, metadata=metadata, muxer={"movflags": "use_metadata_tags"})
+    assert read_stream(path).color.transfer == transfer
+
+
+def test_what_is_not_a_movie(tmp_path):
+    for name in ("a.png", "a.jpg", "a.tif", "a.webp", "a.exr"):
+        write_image(tmp_path / name, np.zeros((8, 8, 3), np.uint8))
+    (tmp_path / "a.heic").write_bytes(b"\0\0\0\x18ftypheic\0\0\0\0mif1heic")
+    (tmp_path / "empty.mp4").write_bytes(b"")
+    assert not any(is_movie(path) for path in (*tmp_path.iterdir(), tmp_path / "absent.mp4", tmp_path))
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
+def test_a_pipe_is_not_opened(tmp_path):
+    """That would wait for a writer; here there is one, so that the test would not."""
+    os.mkfifo(tmp_path / "a.avi")
+    writer = os.open(tmp_path / "a.avi", os.O_RDWR)
+    try:
+        os.write(writer, b"RIFF....AVI ".ljust(600, b"\0"))
+        assert not is_movie(tmp_path / "a.avi")
+    finally:
+        os.close(writer)
+
+
+def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
+    (tmp_path / "cut short.mp4").write_bytes(movie.read_bytes()[:2000])
+    assert refusal(tmp_path / "cut short.mp4") == "movie_undecodable"
+    with av.open(str(tmp_path / "a.wav"), "w") as container:
+        stream = container.add_stream("pcm_s16le", rate=8000)
+        stream.layout = "mono"
+        sound = av.AudioFrame.from_ndarray(np.zeros((1, 800), np.int16), format="s16", layout="mono")
+        sound.rate = 8000
+        container.mux(stream.encode(sound))
+    assert refusal(tmp_path / "a.wav") == "no_video"
+    monkeypatch.setattr("crfnet.movies.stream.MAX_PIXELS", 100)
+    assert refusal(movie) == "movie_too_large"
+    monkeypatch.setitem(sys.modules, "av", None)
+    assert refusal(movie) == "pyav_missing"
+
+
+def test_an_unknown_codec_is_refused(movie):
+    content = movie.read_bytes()
+    movie.write_bytes(content.replace(b"avc1", b"zzz1"))
+    assert refusal(movie) in ("no_video", "movie_undecodable")
+
+
+def test_many_empty_boxes_take_seconds(movie):
+    movie.write_bytes(movie.read_bytes() + 500_000 * b"\0\0\0\x08free")
+    start = time.monotonic()
+    assert read_stream(movie).frame_count == 24
+    assert time.monotonic() - start < 10
