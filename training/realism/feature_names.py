@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import math
 
+from crfnet_core.statistics import COUNTS_OF, SHAPES
 from crfnet_core.statistics.channel_equations import EQUATION_LEVELS, EQUATION_STRIDES
 from crfnet_core.statistics.edges import GRID
 from crfnet_core.statistics.gradients import LEVELS, STRIDES
-from crfnet_core.statistics.layout import COUNTS_OF, SHAPES
 from training.network.features import SMOOTHNESS
 
 #: What is counted of the neighbours of the samples at a level.
