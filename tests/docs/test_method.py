@@ -149,7 +149,7 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"higher than {channel_equations.LEAST_COMPARED_HEIGHT} codes",
         f"differ by {channel_equations.MOST_RATIO_DIFFERENCE} or more",
         f"mixtures of more than {sampling.LEAST_HEIGHT} codes",
-        "by at most 1/{}, or by at most 1/{}".format(*mixing.ISOLATION),
+        "by at most 1/{}, or by at most 1/{}".format(*sampling.ISOLATION),
         f"times {len(candidates.SECOND_WEIGHTS)} of $w_2$",
         f"{candidates.IDENTITY_FRACTION:.0%}".replace("%", " % of the identity"),
         f"$s = {mixing.RATIO_NOISE}$",
