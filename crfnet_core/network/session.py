@@ -13,12 +13,12 @@ from crfnet_core.network.model import ModelConfig
 from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.posterior.families import UNUSUAL
-from crfnet_core.statistics.layout import LENGTH
+from crfnet_core.statistics import LENGTHS
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
 
-#: Shape of a row of each input, and of the outputs: location, factor and log-odds, once or twice.
-INPUT_SHAPES = {"windows": (WINDOW_SIZE, WINDOW_SIZE, 3), "statistics": (LENGTH,)}
+#: Shapes that a row of each input may have, and shapes of the outputs: location, factor and log-odds, once or twice.
+INPUT_SHAPES = {"windows": ((WINDOW_SIZE, WINDOW_SIZE, 3),), "statistics": tuple((length,) for length in LENGTHS)}
 OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len(UNUSUAL),))
 
 #: A tensor whose weights lie in another file has an entry "location"; in Protocol Buffers the last byte of a text's
@@ -70,9 +70,13 @@ class Session:
         except _PROBLEMS as problem:
             raise ModelError("unloadable_graph", folder=folder, reason=problem) from None
         self._check_signature()
+        size = self._session.get_inputs()[0].shape[1]
+        self._read = size if isinstance(size, int) else None  # a name takes all
 
     def run(self, inputs: Float32Array) -> list[Float32Array]:
         """Return the network's outputs for some rows: finite, and of the shapes of evidence.
+
+        Of statistics it reads the first cues, as many as it was trained with.
 
         Raises
         ------
@@ -83,7 +87,8 @@ class Session:
         options.log_severity_level = _FATAL
         names = list(self._config.output_names)
         try:
-            outputs: list[Float32Array] = self._session.run(names, {self._config.input_name: inputs}, options)
+            read = {self._config.input_name: inputs[:, : self._read]}
+            outputs: list[Float32Array] = self._session.run(names, read, options)
         except _PROBLEMS as problem:
             raise ModelError("failing_graph", folder=self._folder, reason=problem) from None
         for number, (name, output) in enumerate(zip(names, outputs, strict=True)):
@@ -96,11 +101,12 @@ class Session:
         """Check the names, types and shapes of inputs and outputs, as far as the graph declares them."""
         config, inputs, outputs = self._config, self._session.get_inputs(), self._session.get_outputs()
         declared = {node.name: node for node in (*inputs, *outputs)}
-        rows = [INPUT_SHAPES[config.input_name], *OUTPUT_SHAPES * (len(config.output_names) // 3)]
-        for name, row in zip((config.input_name, *config.output_names), rows, strict=True):
+        rows = [INPUT_SHAPES[config.input_name], *((row,) for row in OUTPUT_SHAPES * (len(config.output_names) // 3))]
+        for name, fitting in zip((config.input_name, *config.output_names), rows, strict=True):
             node = declared.get(name)
-            if len(inputs) > 1 or node is None or node.type != "tensor(float)" or not _fits(node.shape, row):
-                raise ModelError("bad_signature", folder=self._folder, name=name, needed=("N", *row))
+            fits = node is not None and node.type == "tensor(float)" and any(_fits(node.shape, row) for row in fitting)
+            if len(inputs) > 1 or not fits:
+                raise ModelError("bad_signature", folder=self._folder, name=name, needed=("N", *fitting[-1]))
 
 
 def _options(config: ModelConfig) -> Any:

@@ -5,10 +5,10 @@ brightness vary with the level shows the slope of f. (ii) At an edge, a sample b
 c in the same ratio in R, G and B, but f distorts that ratio by an amount that depends on the level. The difference
 between the channels therefore measures the curvature of the inverse response g, whatever the scene.
 
-window             all statistics of one window
-layout             names and shapes of their parts; pack and unpack
-sampling           samples in a row, at several strides; half resolution; levels
-gradients          histogram, and differences between neighbours at each level
+windows            the windows of a photograph
+cues               the table of all cues, the statistics of one window, and their layout
+sampling           samples in a row: neighbors, edges and mixtures, at several strides and at half resolution
+gradients          histogram, and differences between neighbors at each level
 edges              where the middle of an edge lies between its sides
 channel_equations  normal equations for the curvature of g, from the differences between channels
 candidates         32 candidate responses as tables over the codes
@@ -20,7 +20,6 @@ The network turns the sums into means: see `training.network.features`.
 Source of (ii): Lin, Gu, Yamazaki & Shum, "Radiometric calibration from a single image", CVPR 2004.
 """
 
-from crfnet_core.statistics.layout import LENGTH, SHAPES, pack, unpack
-from crfnet_core.statistics.window_statistics import window_statistics
+from crfnet_core.statistics.cues import COUNTS_OF, CUES, LENGTH, LENGTHS, SHAPES, unpack, window_statistics
 
-__all__ = ["LENGTH", "SHAPES", "pack", "unpack", "window_statistics"]
+__all__ = ["COUNTS_OF", "CUES", "LENGTH", "LENGTHS", "SHAPES", "unpack", "window_statistics"]

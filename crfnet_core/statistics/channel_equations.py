@@ -11,12 +11,9 @@ Least squares over all edges of a window gives normal equations A k = r, which a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 import numpy as np
 
-from crfnet_core.statistics.edges import Triples
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Samples, Triples
 from crfnet_core.types import Float32Array, Float64Array
 
 #: Distances between the samples of an edge.
@@ -28,21 +25,15 @@ EQUATION_LEVELS = 20
 #: Least height in codes of an edge that is compared between channels.
 LEAST_COMPARED_HEIGHT = 12
 
-#: Difference between the encoded ratios of two channels from which on b is no mixture of a and c.
+#: Difference between the encoded ratios of two channels from which on b is not a mixture of a and c.
 MOST_RATIO_DIFFERENCE = 0.3
 
-SHAPES = {"channel_equations": (len(EQUATION_STRIDES), EQUATION_LEVELS + 1, EQUATION_LEVELS)}
+EQUATIONS_SHAPE = (len(EQUATION_STRIDES), EQUATION_LEVELS + 1, EQUATION_LEVELS)
 
 
-def channel_equations(triples: Sequence[Triples]) -> Float32Array:
-    """Return the normal equations at each stride (Eq. 12), the rows of A and below them r, shape (4, 21, 20).
-
-    Parameters
-    ----------
-    triples : sequence of Triples
-        Those at each of `EQUATION_STRIDES`.
-    """
-    return np.stack([_normal_equations(each) for each in triples])
+def channel_equations(samples: Samples) -> Float32Array:
+    """Return the normal equations at each stride (Eq. 12), the rows of A and below them r, shape (4, 21, 20)."""
+    return np.stack([_normal_equations(samples.triples(stride)) for stride in EQUATION_STRIDES])
 
 
 def _normal_equations(triples: Triples) -> Float32Array:
@@ -71,9 +62,9 @@ def _add_pair(equations: Float64Array, *channels: tuple[Float32Array, Float32Arr
     weighted1, weighted2 = weight * x1, weight * x2
     cell = level1 * EQUATION_LEVELS + level2
     products = (weighted1 * x1, weighted2 * x2, weighted1 * x2, weighted1 * difference, weighted2 * difference)
-    own1, own2, cross, right1, right2 = (
+    squared1, squared2, cross, right1, right2 = (
         np.bincount(cell, terms, minlength=EQUATION_LEVELS**2).reshape(EQUATION_LEVELS, EQUATION_LEVELS)
         for terms in products
     )
-    equations[:-1] += (np.diag(own1.sum(axis=1) + own2.sum(axis=0)) - cross - cross.T) / (CODES - 1) ** 2
+    equations[:-1] += (np.diag(squared1.sum(axis=1) + squared2.sum(axis=0)) - cross - cross.T) / (CODES - 1) ** 2
     equations[-1] += (right1.sum(axis=1) - right2.sum(axis=0)) / (CODES - 1)

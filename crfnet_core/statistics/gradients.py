@@ -1,4 +1,4 @@
-"""The histogram, and the differences between neighbours at each level of brightness."""
+"""The histogram, and the differences between neighbors at each level of brightness."""
 
 from __future__ import annotations
 
@@ -6,42 +6,43 @@ from functools import cache
 
 import numpy as np
 
-from crfnet_core.statistics.sampling import CODES, Lines, interpolation_weights
-from crfnet_core.types import Float32Array, Float64Array, Uint8Array
+from crfnet_core.statistics.sampling import CODES, Samples, interpolation_weights
+from crfnet_core.types import Float32Array, Float64Array
 
 #: Levels of brightness that counts over codes are gathered into.
 LEVELS = 64
 
-#: Distances between neighbours, in samples.
+#: Distances between neighbors, in samples.
 STRIDES = (1, 2, 4, 8, 16)
 
 #: Sums per channel, stride and level: |d|, log(1 + |d|), d == 0, d and 1, for differences d in codes.
 GRADIENT_SUMS = 5
 
-SHAPES = {"histogram": (3, LEVELS), "gradients": (len(STRIDES), 3, GRADIENT_SUMS, LEVELS)}
+HISTOGRAM_SHAPE = (3, LEVELS)
+GRADIENTS_SHAPE = (len(STRIDES), 3, GRADIENT_SUMS, LEVELS)
 
 
-def level_histogram(planes: Uint8Array) -> Float64Array:
-    """Return the number of samples at each level, shape (3, LEVELS), of planes of codes (3, N, N): Eq. 8."""
-    counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in planes])  # (3, 256)
+def level_histogram(samples: Samples) -> Float64Array:
+    """Return the number of samples at each level, shape (3, LEVELS): Eq. 8."""
+    counts = np.stack([np.bincount(plane.ravel(), minlength=CODES) for plane in samples.planes])  # (3, 256)
     histogram: Float64Array = np.matmul(counts, interpolation_weights(CODES, LEVELS), dtype=np.float64)
     return histogram
 
 
-def gradient_sums(lines: Lines) -> Float32Array:
-    """Return `GRADIENT_SUMS` over the neighbours of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
+def gradient_sums(samples: Samples) -> Float32Array:
+    """Return `GRADIENT_SUMS` over the neighbors of the samples at each level, shape (5, 3, GRADIENT_SUMS, LEVELS).
 
-    Both neighbours count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
+    Both neighbors count, along the rows and along the columns. Relative gradients of irradiance hardly depend on its
     level, so the mean gradient of brightness, as a function of brightness, follows the slope of f (Eq. 9).
     """
-    sums = np.stack([_sums_by_code(lines, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
+    sums = np.stack([_sums_by_code(samples, stride) for stride in STRIDES])  # (5, 3, GRADIENT_SUMS, 256)
     by_level: Float32Array = sums @ interpolation_weights(CODES, LEVELS)
     return by_level
 
 
-def _sums_by_code(lines: Lines, stride: int) -> Float32Array:
-    """Return the sums over the neighbours of the samples of each code, shape (3, GRADIENT_SUMS, 256)."""
-    first, second = lines.samples_in_a_row(stride, 2)
+def _sums_by_code(samples: Samples, stride: int) -> Float32Array:
+    """Return the sums over the neighbors of the samples of each code, shape (3, GRADIENT_SUMS, 256)."""
+    first, second = samples.in_a_row(stride, 2)
     pairs = (first.astype(np.uint16) << 8) | second
     tables, sums = _difference_tables(), np.empty((3, GRADIENT_SUMS, CODES), np.float32)
     padded = np.empty((CODES, CODES + 16), np.float32)  # columns a power of two apart would share lines of a cache
@@ -54,7 +55,7 @@ def _sums_by_code(lines: Lines, stride: int) -> Float32Array:
 
 @cache
 def _difference_tables() -> Float32Array:
-    """Return what is summed for a sample of code i with a neighbour of code j, shape (GRADIENT_SUMS, 256, 256)."""
+    """Return the terms of a sample of code i with a neighbor of code j, shape (GRADIENT_SUMS, 256, 256)."""
     code = np.arange(CODES, dtype=np.float32)
     signed_difference = code[None, :] - code[:, None]
     absolute_difference = np.abs(signed_difference)

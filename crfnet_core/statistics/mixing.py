@@ -11,25 +11,16 @@ makes light mix linearly; here the network reads how well each candidate does.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
-from crfnet_core.statistics.edges import Triples
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, Lines, Row, evenly_spread, half_resolution
-from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, CODES, ISOLATION, Mixtures, Samples, evenly_spread
+from crfnet_core.types import Float32Array, Int16Array
 
-#: Distances between the samples of a mixture; and between those of half resolution.
+#: Distances between the samples of a mixture, and between samples of half resolution.
 MIXING_STRIDES = (1, 2, 4)
 HALF_RESOLUTION_STRIDES = (1, 2)
-
-#: Least difference between a and c in codes: below it rounding decides the mixing ratio.
-LEAST_HEIGHT = 12
-
-#: An edge is isolated if the samples before a and behind c differ from them by at most 1/2 of its height (first class),
-#: or by at most 1/5 (second class): there a and c show the two surfaces themselves.
-ISOLATION = (2, 5)
 
 #: Classes of mixtures that are summed up: all of them, and the two isolated classes.
 SUMMED_CLASSES = 1 + len(ISOLATION)
@@ -58,77 +49,27 @@ RATIO_NOISE = 0.07
 
 _DISAGREEMENT = (COMPARED_CLASSES, LEVEL_BANDS)
 
-SHAPES = {
-    "mixing": (len(MIXING_STRIDES), SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT),
-    "mixing_counts": (len(MIXING_STRIDES), SUMMED_CLASSES, 1, 1),
-    "disagreement": (len(MIXING_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT),
-    "disagreement_counts": (len(MIXING_STRIDES), *_DISAGREEMENT, 1),
-}
-
-HALF_RESOLUTION_SHAPES = {
-    "half_resolution_disagreement": (len(HALF_RESOLUTION_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT),
-    "half_resolution_disagreement_counts": (len(HALF_RESOLUTION_STRIDES), *_DISAGREEMENT, 1),
-}
+MIXING_SHAPE = (len(MIXING_STRIDES), SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT)
+DISAGREEMENT_SHAPE = (len(MIXING_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT)
+HALF_RESOLUTION_SHAPE = (len(HALF_RESOLUTION_STRIDES), *_DISAGREEMENT, CANDIDATE_COUNT)
 
 
-@dataclass(frozen=True)
-class Mixtures:
-    """Samples a, b, c in a row, codes as int16 (3, M): b may be a mixture of a and c in two channels or more.
+def mixing(samples: Samples) -> tuple[Float32Array, Float32Array]:
+    """Return `mixing_sums` and their numbers of terms at each of `MIXING_STRIDES`."""
+    return _stacked(mixing_sums(samples.mixtures(stride)) for stride in MIXING_STRIDES)
 
-    Parameters
-    ----------
-    a, b, c : ndarray
-        The samples.
-    is_mixture : ndarray, bool, shape (3, M)
-        Whether a and c differ enough, and b lies between them.
-    is_isolated : ndarray, bool, shape (len(ISOLATION), 3, M)
-        Whether the samples before a and behind c hardly differ from these, where `is_mixture`.
+
+def disagreement(samples: Samples) -> tuple[Float32Array, Float32Array]:
+    """Return `disagreement_sums` and their numbers of terms at each of `MIXING_STRIDES`."""
+    return _stacked(disagreement_sums(samples.mixtures(stride)) for stride in MIXING_STRIDES)
+
+
+def half_resolution_disagreement(samples: Samples) -> tuple[Float32Array, Float32Array]:
+    """Return `disagreement_sums` and their numbers of terms at half the resolution, at `HALF_RESOLUTION_STRIDES`.
+
+    JPEG and video keep color at half the resolution, so there the channels of single samples were never independent.
     """
-
-    a: Int16Array
-    b: Int16Array
-    c: Int16Array
-    is_mixture: BoolArray
-    is_isolated: BoolArray
-
-    @classmethod
-    def among(cls, row: Row) -> Mixtures:
-        """Return the mixtures among five samples in a row, each uint8 (3, M)."""
-        is_edge = Triples.among(row[1:4]).are_edges(LEAST_HEIGHT)
-        index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
-        before, a, b, c, behind = (side.take(index, axis=1).astype(np.int16) for side in row)
-        change, height = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
-        is_isolated = np.stack([reading * change <= height for reading in ISOLATION])
-        return cls(a, b, c, is_edge.take(index, axis=1), is_isolated)
-
-    def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
-        """Return a, b and c of two channels at some indices, each (2, len(index))."""
-        positions = index + np.array(pair)[:, None] * self.a.shape[1]
-        return self.a.take(positions), self.b.take(positions), self.c.take(positions)
-
-
-def mixing_parts(lines: Lines) -> dict[str, Float32Array]:
-    """Return the sums over the mixtures in a window: see `SHAPES`."""
-    mixtures = [Mixtures.among(lines.samples_in_a_row(stride, 5)) for stride in MIXING_STRIDES]
-    sums, counts = _stacked(map(mixing_sums, mixtures))
-    disagreement, disagreement_counts = _stacked(map(disagreement_sums, mixtures))
-    return {
-        "mixing": sums,
-        "mixing_counts": counts,
-        "disagreement": disagreement,
-        "disagreement_counts": disagreement_counts,
-    }
-
-
-def half_resolution_parts(planes: Uint8Array) -> dict[str, Float32Array]:
-    """Return the disagreement of the channels at half the resolution of planes (3, N, N): see `HALF_RESOLUTION_SHAPES`.
-
-    JPEG and video keep colour at half the resolution, so there the channels of single samples were never independent.
-    """
-    lines = Lines.from_planes(half_resolution(planes))
-    mixtures = [Mixtures.among(lines.samples_in_a_row(stride, 5)) for stride in HALF_RESOLUTION_STRIDES]
-    sums, counts = _stacked(map(disagreement_sums, mixtures))
-    return {"half_resolution_disagreement": sums, "half_resolution_disagreement_counts": counts}
+    return _stacked(disagreement_sums(samples.halved.mixtures(stride)) for stride in HALF_RESOLUTION_STRIDES)
 
 
 def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:

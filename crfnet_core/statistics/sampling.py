@@ -1,13 +1,14 @@
-"""Samples in a row: the neighbours, edges and mixtures that the statistics are counted on."""
+"""Samples in a row: the neighbors, edges and mixtures that the statistics are counted on."""
 
 from __future__ import annotations
 
-from functools import cache
+from dataclasses import dataclass
+from functools import cache, cached_property
 from typing import NamedTuple
 
 import numpy as np
 
-from crfnet_core.types import BoolArray, Float32Array, IndexArray, Uint8Array
+from crfnet_core.types import BoolArray, Float32Array, IndexArray, Int16Array, Uint8Array
 
 #: Code values that samples are counted on.
 CODES = 256
@@ -15,61 +16,156 @@ CODES = 256
 #: The pairs of channels that are compared with each other.
 CHANNEL_PAIRS = ((0, 1), (1, 2), (0, 2))
 
+#: Least difference between the sides of a mixture in codes: below it rounding decides the mixing ratio.
+LEAST_HEIGHT = 12
+
+#: An edge is isolated if the samples before a and behind c differ from them by at most 1/2 of its height (first class),
+#: or by at most 1/5 (second class): there a and c show the two surfaces themselves.
+ISOLATION = (2, 5)
+
 #: Samples in a row: arrays of one shape, the i-th of each being a stride apart from the i-th of the next.
 Row = tuple[Uint8Array, ...]
 
 
-def code_planes(window: Float32Array) -> Uint8Array:
-    """Return the codes, shape (3, N, N), of a window of code values in [0, 1], shape (N, N, 3)."""
-    codes = np.rint(window * np.float32(CODES - 1)).astype(np.uint8)
-    return np.ascontiguousarray(codes.transpose(2, 0, 1))
-
-
-def half_resolution(planes: Uint8Array) -> Uint8Array:
-    """Return the rounded means of 2 x 2 samples, shape (3, 113, 113) for planes of shape (3, 227, 227).
-
-    JPEG and video keep colour at half the resolution: there the channels of neighbouring samples are not independent.
-    """
-    rows = planes[:, :-1:2].astype(np.uint16) + planes[:, 1::2]
-    means: Uint8Array = ((rows[:, :, :-1:2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8)
-    return means
-
-
-class Lines(NamedTuple):
-    """Every second row and every second column of planes of codes: adjacent ones say nearly the same.
+class Triples(NamedTuple):
+    """Three samples a, b, c in a row, and the codes that show whether they are an edge, each uint8 (3, M).
 
     Parameters
     ----------
-    rows : ndarray, uint8, shape (3, lines, N)
-        The rows.
-    columns : ndarray, uint8, shape (3, N, lines)
-        The columns.
+    a, b, c, low : ndarray
+        Codes; low is the lower one of a and c.
+    height, rise : ndarray
+        Codes from low to the other side, and to b. For b below low, the rise is (b - low) modulo 256, which is more
+        than any height can be. So b lies between a and c exactly if the rise is at most the height.
     """
 
-    rows: Uint8Array
-    columns: Uint8Array
+    a: Uint8Array
+    b: Uint8Array
+    c: Uint8Array
+    low: Uint8Array
+    height: Uint8Array
+    rise: Uint8Array
 
     @classmethod
-    def from_planes(cls, planes: Uint8Array) -> Lines:
-        """Return the lines of planes (3, N, N)."""
-        return cls(np.ascontiguousarray(planes[:, ::2]), np.ascontiguousarray(planes[:, :, ::2]))
+    def among(cls, row: Row) -> Triples:
+        """Return the triples of three samples in a row, each uint8 (3, M)."""
+        a, b, c = row
+        low = np.minimum(a, c)
+        return cls(a, b, c, low, np.maximum(a, c) - low, b - low)
 
-    def samples_in_a_row(self, stride: int, count: int) -> Row:
+    def are_edges(self, least_height: int) -> BoolArray:
+        """Return which triples are edges higher than this, in codes: b lies between a and c."""
+        is_edge: BoolArray = self.rise <= self.height
+        is_edge &= self.height > least_height
+        return is_edge
+
+    def of_channel(self, channel: int, index: IndexArray) -> tuple[Float32Array, Float32Array, Float32Array]:
+        """Return a, b and c of one channel at some indices, each (len(index),)."""
+        a, b, c = (side[channel].take(index).astype(np.float32) for side in self[:3])
+        return a, b, c
+
+
+@dataclass(frozen=True)
+class Mixtures:
+    """Samples a, b, c in a row, codes as int16 (3, M): b may be a mixture of a and c in two channels or more.
+
+    Parameters
+    ----------
+    a, b, c : ndarray
+        The samples.
+    is_mixture : ndarray, bool, shape (3, M)
+        Whether a and c differ enough, and b lies between them.
+    is_isolated : ndarray, bool, shape (len(ISOLATION), 3, M)
+        Whether the samples before a and behind c hardly differ from these, where `is_mixture`.
+    """
+
+    a: Int16Array
+    b: Int16Array
+    c: Int16Array
+    is_mixture: BoolArray
+    is_isolated: BoolArray
+
+    @classmethod
+    def among(cls, row: Row) -> Mixtures:
+        """Return the mixtures among five samples in a row, each uint8 (3, M)."""
+        is_edge = Triples.among(row[1:4]).are_edges(LEAST_HEIGHT)
+        index = np.flatnonzero(is_edge.sum(axis=0, dtype=np.uint8) > 1)
+        before, a, b, c, behind = (side.take(index, axis=1).astype(np.int16) for side in row)
+        change, height = np.maximum(np.abs(a - before), np.abs(c - behind)), np.abs(c - a)
+        is_isolated = np.stack([part * change <= height for part in ISOLATION])
+        return cls(a, b, c, is_edge.take(index, axis=1), is_isolated)
+
+    def of_channels(self, pair: tuple[int, int], index: IndexArray) -> tuple[Int16Array, Int16Array, Int16Array]:
+        """Return a, b and c of two channels at some indices, each (2, len(index))."""
+        positions = index + np.array(pair)[:, None] * self.a.shape[1]
+        return self.a.take(positions), self.b.take(positions), self.c.take(positions)
+
+
+class Samples:
+    """The codes of a window, and what several cues look for in them, found once.
+
+    Only every second row and every second column is looked at: adjacent ones are nearly the same.
+
+    Parameters
+    ----------
+    planes : ndarray, uint8, shape (3, N, N)
+        The codes of each channel.
+    """
+
+    def __init__(self, planes: Uint8Array) -> None:
+        self.planes = planes
+        self._triples: dict[int, Triples] = {}
+        self._mixtures: dict[int, Mixtures] = {}
+
+    @classmethod
+    def from_window(cls, window: Float32Array) -> Samples:
+        """Return the samples of a window of code values in [0, 1], shape (N, N, 3)."""
+        codes = np.rint(window * np.float32(CODES - 1)).astype(np.uint8)
+        return cls(np.ascontiguousarray(codes.transpose(2, 0, 1)))
+
+    @cached_property
+    def halved(self) -> Samples:
+        """The rounded means of 2 x 2 samples, planes of shape (3, 113, 113) for planes of shape (3, 227, 227).
+
+        JPEG and video keep color at half the resolution: there the channels of neighboring samples are not independent.
+        """
+        rows = self.planes[:, :-1:2].astype(np.uint16) + self.planes[:, 1::2]
+        return Samples(((rows[:, :, :-1:2] + rows[:, :, 1::2] + 2) >> 2).astype(np.uint8))
+
+    def in_a_row(self, stride: int, count: int) -> Row:
         """Return `count` samples in a row, `stride` apart, of all rows and then of all columns, each (3, M).
 
         At large strides fewer lines are looked at.
         """
-        size, skip = self.rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
+        rows, columns = self._lines
+        size, skip = rows.shape[2] - (count - 1) * stride, max(1, stride // 8)
         return tuple(
             np.concatenate(
                 [
-                    self.rows[:, ::skip, start : start + size].reshape(3, -1),
-                    self.columns[:, start : start + size, ::skip].reshape(3, -1),
+                    rows[:, ::skip, start : start + size].reshape(3, -1),
+                    columns[:, start : start + size, ::skip].reshape(3, -1),
                 ],
                 axis=1,
             )
             for start in range(0, count * stride, stride)
         )
+
+    def triples(self, stride: int) -> Triples:
+        """Return three samples in a row everywhere, `stride` apart."""
+        if stride not in self._triples:
+            self._triples[stride] = Triples.among(self.in_a_row(stride, 3))
+        return self._triples[stride]
+
+    def mixtures(self, stride: int) -> Mixtures:
+        """Return the possible mixtures among samples that are `stride` apart."""
+        if stride not in self._mixtures:
+            self._mixtures[stride] = Mixtures.among(self.in_a_row(stride, 5))
+        return self._mixtures[stride]
+
+    @cached_property
+    def _lines(self) -> tuple[Uint8Array, Uint8Array]:
+        """Every second row, (3, lines, N), and every second column, (3, N, lines)."""
+        return np.ascontiguousarray(self.planes[:, ::2]), np.ascontiguousarray(self.planes[:, :, ::2])
 
 
 def evenly_spread(mask: BoolArray, most: int) -> IndexArray:

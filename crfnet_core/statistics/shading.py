@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, candidate_responses
-from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Lines, Row, evenly_spread
+from crfnet_core.statistics.sampling import CHANNEL_PAIRS, Row, Samples, evenly_spread
 from crfnet_core.types import Float32Array, Uint8Array
 
 #: Ranges in codes of the difference between two samples: weak shading, and strong.
@@ -33,14 +33,14 @@ OTHER_CHANGE = 0.4
 #: The most shaded pairs that are compared at each stride.
 MOST_COMPARED = 500
 
-SHAPES = {"shading": (len(SHADING), CANDIDATE_COUNT), "shading_counts": (len(SHADING), 1)}
+SHADING_SHAPE = (len(SHADING), CANDIDATE_COUNT)
 
 
-def shading_parts(lines: Lines) -> dict[str, Float32Array]:
-    """Return how much the channels disagree on shading in a window, and of how many pairs: see `SHAPES`."""
-    pairs = {stride: Pairs.among(lines.samples_in_a_row(stride, 2)) for stride in dict(SHADING)}
+def shading(samples: Samples) -> tuple[Float32Array, Float32Array]:
+    """Return `shading_sums` and their numbers of terms at each of `SHADING`."""
+    pairs = {stride: Pairs.among(samples.in_a_row(stride, 2)) for stride in dict(SHADING)}
     sums, counts = zip(*(shading_sums(pairs[stride], change) for stride, change in SHADING), strict=True)
-    return {"shading": np.stack(sums), "shading_counts": np.stack(counts)}
+    return np.stack(sums), np.stack(counts)
 
 
 @dataclass(frozen=True)

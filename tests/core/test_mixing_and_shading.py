@@ -2,7 +2,8 @@ import numpy as np
 import pytest
 
 from crfnet_core.statistics.candidates import CANDIDATE_COUNT, SECOND_WEIGHTS, candidate_responses
-from crfnet_core.statistics.mixing import LEVEL_BANDS, Mixtures, disagreement_sums, mixing_sums
+from crfnet_core.statistics.mixing import LEVEL_BANDS, disagreement_sums, mixing_sums
+from crfnet_core.statistics.sampling import Mixtures
 from crfnet_core.statistics.shading import LITTLE, MUCH, Pairs, shading_sums
 
 RESPONSES = candidate_responses()
@@ -18,7 +19,7 @@ def recorded(light, candidate):
 
 
 def edges(candidate, *, isolated=True):
-    """Return five samples across edges between random colours, each mixed in one ratio, of 3 channels, (3, 4000)."""
+    """Return five samples across edges between random colors, each mixed in one ratio, of 3 channels, (3, 4000)."""
     rng = np.random.default_rng(1)
     a, c = rng.uniform(0, 1, (2, 3, 4000))
     b = a + rng.uniform(0, 1, 4000) * (c - a)

@@ -11,7 +11,17 @@ from crfnet.luts.lut1d import MAX_END_SLOPE, inverse_response_lut
 from crfnet_core.network import pooling
 from crfnet_core.posterior import Family, ResponseBank, evidence, posterior, responses, verdict
 from crfnet_core.response import curve, emor
-from crfnet_core.statistics import candidates, channel_equations, edges, gradients, mixing, shading, windows
+from crfnet_core.statistics import (
+    CUES,
+    candidates,
+    channel_equations,
+    edges,
+    gradients,
+    mixing,
+    sampling,
+    shading,
+    windows,
+)
 
 DOCUMENTS = ("README.md", "CONTRIBUTING.md", "CHANGELOG.md", "docs/*.md", "docs/*/*.md")
 
@@ -138,8 +148,8 @@ def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
         f"edges of more than {edges.LEAST_EDGE_HEIGHT} codes",
         f"higher than {channel_equations.LEAST_COMPARED_HEIGHT} codes",
         f"differ by {channel_equations.MOST_RATIO_DIFFERENCE} or more",
-        f"mixtures of more than {mixing.LEAST_HEIGHT} codes",
-        "by at most 1/{}, or by at most 1/{}".format(*mixing.ISOLATION),
+        f"mixtures of more than {sampling.LEAST_HEIGHT} codes",
+        "by at most 1/{}, or by at most 1/{}".format(*sampling.ISOLATION),
         f"times {len(candidates.SECOND_WEIGHTS)} of $w_2$",
         f"{candidates.IDENTITY_FRACTION:.0%}".replace("%", " % of the identity"),
         f"$s = {mixing.RATIO_NOISE}$",
@@ -192,6 +202,12 @@ def test_the_numbers_of_the_network_are_those_of_the_code(root, module, constant
     numbers = ast.literal_eval(values)
     text = " ".join((root / "docs" / "METHOD.md").read_text(encoding="utf-8").split())
     assert sentence.format(*(numbers if isinstance(numbers, tuple) else (numbers,))) in text
+
+
+def test_the_table_of_cues_is_that_of_the_code(root):
+    rows = [f"| {cue.name} | {' x '.join(map(str, cue.shape))} | {cue.meaning} | {cue.symbol} |" for cue in CUES]
+    table = "\n".join(["| cue | shape | sums | symbol |", "| --- | --- | --- | --- |", *rows])
+    assert f"\n\n{table}\n\n" in (root / "docs" / "METHOD.md").read_text(encoding="utf-8")
 
 
 def test_no_module_of_the_method_is_left_out(root):

@@ -10,10 +10,10 @@ import math
 import torch
 from torch import Tensor, nn
 
+from crfnet_core.statistics import COUNTS_OF, SHAPES, unpack
 from crfnet_core.statistics.channel_equations import EQUATION_LEVELS, EQUATION_STRIDES
 from crfnet_core.statistics.edges import GRID
 from crfnet_core.statistics.gradients import LEVELS, STRIDES
-from crfnet_core.statistics.layout import COUNTS_OF, SHAPES, unpack
 from training.network.conjugate_gradients import conjugate_gradients
 
 #: Weights of the smoothness penalty (squared second differences of the curvature), relative to the mean diagonal of

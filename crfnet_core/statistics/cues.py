@@ -1,0 +1,155 @@
+"""The cues: everything that is counted in a window, and how it lies in one vector.
+
+A new cue is a function of `Samples` and a row at the end of `CUES`; models that were trained before read the cues
+before it. The network of `training` unpacks the vector with the same table, and docs/METHOD.md prints it.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable
+from dataclasses import dataclass
+from itertools import accumulate
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from crfnet_core.statistics.channel_equations import EQUATIONS_SHAPE, channel_equations
+from crfnet_core.statistics.edges import EDGES_SHAPE, edge_sums
+from crfnet_core.statistics.gradients import GRADIENTS_SHAPE, HISTOGRAM_SHAPE, gradient_sums, level_histogram
+from crfnet_core.statistics.mixing import (
+    DISAGREEMENT_SHAPE,
+    HALF_RESOLUTION_SHAPE,
+    MIXING_SHAPE,
+    disagreement,
+    half_resolution_disagreement,
+    mixing,
+)
+from crfnet_core.statistics.sampling import Samples
+from crfnet_core.statistics.shading import SHADING_SHAPE, shading
+from crfnet_core.types import Float32Array
+
+
+@dataclass(frozen=True)
+class Cue:
+    """One kind of sums over the samples of a window.
+
+    Parameters
+    ----------
+    name : str
+        Its name in the layout.
+    shape : tuple of int
+        Shape of the sums.
+    count : callable
+        From the samples of a window to the sums; of a cue with `terms`, to the sums and their numbers of terms.
+    meaning : str
+        What is counted, in words.
+    symbol : str
+        The same in docs/METHOD.md.
+    terms : tuple of int, optional
+        Shape of the numbers of terms, which the network divides the sums by; None if the sums include them.
+    """
+
+    name: str
+    shape: tuple[int, ...]
+    count: Callable[[Samples], NDArray[Any] | tuple[NDArray[Any], NDArray[Any]]]
+    meaning: str
+    symbol: str
+    terms: tuple[int, ...] | None = None
+
+
+#: All cues in the order of the vector. Add new ones at the end.
+CUES = (
+    Cue("histogram", HISTOGRAM_SHAPE, level_histogram, "samples at each level of each channel", "$N_l$, Eq. 8"),
+    Cue("gradients", GRADIENTS_SHAPE, gradient_sums, "differences of neighbors at each level", "$d$, Eq. 9"),
+    Cue("edges", EDGES_SHAPE, edge_sums, "number of edges and their encoded ratios less a half", r"$\beta$, Eq. 10"),
+    Cue(
+        "channel_equations",
+        EQUATIONS_SHAPE,
+        channel_equations,
+        "equations for the curvature of $g$",
+        "$A$, $r$, Eq. 12",
+    ),
+    Cue(
+        "mixing",
+        MIXING_SHAPE,
+        mixing,
+        "mixing ratios under each candidate",
+        r"$\alpha$, Eq. 13",
+        (*MIXING_SHAPE[:2], 1, 1),
+    ),
+    Cue(
+        "disagreement",
+        DISAGREEMENT_SHAPE,
+        disagreement,
+        "disagreement of the channels on mixing ratios",
+        r"$\rho$, Eq. 5",
+        (*DISAGREEMENT_SHAPE[:-1], 1),
+    ),
+    Cue(
+        "shading",
+        SHADING_SHAPE,
+        shading,
+        "disagreement of the channels on shading",
+        r"$\rho$, Eq. 14",
+        (SHADING_SHAPE[0], 1),
+    ),
+    Cue(
+        "half_resolution_disagreement",
+        HALF_RESOLUTION_SHAPE,
+        half_resolution_disagreement,
+        "disagreement on mixing ratios at half the resolution",
+        r"$\rho$, Eq. 5",
+        (*HALF_RESOLUTION_SHAPE[:-1], 1),
+    ),
+)
+
+#: Cues with numbers of terms -> the part that holds these.
+COUNTS_OF = {cue.name: f"{cue.name}_counts" for cue in CUES if cue.terms}
+
+#: The shape of each part, in the order of the vector.
+SHAPES: dict[str, tuple[int, ...]] = {
+    name: shape
+    for cue in CUES
+    for name, shape in ((cue.name, cue.shape), (COUNTS_OF.get(cue.name), cue.terms))
+    if name and shape
+}
+
+_ENDS = dict(zip(SHAPES, accumulate(map(math.prod, SHAPES.values())), strict=True))
+
+#: Length of the vector, and the lengths of the first cues together: each may be what a network reads.
+LENGTHS = tuple(_ENDS[COUNTS_OF.get(cue.name, cue.name)] for cue in CUES)
+LENGTH = LENGTHS[-1]
+
+
+def window_statistics(window: Float32Array) -> Float32Array:
+    """Return the statistics of one window, float32 (LENGTH,); those of several windows add up.
+
+    Parameters
+    ----------
+    window : ndarray, float32, shape (227, 227, 3)
+        Code values in [0, 1]; not changed.
+
+    Returns
+    -------
+    ndarray
+        The parts of `SHAPES` one behind the other: `unpack` returns them by name.
+    """
+    samples = Samples.from_window(window)
+    parts = [part.ravel() for cue in CUES for part in _parts(cue.count(samples))]
+    return np.concatenate(parts).astype(np.float32)
+
+
+def unpack(statistics: Any) -> dict[str, Any]:
+    """Return the parts by name, each (..., *shape), of an array or a tensor of statistics (..., LENGTH)."""
+    leading = tuple(statistics.shape[:-1])
+    return {
+        name: statistics[..., _ENDS[name] - math.prod(shape) : _ENDS[name]].reshape(leading + shape)
+        for name, shape in SHAPES.items()
+    }
+
+
+def _parts(counted: NDArray[Any] | tuple[NDArray[Any], ...]) -> tuple[NDArray[Any], ...]:
+    """Return the sums, and their numbers of terms if there are any."""
+    return counted if isinstance(counted, tuple) else (counted,)
