@@ -12,6 +12,7 @@ from importlib import import_module
 from .arguments.command_line import build_parser
 from .arguments.parts import BAD_INPUT
 from .interruption import interruptible
+from .remedies import REMEDIES
 from .streams import complete_streams, own_stderr
 
 #: Errors whose own message would not help the user.
@@ -56,6 +57,8 @@ def _fail(problem: BaseException) -> int:
     from crfnet_core.errors import one_line  # as above
 
     text = UNEXPLAINED.get(type(problem), str(problem))
+    if remedy := REMEDIES.get(getattr(problem, "code", "")):
+        text = f"{text}; {remedy}"
     if isinstance(problem, OSError) and problem.strerror:
         text = f"{problem.filename or 'the output'}: {problem.strerror}; check the name, the folder and the disk"
     _print_error(f"crfnet: error: {one_line(text)}")
