@@ -129,7 +129,7 @@ def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
             f"{movie.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as an"
             " image sequence"
         )
-    return codes[::-1] / np.float32(255)
+    return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
 
 
 def _unreadable(image: bpy.types.Image) -> AddonError:
