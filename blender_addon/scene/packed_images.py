@@ -38,7 +38,7 @@ def content_of(image: bpy.types.Image) -> bytes | Uint8Array:
     -------
     bytes or ndarray, uint8, shape (H, W, 3 or 4)
         The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
-        whatever its colour space.
+        whatever its color space.
 
     Raises
     ------

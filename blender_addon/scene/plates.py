@@ -46,7 +46,7 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, that of the active node.
 
     While an editor shows the linear plate for comparison, or a plate's code values, it is the plate. If a plate's node
-    group is active, it is the plate that the group linearises.
+    group is active, it is the plate that the group linearizes.
     """
     space = context.space_data
     if space is None:

@@ -78,7 +78,7 @@ def frames_of(plate: Plate) -> FrameSequence:
 
 
 def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
-    """Return the primaries that a plate is encoded in, for its colour space.
+    """Return the primaries that a plate is encoded in, for its color space.
 
     They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
     primaries can express, and for movies. For `is_encoded` see `encoding_check.is_said_encoded`.
@@ -179,7 +179,7 @@ def _no_room(plate: Plate, problem: OSError) -> AddonError:
 
 
 def _write_png(path: Path, codes: Uint8Array) -> None:
-    """Write code values unchanged: colours are not multiplied by alpha."""
+    """Write code values unchanged: colors are not multiplied by alpha."""
     header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
     header.attribute("oiio:UnassociatedAlpha", 1)
     header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice

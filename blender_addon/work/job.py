@@ -23,7 +23,7 @@ _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
 
 
 class ApplyMode(StrEnum):
-    """What becomes of a response: nothing yet, or nodes, a colour space, linear EXR files, files to hand on."""
+    """What becomes of a response: nothing yet, or nodes, a color space, linear EXR files, files to hand on."""
 
     ESTIMATE = "ESTIMATE"
     NODES = "NODES"
@@ -65,7 +65,7 @@ class Plate:
         Of a sequence the file name before the frame number, the digits of the number, and the name after it. A name may
         hold placeholders of its own, so `file` is not to be read as a pattern again.
     color_space : str
-        The colour space that Blender takes the file for.
+        The color space that Blender takes the file for.
     folder : Path or None
         The folder for new files unless the user chooses one; None for a plate without a file of its own.
     has_metadata : bool

@@ -1,4 +1,4 @@
-"""Read one frame of a plate: its encoded samples, its alpha and its header; or its colour tags alone."""
+"""Read one frame of a plate: its encoded samples, its alpha and its header; or its color tags alone."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ UNTAGGED = ("", "unknown", "data")
 
 @dataclass(frozen=True, eq=False)
 class EncodedFrame:
-    """The samples of a frame before its linearisation.
+    """The samples of a frame before its linearization.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class EncodedFrame:
     color : ColorTags
         What the file says of its primaries.
     is_coverage : bool
-        Whether alpha is coverage, by which linear colours are multiplied; otherwise it is data, a channel of its own.
+        Whether alpha is coverage, by which linear colors are multiplied; otherwise it is data, a channel of its own.
     """
 
     samples: NDArray[Any]
@@ -104,7 +104,7 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
 
 
 def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
-    """Return what the header of a frame says of its colours; it takes and refuses what `read_frame` does."""
+    """Return what the header of a frame says of its colors; it takes and refuses what `read_frame` does."""
     if path.suffix.lower() != ".exr":
         return read_metadata(path).color
     with _opened_exr(path, is_encoded=is_encoded) as source:

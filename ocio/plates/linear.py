@@ -1,4 +1,4 @@
-"""Linearise plates: encoded files and frame sequences to scene-linear OpenEXR."""
+"""Linearize plates: encoded files and frame sequences to scene-linear OpenEXR."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from .light import PlateLight, check_finished
 from .parallel import finished
 from .primaries import check_same_primaries, plate_primaries
 
-#: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
+#: Frames linearized at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8
 
-#: Rows linearised at a time, which keeps the memory for intermediate values small.
+#: Rows linearized at a time, which keeps the memory for intermediate values small.
 _ROWS = 64
 
 _LEFTOVER = re.compile(r"\.(.+)\.[a-z0-9_]{8}(\.exr)", re.IGNORECASE)  # the temporary names of `atomic_write`
@@ -109,9 +109,9 @@ def linearize_plates(
 
     Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused, as is
     one that says nothing, unless `is_encoded` is set: most of these are linear. Gray becomes RGB. Alpha is kept: the
-    colour is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
+    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
     of coverage.
-    Rows and columns stay as stored, and so does the metadata that remains true.
+    Pixels are upright where the reader turns them, and the metadata that remains true is kept.
     The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
     The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
 
@@ -133,7 +133,7 @@ def linearize_plates(
     options : PlateOptions
         Sample type, exposure, primaries, space, and whether finished frames are written again.
     workers : int or None
-        Frames linearised at a time; by default one per core, up to `MAX_WORKERS`.
+        Frames linearized at a time; by default one per core, up to `MAX_WORKERS`.
     progress : callable or None
         Called in this thread with the number of finished (and skipped) frames, and of all. What it raises ends the
         run after the frames that have begun; the temporary files are gone then.
@@ -266,7 +266,7 @@ def _scale(light: PlateLight, options: PlateOptions) -> float:
 
 
 def _worker_count(workers: int | None) -> int:
-    """Return the number of frames linearised at a time."""
+    """Return the number of frames linearized at a time."""
     if workers is not None and workers < 1:
         raise PlateError("bad_workers", workers=workers)
     return workers or min(cores(), MAX_WORKERS)

@@ -62,7 +62,7 @@ class LinearSpace:
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
     """Return the space of a plate's linear values.
 
-    The matrix does not clip: colours outside the target's gamut get negative values, by which they can be converted
+    The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
     back. A plate of unknown primaries is left as it is, and its space is unknown.
 
     Parameters
