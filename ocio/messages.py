@@ -24,7 +24,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
-    "finished_differs": "{path}: is there already, with {difference}; repeat that, or choose another name",
+    "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
     "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
@@ -40,7 +40,7 @@ SENTENCES: Mapping[str, str] = {
     "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
     " state the primaries of all",
-    "primaries_unknown": "the plate's primaries are {primaries}, so it cannot be converted to {space}; state them",
+    "primaries_unknown": "the plate's primaries are {primaries}, so it cannot be converted to {space}; state what they are",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
     "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",
     "single_file": "{path}: is a single file, which has no frames to choose from; give a pattern",

@@ -8,8 +8,8 @@ from collections.abc import Mapping
 REMEDIES: Mapping[str, str] = {
     # movies and plates
     "exr_untagged": "add --encoded",
-    "finished_differs": "add --overwrite or change --out",
-    "primaries_differ": "or give the primaries of all with --primaries",
-    "primaries_unknown": "say what they are: --primaries",
+    "finished_differs": "or add --overwrite",
+    "primaries_differ": "give them with --primaries",
+    "primaries_unknown": "give them with --primaries",
     "single_file": "leave --frames out",
 }
