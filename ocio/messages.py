@@ -10,10 +10,43 @@ SENTENCES: Mapping[str, str] = {
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
     " {line} (leave out its filter if both fields show the same moment)",
-    "movie_too_large": "{path}: claims {width} x {height} pixels; crop it",
     "movie_undecodable": "{path}: cannot be decoded ({reason}); copy it again, or extract its frames: {line}",
     "no_video": "{path}: holds no video that FFmpeg decodes; give a movie with a picture",
     "pyav_missing": "{path}: is a movie, which needs PyAV: pip install 'crfnet[video]', or extract its frames: {line}",
     # plates
+    "bad_frames": "frames {frames!r}: are not a frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9",
+    "bad_workers": "{workers} workers cannot work; give 1 or more",
+    "cannot_list": "{folder}: cannot be listed ({problem}); check the folder",
+    "exceeds_half": "values up to {peak:.6g} do not fit into half floats; ask for float, or for less exposure",
+    "exposure_out_of_range": "an exposure of {stops:g} stops is out of range; give one like -2 or 1.5",
+    "exr_channels": "{path}: needs channels R, G and B, or a gray one; found {channels}",
+    "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
+    "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
+    "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
+    " encoded, as a camera or a program wrote them for a display",
+    "finished_differs": "{path}: is there already, with {difference}; repeat that or write elsewhere",
+    "folder_without_sequence": "{path}: is a folder without a sequence; give a file in it, or a sequence such as"
+    " plate.%04d.png or plate.####.png",
+    "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
+    "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
+    "frames_twice": "{path}: names the frames {frames} itself; give them once",
+    "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
+    " as in plate.%04d.exr",
     "no_such_frames": "{path}: there are {frames}; check the name and the frames",
+    "no_such_plate": "{path}: there is no such file; check the name, or give a sequence such as plate.%04d.png or"
+    " plate.####.png",
+    "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
+    "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
+    "plate_too_large": "{path}: claims {width} x {height} pixels; crop it",
+    "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
+    " state the primaries of all",
+    "primaries_unknown": "the plate's primaries are {primaries}, so it cannot be converted to {space}; state what they are",
+    "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
+    "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",
+    "single_file": "{path}: is a single file, which has no frames to choose from; give a pattern",
+    "target_is_plate": "{path}: is one of the plates, which are never replaced; choose another name",
+    "too_many_frames": "frames {frames!r}: more than {most} frames; give fewer",
+    "unknown_depth": "depth {depth!r} is unknown; choose half or float",
+    "unknown_output_space": "output space {space!r} is unknown; choose one of {spaces}",
+    "unknown_primaries": "primaries {primaries!r} are unknown; choose one of {choices}",
 }

@@ -3,7 +3,7 @@
 
 plates            which image or clip is meant, and where its code values lie on disk
 packed_images     which images have no file of their own, and the packed file or the code values of these
-decode_frames     a script for another Blender: frames of movies and images as PNG files
+movie_frames      the frame of a movie that an editor shows, as code values
 stored_estimate   the estimate as a custom property of its image or clip
 apply             what a completed job changes
 node_group        the inverse response as a compositor node group

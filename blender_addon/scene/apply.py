@@ -155,10 +155,7 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
     """
     first = str(baked.files[0])
     clip = next((clip for clip in bpy.data.movieclips if bpy.path.abspath(clip.filepath) == first), None)
-    if clip is None and plate.source == "MOVIE":  # a copy of it would take the frames for a movie
-        clip = bpy.data.movieclips.load(first)
-        _copy_tracking(plate.tracking, clip.tracking)
-    elif clip is None:
+    if clip is None:
         clip = plate.copy()
         clip.name = baked.files[0].name
         stored_estimate.remove(clip)
@@ -167,19 +164,6 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
     clip.frame_start, clip.frame_offset = plate.frame_start, plate.frame_offset
     clip.colorspace_settings.name = node_group.linear_rec709()
     return clip
-
-
-def _copy_tracking(source: bpy.types.MovieTracking, target: bpy.types.MovieTracking) -> None:
-    """Copy the camera's settings, and the tracks of the camera, from one clip to another."""
-    for setting in source.camera.bl_rna.properties:
-        if not setting.is_readonly:
-            setattr(target.camera, setting.identifier, getattr(source.camera, setting.identifier))
-    for track in source.tracks:
-        copy = target.tracks.new(name=track.name, frame=track.markers[0].frame)
-        for marker in track.markers:
-            kept = copy.markers.insert_frame(marker.frame, co=marker.co)
-            kept.pattern_corners, kept.mute = marker.pattern_corners, marker.mute
-            kept.search_min, kept.search_max = marker.search_min, marker.search_max
 
 
 def _path_like(plate: Datablock, path: str) -> str:

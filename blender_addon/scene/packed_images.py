@@ -38,17 +38,17 @@ def content_of(image: bpy.types.Image) -> bytes | Uint8Array:
     -------
     bytes or ndarray, uint8, shape (H, W, 3 or 4)
         The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
-        whatever its colour space.
+        whatever its color space.
 
     Raises
     ------
     AddonError
         If the image has no pixels.
     """
-    return _code_values(image) if is_painted(image) else image.packed_file.data
+    return codes_of_pixels(image) if is_painted(image) else image.packed_file.data
 
 
-def _code_values(image: bpy.types.Image) -> Uint8Array:
+def codes_of_pixels(image: bpy.types.Image) -> Uint8Array:
     """Return the code values of an 8-bit image, shape (H, W, 3 or 4), the top row first."""
     width, height = image.size
     if not width * height or not len(image.pixels):

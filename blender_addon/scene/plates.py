@@ -3,7 +3,6 @@
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -11,7 +10,8 @@ import bpy
 
 from .. import lazy_import
 from ..work.errors import AddonError
-from ..work.job import BlenderDecoder, Plate
+from ..work.job import Plate
+from .movie_frames import codes_of_frame, shown_number
 from .packed_images import content_of, file_name, has_own_file, is_painted
 
 #: The editors that have the panel.
@@ -46,7 +46,7 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
     """Return the image or clip that the editor shows; in the compositor, that of the active node.
 
     While an editor shows the linear plate for comparison, or a plate's code values, it is the plate. If a plate's node
-    group is active, it is the plate that the group linearises.
+    group is active, it is the plate that the group linearizes.
     """
     space = context.space_data
     if space is None:
@@ -207,7 +207,7 @@ def _obstacle_unsaved(datablock: Datablock) -> str:
 
 
 def plate_of(datablock: Datablock) -> Plate:
-    """Return the plate of an image or clip; it holds the pixels of an image that is only in memory.
+    """Return the plate of an image or clip; it holds pixels that are only in memory: painted ones, a movie's frame.
 
     Raises
     ------
@@ -224,8 +224,18 @@ def plate_of(datablock: Datablock) -> Plate:
         raise AddonError(
             f"{datablock.filepath or datablock.name}: there is no such file; find it with File, External Data"
         )
-    decoder = _decoder(datablock)
-    return _plate(datablock, path, folder=path.parent, has_metadata=decoder is None, decoder=decoder)
+    if datablock.source != "MOVIE":
+        return _plate(datablock, path, folder=path.parent)
+    number = shown_number(datablock)
+    return _plate(
+        datablock,
+        path,
+        folder=path.parent,
+        has_metadata=False,
+        content=codes_of_frame(datablock, number),
+        shown_frame=number,
+        frame_count=max(1, datablock.frame_duration),
+    )
 
 
 def name_of(datablock: Datablock) -> str:
@@ -279,22 +289,3 @@ def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
         alpha_mode=alpha_mode(datablock),
         **details,
     )
-
-
-def _decoder(datablock: Datablock) -> BlenderDecoder | None:
-    """Return what decodes a movie; None for images, which the estimator reads itself."""
-    if datablock.source != "MOVIE":
-        return None
-    return BlenderDecoder(
-        command=_blender_command(),
-        frame_count=max(1, datablock.frame_duration),
-        is_deinterlaced=getattr(datablock, "use_deinterlace", False),
-    )
-
-
-def _blender_command() -> tuple[str, ...]:
-    """Return the command that runs the script `decode_frames` in another Blender, without a window."""
-    script = str(Path(__file__).with_name("decode_frames.py"))
-    if not bpy.app.binary_path:  # Blender is a Python module
-        return sys.executable, script
-    return bpy.app.binary_path, "--background", "--factory-startup", "--python", script, "--"

@@ -6,7 +6,6 @@ run              the job, done
 writers          the files of each way to apply a response
 target_check     whether the files of a job can be written
 frame_files      the frames of a plate as files that the estimator reads: its own, or temporary ones
-decoding         another Blender, which decodes movies
 encoding_check   refuses plates that are logarithmic or linear already
 background       a job in another thread, with progress and cancellation
 estimate_record  an estimate as the entries that a .blend file keeps

@@ -20,14 +20,13 @@ from crfnet.plates.frames import FrameSequence, find_frames, pattern_frames, sam
 from crfnet.plates.primaries import plate_primaries
 from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Progress, Uint8Array, counted_from
+from crfnet_core.types import Uint8Array
 
-from .decoding import running_decoder
 from .errors import AddonError
 from .job import Plate
 
 #: Returns frames as files that can be read; a temporary file is there until the next call.
-FrameReader: TypeAlias = Callable[[FrameSequence, Progress | None], FrameSequence]
+FrameReader: TypeAlias = Callable[[FrameSequence], FrameSequence]
 
 
 @dataclass(frozen=True)
@@ -60,40 +59,39 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
 
 
 def frames_of(plate: Plate) -> FrameSequence:
-    """Return the frames of a plate; those of a movie, and an image without a file, have a name but no file yet.
+    """Return the frames of a plate; the one shown of a movie, and an image without a file, have a name only.
 
     Raises
     ------
     PlateError
         If the plate has files, and they are not found.
     """
+    if plate.frame_count:
+        return FrameSequence((plate.file.with_name(f"{plate.file.stem}.{plate.shown_frame:04d}.png"),))
     if plate.content is not None:
         return FrameSequence((plate.file,))
     if plate.numbered is not None:
         before, digits, after = plate.numbered
         name = plate.file.with_name(f"{before}{'#' * digits}{after}")  # for messages, as Blender writes it
         return pattern_frames(FramePattern(plate.file.parent, *plate.numbered), name=name)
-    if plate.decoder is None:
-        return find_frames(plate.file)
-    numbers = tuple(range(1, plate.decoder.frame_count + 1))
-    return FrameSequence(tuple(plate.file.with_name(f"{plate.file.stem}.{n:04d}.png") for n in numbers), numbers)
+    return find_frames(plate.file)
 
 
 def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
-    """Return the primaries that a plate is encoded in, for its colour space.
+    """Return the primaries that a plate is encoded in, for its color space.
 
     They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
-    primaries can express, and for what Blender decodes. For `is_encoded` see `encoding_check.is_said_encoded`.
+    primaries can express, and for movies. For `is_encoded` see `encoding_check.is_said_encoded`.
 
     Raises
     ------
     CRFNetError, AddonError
         If the file cannot be read, or no temporary file can be written.
     """
-    if plate.decoder is not None:
+    if plate.frame_count:
         return REC709
     with frame_reader(plate) as read:
-        (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1]), None).paths
+        (path,) = read(FrameSequence(sequence.paths[:1], sequence.numbers[:1])).paths
         return plate_primaries(read_color_tags(path, is_encoded=is_encoded)).primaries or REC709
 
 
@@ -106,68 +104,41 @@ def sample(sequence: FrameSequence) -> FrameSequence:
 
 @contextmanager
 def frame_reader(plate: Plate) -> Iterator[FrameReader]:
-    """Yield what returns frames of a plate as files that can be read; temporary files are removed at the end.
+    """Yield a function that returns frames of a plate as files; temporary files are removed at the end.
 
     Raises
     ------
     AddonError
-        If temporary files cannot be written, or Blender cannot decode a frame.
+        If temporary files cannot be written, or the plate is a movie of more than 8 bits.
     """
     if _has_own_files(plate):
-        yield _own_files
+        yield lambda sequence: sequence
         return
-    with _temporary_folder(plate) as folder, _reader(plate, folder) as read:
-        yield read
-
-
-def _own_files(sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
-    """Return the plate's own files."""
-    return sequence
+    with _temporary_folder(plate) as folder:
+        yield partial(_written, plate, folder)
 
 
 @contextmanager
-def sampled_files(
-    plates: Sequence[tuple[Plate, FrameSequence]], progress: Progress | None = None
-) -> Iterator[tuple[FrameSequence, ...]]:
+def sampled_files(plates: Sequence[tuple[Plate, FrameSequence]]) -> Iterator[tuple[FrameSequence, ...]]:
     """Yield, for each plate, the files that the response is estimated from; temporary ones are removed at the end.
 
     Parameters
     ----------
     plates : sequence of (Plate, FrameSequence)
         The plates with their frames, as `frames_of` returns them.
-    progress : callable or None
-        Called with (done, total) while frames are decoded; what it raises ends the wait.
 
     Raises
     ------
     AddonError
         See `frame_reader`.
     """
-    chosen = [sample(frames) for _, frames in plates]
-    total, files = sum(len(frames.paths) for frames in chosen), list(chosen)
     with ExitStack() as stack:
-        for index, (plate, _) in enumerate(plates):
-            done = sum(len(frames.paths) for frames in chosen[:index])
-            if not _has_own_files(plate):
-                folder = stack.enter_context(_temporary_folder(plate))
-                with _reader(plate, folder) as read:  # the other Blender ends before the next one starts
-                    files[index] = read(chosen[index], counted_from(progress, done, total))
-        yield tuple(files)
+        yield tuple(stack.enter_context(frame_reader(plate))(sample(frames)) for plate, frames in plates)
 
 
 def _has_own_files(plate: Plate) -> bool:
     """Return whether the estimator can read the plate's own files."""
-    return plate.content is None and plate.decoder is None
-
-
-@contextmanager
-def _reader(plate: Plate, folder: Path) -> Iterator[FrameReader]:
-    """Yield what returns frames as temporary files in a folder."""
-    if plate.decoder is None:
-        yield partial(_written, plate, folder)
-    else:
-        with running_decoder(plate, plate.decoder, folder) as decoder:
-            yield decoder.read
+    return plate.content is None and not plate.frame_count
 
 
 @contextmanager
@@ -184,13 +155,18 @@ def _temporary_folder(plate: Plate) -> Iterator[Path]:
             raise type(problem)(str(problem).replace(f"{folder}{os.sep}", "")) from None
 
 
-def _written(plate: Plate, folder: Path, sequence: FrameSequence, _progress: Progress | None = None) -> FrameSequence:
+def _written(plate: Plate, folder: Path, sequence: FrameSequence) -> FrameSequence:
     """Return the file of an image that has none of its own: the packed one byte for byte, or a PNG of its codes."""
-    path = folder / plate.file.name
+    if plate.content is None:
+        raise AddonError(
+            f"{plate.name}: Blender shows movies of more than 8 bits without their code values; open the frames of the"
+            " movie as an image sequence"
+        )
+    path = folder / (sequence.paths[0] if plate.frame_count else plate.file).name
     try:
         if isinstance(plate.content, bytes):
             path.write_bytes(plate.content)
-        elif plate.content is not None:
+        else:
             _write_png(path, plate.content)
     except OSError as problem:
         raise _no_room(plate, problem) from None
@@ -203,7 +179,7 @@ def _no_room(plate: Plate, problem: OSError) -> AddonError:
 
 
 def _write_png(path: Path, codes: Uint8Array) -> None:
-    """Write code values unchanged: colours are not multiplied by alpha."""
+    """Write code values unchanged: colors are not multiplied by alpha."""
     header = oiio.ImageSpec(codes.shape[1], codes.shape[0], codes.shape[2], oiio.UINT8)
     header.attribute("oiio:UnassociatedAlpha", 1)
     header.attribute("png:compressionLevel", 1)  # the fastest: the file is read once or twice

@@ -23,7 +23,7 @@ _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
 
 
 class ApplyMode(StrEnum):
-    """What becomes of a response: nothing yet, or nodes, a colour space, linear EXR files, files to hand on."""
+    """What becomes of a response: nothing yet, or nodes, a color space, linear EXR files, files to hand on."""
 
     ESTIMATE = "ESTIMATE"
     NODES = "NODES"
@@ -48,25 +48,6 @@ class Anchor(StrEnum):
 
 
 @dataclass(frozen=True, kw_only=True)
-class BlenderDecoder:
-    """Another Blender, which decodes the frames of a movie.
-
-    Parameters
-    ----------
-    command : tuple of str
-        The command that starts it; the arguments of `scene.decode_frames` follow.
-    frame_count : int
-        The number of frames, which are numbered from 1; at least 1.
-    is_deinterlaced : bool
-        Whether the fields of a movie are to be deinterlaced, as its image in Blender is.
-    """
-
-    command: tuple[str, ...]
-    frame_count: int
-    is_deinterlaced: bool = False
-
-
-@dataclass(frozen=True, kw_only=True)
 class Plate:
     """The files of a plate, and its names.
 
@@ -84,17 +65,18 @@ class Plate:
         Of a sequence the file name before the frame number, the digits of the number, and the name after it. A name may
         hold placeholders of its own, so `file` is not to be read as a pattern again.
     color_space : str
-        The colour space that Blender takes the file for.
+        The color space that Blender takes the file for.
     folder : Path or None
         The folder for new files unless the user chooses one; None for a plate without a file of its own.
     has_metadata : bool
-        Whether the file may say how it was made; not if it was written from pixels in Blender, or by its decoder.
+        Whether the file may say how it was made; not if it was written from pixels in Blender.
     file_state : str
         The file as it was when the job was gathered, see `scene.plates.file_state`; empty without a file of its own.
     content : bytes, ndarray of uint8 with shape (H, W, 3 or 4), or None
-        The packed file, or the code values, of an image without a file of its own; `file` is then only a name.
-    decoder : BlenderDecoder or None
-        What decodes the frames of a movie; None for image files.
+        The packed file, or the code values, of an image without a file of its own; `file` is then only a name. Of a
+        movie, the code values of the frame shown; None above 8 bits.
+    shown_frame, frame_count : int
+        Of a movie, the number of that frame and how many there are; otherwise 0.
     alpha_mode : {"STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE", ""}
         How Blender takes the alpha of the image, whatever its file says; empty for clips and for what Blender does not
         show, where the file counts.
@@ -110,7 +92,8 @@ class Plate:
     has_metadata: bool = True
     file_state: str = ""
     content: bytes | Uint8Array | None = field(default=None, repr=False, compare=False)
-    decoder: BlenderDecoder | None = None
+    shown_frame: int = 0
+    frame_count: int = 0
     alpha_mode: str = ""
 
     @property
@@ -121,7 +104,7 @@ class Plate:
     @property
     def has_frames(self) -> bool:
         """Whether the plate is a sequence or a movie."""
-        return self.is_sequence or self.decoder is not None
+        return self.is_sequence or self.frame_count > 0
 
     @classmethod
     def of_file(
@@ -136,7 +119,8 @@ class Plate:
         has_metadata: bool = True,
         file_state: str = "",
         content: bytes | Uint8Array | None = None,
-        decoder: BlenderDecoder | None = None,
+        shown_frame: int = 0,
+        frame_count: int = 0,
         alpha_mode: str = "",
     ) -> Plate:
         """Return the plate of a file, or of the sequence that the file belongs to.
@@ -163,7 +147,8 @@ class Plate:
             has_metadata=has_metadata,
             file_state=file_state,
             content=content,
-            decoder=decoder,
+            shown_frame=shown_frame,
+            frame_count=frame_count,
             alpha_mode=alpha_mode,
         )
 

@@ -169,7 +169,12 @@ def _completed(
     if job.output.mode is not ApplyMode.NODES:
         lut = _lut(estimate, job.output.lut_length)
         files = writers.write(job, lut, stops, sequence, progress, primaries=estimated.primaries)
-    return replace(completed, frames=sequence().numbers if shows_frames else (), files=files)
+    return replace(completed, frames=_numbers(job.plate, sequence) if shows_frames else (), files=files)
+
+
+def _numbers(plate: Plate, sequence: Callable[[], FrameSequence]) -> tuple[int, ...]:
+    """Return the numbers of all frames of a sequence or movie."""
+    return tuple(range(1, plate.frame_count + 1)) if plate.frame_count else sequence().numbers
 
 
 def _lut(estimate: ResponseEstimate, length: int) -> Lut1D:
@@ -194,9 +199,8 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     show_progress(progress, 0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
     plates = (job.plate, *job.estimation.photographs)
     sequences = (sequence, *map(frames_of, job.estimation.photographs))
-    options, is_decoded = job.estimation.options, any(plate.decoder is not None for plate in plates)
-    decoding, estimating = (_part(progress, 0), _part(progress, 1)) if is_decoded else (progress, progress)
-    with sampled_files(list(zip(plates, sequences, strict=True)), decoding) as files:
+    options = job.estimation.options
+    with sampled_files(list(zip(plates, sequences, strict=True))) as files:
         if not job.estimation.is_forced:
             for plate, frames in zip(plates, files, strict=True):
                 _check_is_encoded(plate, frames.paths[0], job.config.path)
@@ -206,8 +210,8 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         is_overruled = has_metadata and job.estimation.is_forced and is_tagged(paths)
         options = replace(options, use_metadata=has_metadata and not is_overruled)
         if len(plates) == 1:
-            return estimate_frames(files[0], network, prior, options, progress=estimating)
-        return estimate_photographs(paths, network, prior, options, progress=estimating).estimate
+            return estimate_frames(files[0], network, prior, options, progress=progress)
+        return estimate_photographs(paths, network, prior, options, progress=progress).estimate
 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
@@ -215,8 +219,3 @@ def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     with suppress(OSError):  # told where the file is read
         file_kind(file)
     check_is_encoded(plate, file, config)
-
-
-def _part(progress: Progress | None, part: int) -> Progress | None:
-    """Return a callback for one of two parts of a job, 0 or 1, that takes half of the progress."""
-    return None if progress is None else lambda done, total: progress(part * total + done, 2 * total)

@@ -36,6 +36,10 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
     """
     if job.output.mode in WITHOUT_FILES:
         return
+    if job.output.mode is ApplyMode.BAKE and job.plate.frame_count:
+        raise AddonError(
+            f"{job.plate.name}: movies are not baked; choose Nodes and render, or open its frames as an image sequence"
+        )
     if job.output.folder is None:
         raise AddonError(
             f"{job.plate.name}: has no folder of its own; choose one under Folder, or save the .blend file"

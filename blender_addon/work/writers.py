@@ -6,7 +6,6 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from pathlib import Path
 
 from crfnet.configs.installed import Installed, install
@@ -18,15 +17,12 @@ from crfnet.pipeline import all_or_none, export_luts
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.linear import linear_targets, linearize_plates
 from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
-from crfnet_core.types import Progress, counted_from, show_progress
+from crfnet_core.types import Progress
 
 from .encoding_check import is_said_encoded
 from .errors import AddonError
-from .frame_files import FrameReader, PlateFrames, frame_reader
+from .frame_files import PlateFrames, frame_reader
 from .job import ApplyMode, Job, Plate
-
-#: Decoded frames that are on the disk at a time; 4K frames of 8 bits take up to 25 MB each.
-FRAMES_DECODED = 8
 
 
 @dataclass(frozen=True)
@@ -101,28 +97,9 @@ def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: 
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
-    linearize = partial(_linearize, job.plate.alpha_mode, lut, options)
     with frame_reader(job.plate) as read, all_or_none(targets, overwrite=options.overwrite) as staged:
-        if job.plate.decoder is None:
-            linearize(read(sequence, progress), staged, progress)
-        else:
-            _linearize_decoded(read, sequence, staged, linearize, progress)
-    return Baked(targets, job.plate.has_frames)
-
-
-def _linearize_decoded(
-    read: FrameReader,
-    sequence: FrameSequence,
-    targets: Sequence[Path],
-    linearize: Callable[[FrameSequence, Sequence[Path]], None],
-    progress: Progress | None,
-) -> None:
-    """Decode and linearise the frames of a movie, with a few decoded ones on the disk at a time."""
-    for start in range(0, len(targets), FRAMES_DECODED):
-        part = slice(start, start + FRAMES_DECODED)
-        frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
-        linearize(read(frames, counted_from(progress, start, len(targets))), targets[part])
-    show_progress(progress, len(targets), len(targets))
+        _linearize(job.plate.alpha_mode, lut, options, read(sequence), staged, progress)
+    return Baked(targets, job.plate.is_sequence)
 
 
 def _linearize(
@@ -156,7 +133,7 @@ def install_color_space(job: Job, lut: Lut1D, stops: float, primaries: Primaries
 
 def identity(plate: Plate) -> str:
     """Return what a plate is known by in the config: its full path; without a file of its own, what it contains."""
-    if plate.content is None:
+    if plate.content is None or plate.frame_count:
         return str(plate.file.resolve())
     content = plate.content if isinstance(plate.content, bytes) else plate.content.tobytes()
     return f"sha256 {hashlib.sha256(content).hexdigest()}"
@@ -174,15 +151,9 @@ def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Prima
 
 
 def baked_name(plate: Plate) -> str:
-    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate.
-
-    The frames of a movie get the four digits that Blender gives to frames.
-    """
+    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate."""
     stem = plain_stem(Path(plate.name + ".exr"))
-    if not plate.has_frames:
-        return f"{stem}_linear.exr"
-    digits = 4 if plate.numbered is None else plate.numbered[1]
-    return f"{stem}_linear.%0{digits}d.exr"
+    return f"{stem}_linear.exr" if plate.numbered is None else f"{stem}_linear.%0{plate.numbered[1]}d.exr"
 
 
 def _photo(plate: Plate) -> Path:

@@ -1,10 +1,16 @@
-"""The option that helps, for errors whose own sentences name none: the text follows the sentence after "; "."""
+"""Remedies for errors that name an option of the command: the libraries' sentences name none."""
 
 from collections.abc import Mapping
 
-#: Code of an error -> the remedy.
+#: Code of an error -> text behind its sentence and "; ".
 REMEDIES: Mapping[str, str] = {
     # library
     "camera_exists": "give another name with --name, or --overwrite to replace it",
     "no_camera": "crfnet camera list shows them",
+    # movies and plates
+    "exr_untagged": "add --encoded",
+    "finished_differs": "or add --overwrite",
+    "primaries_differ": "give them with --primaries",
+    "primaries_unknown": "give them with --primaries",
+    "single_file": "leave --frames out",
 }

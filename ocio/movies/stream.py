@@ -192,7 +192,7 @@ def read_stream(path: Path) -> MovieStream:
     with opened(path) as (container, stream):
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:
-            raise PlateError("movie_too_large", path=path, width=context.width, height=context.height)
+            raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
         if _dolby_vision_profile(stream) == _IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=_IPT_PROFILE)
         packets, frame = _survey(container, stream)

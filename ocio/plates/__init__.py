@@ -8,7 +8,7 @@ first_frame   the first frame of a source that can be read
 primaries     the primaries of an encoded plate: by its tags, as given, or by convention
 linear_space  the space of the linear values, and the matrix that leads there
 light         what the numbers of a linear plate mean, and whether finished frames mean the same
-linear        linearise frames through a LUT, several at a time
+linear        linearize frames through a LUT, several at a time
 parallel      jobs in several threads, with bounded memory
 exr           the header and the file of a linear plate
 """

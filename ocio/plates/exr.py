@@ -10,11 +10,12 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
+from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import first_line, oiio_message
 
 from ..errors import PlateError
 
-#: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
+#: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
 KEPT_METADATA = (
     "DateTime",
     "Exif:ExposureBiasValue",
@@ -74,7 +75,8 @@ def linear_header(
         if attribute.name in KEPT_METADATA:
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
             kind = "int" if isinstance(attribute.value, int) else attribute.type
-            header.attribute(attribute.name, kind, attribute.value)
+            value = one_line(attribute.value) if isinstance(attribute.value, str) else attribute.value
+            header.attribute(attribute.name, kind, value)
     header.attribute("compression", "zips")
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):

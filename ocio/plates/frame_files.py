@@ -1,4 +1,4 @@
-"""Read one frame of a plate: its encoded samples, its alpha and its header; or its colour tags alone."""
+"""Read one frame of a plate: its encoded samples, its alpha and its header; or its color tags alone."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ UNTAGGED = ("", "unknown", "data")
 
 @dataclass(frozen=True, eq=False)
 class EncodedFrame:
-    """The samples of a frame before its linearisation.
+    """The samples of a frame before its linearization.
 
     Parameters
     ----------
@@ -40,7 +40,7 @@ class EncodedFrame:
     color : ColorTags
         What the file says of its primaries.
     is_coverage : bool
-        Whether alpha is coverage, by which linear colours are multiplied; otherwise it is data, a channel of its own.
+        Whether alpha is coverage, by which linear colors are multiplied; otherwise it is data, a channel of its own.
     """
 
     samples: NDArray[Any]
@@ -104,7 +104,7 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
 
 
 def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
-    """Return what the header of a frame says of its colours; it takes and refuses what `read_frame` does."""
+    """Return what the header of a frame says of its colors; it takes and refuses what `read_frame` does."""
     if path.suffix.lower() != ".exr":
         return read_metadata(path).color
     with _opened_exr(path, is_encoded=is_encoded) as source:
@@ -117,7 +117,7 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     source = oiio.ImageInput.open(str(path))
     problem = oiio_message()
     if source is None:
-        raise PlateError(f"{path}: cannot be read ({first_line(problem)}); check the file")
+        raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
@@ -132,7 +132,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
         values = source.read_image(0, 0, 0, header.nchannels, "float")
         problem = oiio_message(source)
     if values is None or problem:
-        raise PlateError(f"{path}: this EXR file is damaged or cut short ({first_line(problem)}); write it again")
+        raise PlateError("exr_damaged", path=path, problem=first_line(problem))
     gray = next(index for index, name in enumerate(header.channelnames) if name != "A")
     channels = [header.channelindex(name) for name in "RGB"]  # -1 where a channel is absent
     samples = values[..., [gray if index < 0 else index for index in channels]]  # (H, W, 3)
@@ -149,14 +149,11 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     """Refuse an OpenEXR file that is or may be linear, is too large or deep, or holds no RGB or gray picture."""
     space = header.get_string_attribute("colorInteropID")
     if space.startswith("lin_"):
-        raise PlateError(f"{path}: is scene-linear already ({space}); give the encoded plate")
+        raise PlateError("plate_is_linear", path=path, space=space)
     if header.image_pixels() > MAX_PIXELS:
-        raise PlateError(f"{path}: claims {header.width} x {header.height} pixels; crop it to {MAX_PIXELS} pixels")
+        raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
     names = set(header.channelnames)
     if header.deep or not (names >= set("RGB") or len(names - {"A"}) == 1):
-        raise PlateError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
+        raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
     if space in UNTAGGED and not is_encoded:
-        raise PlateError(
-            f"{path}: does not say whether its values are linear, as those of most OpenEXR files are; if they are"
-            " encoded, as a camera or a program wrote them for a display, add --encoded"
-        )
+        raise PlateError("exr_untagged", path=path)

@@ -44,9 +44,9 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     except ParseException:
         found = ()
     if len(found) > MAX_FRAMES:
-        raise PlateError(f"frames {frames!r}: more than {MAX_FRAMES} frames; give fewer")
+        raise PlateError("too_many_frames", frames=frames, most=MAX_FRAMES)
     if not found or any(number != int(number) for number in found):
-        raise PlateError(f"frames {frames!r}: is no frame or range; give, say, 1001-1100, 1-9x2 or 1,5,9")
+        raise PlateError("bad_frames", frames=frames)
     return tuple(sorted(map(int, found)))
 
 

@@ -68,7 +68,7 @@ class FramePattern:
         for placeholder in _PLACEHOLDERS:
             matches = list(placeholder.finditer(path.name))
             if len(matches) > 1:
-                raise PlateError(f"{path}: holds {len(matches)} frame placeholders; leave one of them")
+                raise PlateError("several_placeholders", path=path, count=len(matches))
             if matches:
                 start, end = matches[0].span()
                 frames = matches[0]["frames"] or ""
@@ -94,7 +94,7 @@ def listed(folder: Path) -> list[Path]:
     try:
         return list(folder.iterdir())
     except OSError as problem:
-        raise PlateError(f"{folder}: cannot be listed ({problem.strerror}); check the folder") from problem
+        raise PlateError("cannot_list", folder=folder, problem=problem.strerror) from problem
 
 
 def _width(mark: str, frames: str) -> int:

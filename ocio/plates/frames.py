@@ -17,6 +17,9 @@ from .frame_files import FrameLoader, read_frame
 from .frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from .frame_pattern import FramePattern, listed
 
+#: Kind of a name that is not a pattern -> the code of the error that it stands for no frames; see `_kind`.
+_NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "": "no_such_plate"}
+
 
 @dataclass(frozen=True)
 class FrameSequence:
@@ -68,9 +71,9 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
         return FrameSequence((path,))
     parsed = _only_sequence(path) if kind == "folder" else FramePattern.parse(path)
     if parsed is None:
-        raise PlateError(f"{path}: {_no_sequence(path)}")
+        raise PlateError(_NO_SEQUENCE[kind], path=path)
     if parsed.frames and frames is not None:
-        raise PlateError(f"{path}: names the frames {parsed.frames} itself; give them once")
+        raise PlateError("frames_twice", path=path, frames=parsed.frames)
     return pattern_frames(parsed, frames if frames is not None else parsed.frames or None, name=path)
 
 
@@ -85,8 +88,7 @@ def pattern_frames(
     wanted = _span(files, Path(name)) if frames is None else parse_frames(frames)
     numbers = tuple(number for number in wanted if number in files)
     if not numbers:
-        there = f"there are {format_frames(sorted(files))}" if files else "there is no frame of this name"
-        raise PlateError(f"{name}: {there}; check the name and the frames")
+        raise PlateError("no_such_frames", path=name, frames=format_frames(sorted(files)) or "none of this name")
     missing = tuple(number for number in wanted if number not in files)
     return FrameSequence(tuple(files[number] for number in numbers), numbers, missing)
 
@@ -111,10 +113,10 @@ def _only_sequence(folder: Path) -> FramePattern:
     if len(patterns) == 1:
         return patterns[0]
     if not patterns:
-        raise PlateError(f"{folder}: {_no_sequence(folder)}")
+        raise PlateError(_NO_SEQUENCE["folder"], path=folder)
     named = [f"{each.prefix}%0{each.width}d{each.suffix}" for each in patterns[:5]]
     more = ", …" if patterns[5:] else ""
-    raise PlateError(f"{folder}: holds {len(patterns)} sequences: {', '.join(named)}{more}; give one of them")
+    raise PlateError("several_sequences", path=folder, count=len(patterns), patterns=", ".join(named) + more)
 
 
 def _pattern(folder: Path, prefix: str, width: int, suffix: str, first: Any) -> FramePattern:
@@ -132,21 +134,11 @@ def _kind(path: Path) -> str:
         return ""
 
 
-def _no_sequence(path: Path) -> str:
-    """Return why a name that is no pattern, and that is not taken as a single file, stands for no frames."""
-    sequence = "a sequence such as plate.%04d.png or plate.####.png"
-    return {
-        "folder": f"is a folder without a sequence; give a file in it, or {sequence}",
-        "file": "is a single file, which has no frames to choose from; leave --frames out or give a pattern",
-        "": f"there is no such file; check the name, or give {sequence}",
-    }[_kind(path)]
-
-
 def _span(files: Iterable[int], path: Path) -> Sequence[int]:
     """Return all frame numbers from the first to the last file."""
     numbers = sorted(files)
     if not numbers:
         return ()
     if numbers[-1] - numbers[0] > MAX_FRAMES:
-        raise PlateError(f"{path}: frames {numbers[0]} to {numbers[-1]} are too far apart; say which frames to use")
+        raise PlateError("frames_far_apart", path=path, first=numbers[0], last=numbers[-1])
     return range(numbers[0], numbers[-1] + 1)

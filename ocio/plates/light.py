@@ -106,9 +106,7 @@ def check_finished(
     for path in frames:
         written = _attributes(path)
         if EXPOSURE in written and (difference := _difference(written, light, depth, (sizes or {}).get(path))):
-            raise PlateError(
-                f"{path}: is there already, with {difference}; repeat that, add --overwrite or change --out"
-            )
+            raise PlateError("finished_differs", path=path, difference=difference)
 
 
 def _difference(written: dict[str, Any], light: PlateLight, depth: str, size: tuple[int, int] | None) -> str:

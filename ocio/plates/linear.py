@@ -1,4 +1,4 @@
-"""Linearise plates: encoded files and frame sequences to scene-linear OpenEXR."""
+"""Linearize plates: encoded files and frame sequences to scene-linear OpenEXR."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ from .light import PlateLight, check_finished
 from .parallel import finished
 from .primaries import check_same_primaries, plate_primaries
 
-#: Frames linearised at a time by default; each needs about 20 bytes of memory per pixel.
+#: Frames linearized at a time by default; each needs about 20 bytes of memory per pixel.
 MAX_WORKERS = 8
 
-#: Rows linearised at a time, which keeps the memory for intermediate values small.
+#: Rows linearized at a time, which keeps the memory for intermediate values small.
 _ROWS = 64
 
 _LEFTOVER = re.compile(r"\.(.+)\.[a-z0-9_]{8}(\.exr)", re.IGNORECASE)  # the temporary names of `atomic_write`
@@ -82,19 +82,17 @@ def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
     """
     out = Path(out)
     if out.suffix.lower() != ".exr":
-        raise PlateError(f"{out}: linear plates are OpenEXR; give a name that ends in .exr")
+        raise PlateError("not_exr", path=out)
     targets = [out]
     if sequence.numbers:
         pattern = FramePattern.parse(out)
         if pattern is None:
-            count = len(sequence.numbers)
-            frames = f"{count} frames; put their" if count > 1 else "a frame of a sequence; put its"
-            raise PlateError(f"{out}: one name for {frames} number into it, as in plate.%04d.exr")
+            raise PlateError("no_placeholder", path=out, count=len(sequence.numbers))
         targets = [pattern.path(number) for number in sequence.numbers]
     plates = {os.path.realpath(path) for path in sequence.paths}
     for target in targets:
         if os.path.realpath(target) in plates:
-            raise PlateError(f"{target}: is one of the plates, which are never replaced; choose another name")
+            raise PlateError("target_is_plate", path=target)
     return tuple(targets)
 
 
@@ -111,9 +109,9 @@ def linearize_plates(
 
     Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused, as is
     one that says nothing, unless `is_encoded` is set: most of these are linear. Gray becomes RGB. Alpha is kept: the
-    colour is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
+    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
     of coverage.
-    Rows and columns stay as stored, and so does the metadata that remains true.
+    Pixels are upright where the reader turns them, and the metadata that remains true is kept.
     The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
     The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
 
@@ -135,7 +133,7 @@ def linearize_plates(
     options : PlateOptions
         Sample type, exposure, primaries, space, and whether finished frames are written again.
     workers : int or None
-        Frames linearised at a time; by default one per core, up to `MAX_WORKERS`.
+        Frames linearized at a time; by default one per core, up to `MAX_WORKERS`.
     progress : callable or None
         Called in this thread with the number of finished (and skipped) frames, and of all. What it raises ends the
         run after the frames that have begun; the temporary files are gone then.
@@ -178,7 +176,7 @@ def linearize_plates(
                     elsewhere.append(target)
             show_progress(progress, done, len(targets))
     if failures:
-        raise PlateError(_failure(failures, targets, sequence))
+        raise _failure(failures, targets, sequence)
     check_finished(elsewhere, light, options.depth)
     written = tuple(target for target in pending if target not in elsewhere)
     return PlateReport(written, (*skipped, *sorted(elsewhere)), sequence.missing, light)
@@ -214,6 +212,7 @@ class _Conversion:
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:
         """Return matrix @ lut.apply(B) * scale, times coverage, and alpha: (H, W, 3 or 4), of the output's type."""
         height, width, _ = frame.samples.shape
+        self._check_alpha(frame)
         linear = np.empty((height, width, 3 if frame.alpha is None else 4), SAMPLE_TYPES[self.options.depth])
         is_coded = frame.samples.dtype.kind == "u"
         codes = np.arange(frame.largest + 1) / frame.largest
@@ -235,6 +234,12 @@ class _Conversion:
             linear[rows, :, :3] = values
         return linear
 
+    def _check_alpha(self, frame: EncodedFrame) -> None:
+        """Refuse alpha that does not fit into the sample type; other floats of OpenEXR files are not bounded."""
+        peak = 0.0 if frame.alpha is None else float(np.abs(frame.alpha).max())
+        if peak > float(np.finfo(SAMPLE_TYPES[self.options.depth]).max):
+            raise PlateError("exceeds_half", peak=peak)
+
 
 def _look_up(table: NDArray[Any], codes: NDArray[Any]) -> NDArray[Any]:
     """Return the entries of codes, shape (..., 3), from a table with one column, or with one for each channel."""
@@ -247,23 +252,23 @@ def _scale(light: PlateLight, options: PlateOptions) -> float:
     """Return the factor of the exposure, after checking that the sample type can hold the linear values."""
     matrix = np.eye(3) if light.space.matrix is None else light.space.matrix
     if options.depth not in SAMPLE_TYPES:
-        raise PlateError(f"depth {options.depth!r} is unknown; choose half or float")
+        raise PlateError("unknown_depth", depth=options.depth)
     try:
         scale = float(2.0**light.stops)
     except OverflowError:
         scale = np.inf
     peak = float(np.abs(light.lut.values).max() * np.abs(matrix).sum(axis=1).max()) * scale
     if not 0 < scale < np.inf or not peak <= np.finfo(np.float32).max:
-        raise PlateError(f"an exposure of {light.stops:g} stops is out of range; give one like -2 or 1.5")
+        raise PlateError("exposure_out_of_range", stops=light.stops)
     if not peak <= float(np.finfo(SAMPLE_TYPES[options.depth]).max):
-        raise PlateError(f"values up to {peak:.6g} do not fit into half floats; ask for float, or for less exposure")
+        raise PlateError("exceeds_half", peak=peak)
     return scale
 
 
 def _worker_count(workers: int | None) -> int:
-    """Return the number of frames linearised at a time."""
+    """Return the number of frames linearized at a time."""
     if workers is not None and workers < 1:
-        raise PlateError(f"{workers} workers cannot work; give 1 or more")
+        raise PlateError("bad_workers", workers=workers)
     return workers or min(cores(), MAX_WORKERS)
 
 
@@ -279,13 +284,12 @@ def _remove_leftovers(targets: Iterable[Path]) -> None:
                         path.unlink()
 
 
-def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> str:
-    """Return the message that names the frames that failed."""
+def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> CRFNetError:
+    """Return the error that names the frames that failed; of a single file its own."""
     failed = [target for target in targets if target in failures]
     first = failures[failed[0]]
     if not sequence.numbers:
-        return str(first)
+        return first
     numbers = format_frames([n for n, target in zip(sequence.numbers, targets, strict=True) if target in failures])
     gaps = f"; missing are {format_frames(sequence.missing)}" if sequence.missing else ""
-    count = f"{len(failed)} of {len(targets)} frames"
-    return f"{count} failed ({numbers}) and the others are written{gaps}; the first: {first}"
+    return PlateError("frames_failed", count=len(failed), total=len(targets), frames=numbers, gaps=gaps, first=first)

@@ -62,7 +62,7 @@ class LinearSpace:
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
     """Return the space of a plate's linear values.
 
-    The matrix does not clip: colours outside the target's gamut get negative values, by which they can be converted
+    The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
     back. A plate of unknown primaries is left as it is, and its space is unknown.
 
     Parameters
@@ -78,11 +78,9 @@ def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> Linea
         If there is no such space, or unknown primaries are to be converted to ACES.
     """
     if output not in TARGETS:
-        raise PlateError(f"output space {output!r} is unknown; choose {', '.join(OUTPUT_SPACES)}")
+        raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))
     if plate.primaries is not None:
         return LinearSpace(plate.primaries, TARGETS[output] or plate.primaries)
     if output.startswith("ACES"):
-        raise PlateError(
-            f"the plate's primaries are {plate}, so it cannot be converted to {output}; say what they are: --primaries"
-        )
+        raise PlateError("primaries_unknown", primaries=plate, space=output)
     return LinearSpace(None, None)

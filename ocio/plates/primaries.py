@@ -58,7 +58,7 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
     if choice in PHOTOGRAPHIC:
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
     if choice != PRIMARIES[0]:
-        raise PlateError(f"primaries {choice!r} are unknown; choose {', '.join(PRIMARIES[:-1])} or {PRIMARIES[-1]}")
+        raise PlateError("unknown_primaries", primaries=choice, choices=", ".join(PRIMARIES))
     return PlatePrimaries(tags.primaries, tags.source) if tags.source else PlatePrimaries(REC709, BY_CONVENTION)
 
 
@@ -79,7 +79,4 @@ def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0])
 def check_same_primaries(path: Path, found: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
     """Raise a PlateError if a plate has other primaries than the first one that it goes together with."""
     if found.primaries != expected.primaries:
-        raise PlateError(
-            f"{path}: its primaries are {found}, those of {first.name} {expected};"
-            f" process them separately, or give the primaries of all with --primaries"
-        )
+        raise PlateError("primaries_differ", path=path, primaries=found, first=first.name, expected=expected)

@@ -204,26 +204,6 @@ def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
     assert baked.tracking.camera.focal_length == 50
 
 
-def test_tracks_and_camera_are_copied_one_by_one(sequence):
-    """So the baked frames of a movie get them."""
-    from blender_addon.scene.apply import _copy_tracking
-
-    clips = [bpy.data.movieclips.load(sequence.filepath) for _ in range(2)]
-    source, target = (clip.tracking for clip in clips)
-    source.camera.focal_length, source.camera.k1 = 77, 0.125
-    track = source.tracks.new(name="corner", frame=2)
-    track.markers[0].pattern_corners = ((-0.1, -0.1), (0.1, -0.1), (0.1, 0.2), (-0.1, 0.1))
-    track.markers.insert_frame(3, co=(0.25, 0.5)).mute = True
-    _copy_tracking(source, target)
-    assert (target.camera.focal_length, target.camera.k1) == (77, 0.125)
-    (copy,) = target.tracks
-    assert [marker.frame for marker in copy.markers] == [marker.frame for marker in track.markers]
-    for marker, kept in zip(track.markers, copy.markers, strict=True):
-        assert tuple(kept.co) == tuple(marker.co)
-        assert kept.mute == marker.mute
-        assert [tuple(corner) for corner in kept.pattern_corners] == [tuple(c) for c in marker.pattern_corners]
-
-
 @pytest.mark.parametrize("kind", ["image", "clip"])
 @pytest.mark.parametrize("is_relative", [True, False])
 def test_a_relative_path_stays_relative(addon, tmp_path, codes, kind, is_relative):

@@ -10,11 +10,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 from .test_addon_movies import load, stored_curve  # noqa: E402 - after the skip
 
 
-@pytest.fixture(autouse=True)
-def no_second_blender(monkeypatch):
-    monkeypatch.setattr("subprocess.Popen", None)
-
-
 @pytest.mark.parametrize("suffix", ["bmp", "tga", "jp2"])
 def test_their_code_values_are_exact(addon, tmp_path, codes, plate_file, suffix):
     path = tmp_path / f"other.{suffix}"

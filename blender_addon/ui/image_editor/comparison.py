@@ -16,6 +16,7 @@ import numpy as np
 
 from ... import lazy_import
 from ...scene.color_management import running_config
+from ...scene.movie_frames import codes_of_frame
 from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, is_heif, plate_itself, plate_of
 from ...work.errors import AddonError
 
@@ -101,15 +102,13 @@ def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Arr
         return _codes_of_file(image, user)
     if not width * height:
         raise _unreadable(image)
-    if image.is_float and image.source == "MOVIE":
-        raise AddonError(
-            f"{image.name}: movies of more than 8 bits are not read in this editor; choose Nodes or Bake under Apply As"
-        )
+    if image.source == "MOVIE":
+        return _codes_of_movie(image, user.frame_current)
     alpha = alpha_mode(image)
     # The pixels of floats are linear light by the color space; PREMUL ones were divided by alpha, and rounded.
     if image.is_float or alpha == "PREMUL":
         return _codes_of_file(image, user)
-    pixels = _pixels_of_movie(image, user.frame_current) if image.source == "MOVIE" else _pixels(image)
+    pixels = _pixels(image)
     if image.channels < 3:
         return pixels[..., :1].repeat(3, axis=2)
     return pixels[..., :3] if alpha in ("NONE", "CHANNEL_PACKED") else pixels
@@ -122,19 +121,15 @@ def _pixels(image: bpy.types.Image) -> Float32Array:
     return flat.reshape(image.size[1], image.size[0], image.channels)
 
 
-def _pixels_of_movie(image: bpy.types.Image, frame: int) -> Float32Array:
-    """Return the pixels of a frame of a movie; Blender has those of the frame that it read last, for whatever editor.
-
-    Blender can be asked for a frame only where it scales one. So it scales a copy, which is discarded, to its own size.
-    """
-    copy = image.copy()
-    try:
-        copy.scale(*image.size, frame=frame)
-        return _pixels(copy)
-    except RuntimeError:
-        raise _unreadable(image) from None
-    finally:
-        bpy.data.images.remove(copy)
+def _codes_of_movie(movie: bpy.types.Image, frame: int) -> Float32Array:
+    """Return the code values of a frame of a movie of 8 bits."""
+    codes = codes_of_frame(movie, frame)
+    if codes is None:
+        raise AddonError(
+            f"{movie.name}: movies of more than 8 bits are not read in this editor; open the frames of the movie as an"
+            " image sequence"
+        )
+    return np.divide(codes[::-1], np.float32(255), dtype=np.float32)
 
 
 def _unreadable(image: bpy.types.Image) -> AddonError:
@@ -151,7 +146,7 @@ def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32
     )
     with frame_files.frame_reader(plate) as read:
         shown = Path(bpy.path.abspath(image.filepath_from_user(image_user=user), library=image.library))
-        (path,) = read(frame_files.FrameSequence((shown,)), None).paths
+        (path,) = read(frame_files.FrameSequence((shown,))).paths
         frame = frame_files.read_plate_frame(path, plate.alpha_mode, is_encoded=is_encoded)
     channels = [frame.samples / np.float32(frame.largest)]
     if frame.alpha is not None and frame.is_coverage:

@@ -137,7 +137,7 @@ class TestPrimaries:
         assert done.code == BAD_INPUT
         assert done.err == (
             "crfnet: error: the plate's primaries are unknown (ICC profile of tables), so it cannot be converted to"
-            " ACEScg; say what they are: --primaries\n"
+            " ACEScg; state what they are; give them with --primaries\n"
         )
         assert not (tmp_path / "a.exr").exists()
         assert crfnet(*arguments, "--output-space", "ACEScg", "--primaries", "rec2020").code == 0
@@ -147,10 +147,8 @@ class TestPrimaries:
         other = write_tagged(tmp_path / "p3.jpg", pixels, matrix_profile(DISPLAY_P3))
         done = estimate(plate, other)
         assert done.code == BAD_INPUT
-        assert (
-            "p3.jpg: its primaries are Display P3 (ICC profile), those of plate.jpg Rec.709 (no tag, so by" in done.err
-        )
-        assert "process them separately, or give the primaries of all with --primaries" in done.err
+        assert "p3.jpg: its primaries are Display P3 (ICC profile), but Rec.709 (no tag, so by" in done.err
+        assert "process them separately, or state the primaries of all; give them with --primaries" in done.err
         assert not (tmp_path / "out").exists()
         assert estimate(plate, other, "--primaries", "p3").code == 0
         assert estimate(plate, other, "--each", "--overwrite").code == 0
@@ -162,7 +160,10 @@ class TestPrimaries:
         done = crfnet("linearize", tmp_path / "shot.%d.tif", "--lut", lut_file, "--out", out)
         assert done.code == BAD_INPUT
         assert "1 of 3 frames failed (3)" in done.err
-        assert "shot.3.tif: its primaries are Rec.709 (ICC profile), those of shot.1.tif Display P3" in done.err
+        assert (
+            "shot.3.tif: its primaries are Rec.709 (ICC profile), but Display P3 (ICC profile) in shot.1.tif"
+            in done.err
+        )
         assert [name for name in listed(tmp_path) if name.endswith(".exr")] == ["l.1.exr", "l.2.exr"]
 
 

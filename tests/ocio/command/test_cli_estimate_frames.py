@@ -63,10 +63,10 @@ def test_frames_of_a_movie_are_chosen(estimated, tmp_path):
     ("name", "more", "says"),
     [
         ("shot.%04d.jpg", ("--frames", "1-9"), "there are 1001-1012; check the name and the frames"),
-        ("shot.%04d.jpg", ("--frames", "a"), "is no frame or range"),
+        ("shot.%04d.jpg", ("--frames", "a"), "are not a frame or range"),
         ("shot.1001.jpg", ("--frames", "1001"), "is a single file, which has no frames to choose from"),
         ("shot.1001.jpg", ("--frames", "1001", "--each"), "--frames chooses the frames of one response"),
-        ("other.%04d.jpg", (), "there is no frame of this name"),
+        ("other.%04d.jpg", (), "there are none of this name"),
     ],
 )
 def test_what_has_no_such_frames_is_refused(crfnet, fixed_model, shot, tmp_path, name, more, says):

@@ -101,7 +101,7 @@ class TestResuming:
         done = crfnet(*same, *arguments)
         assert done.code == BAD_INPUT
         assert "l.0001.exr: is there already, with " + difference in done.err
-        assert done.err.endswith("; repeat that, add --overwrite or change --out\n")
+        assert done.err.endswith("; repeat that or write elsewhere; or add --overwrite\n")
         assert {name: (frames / name).read_bytes() for name in listed(frames)} == before
         assert crfnet(*same, *arguments, "--overwrite").code == 0
         assert crfnet(*same, *arguments).code == 0

@@ -181,7 +181,7 @@ def test_without_pyav_it_says_what_to_do(crfnet, look, movie, tmp_path, monkeypa
         (("--frames", "100-200"), "there are 1-24; check the name and the frames"),
         (("--frames", "0"), "there are 1-24; check the name and the frames"),
         (("--frames", "x"), "frames 'x'"),
-        (("--out", "a.exr"), "one name for 24 frames"),
+        (("--out", "a.exr"), "of which there are 24"),
     ],
 )
 def test_bad_frames_are_refused_in_one_line(linearize, tmp_path, monkeypatch, more, message):

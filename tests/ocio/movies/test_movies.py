@@ -279,7 +279,7 @@ def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
         container.mux(stream.encode(sound))
     assert refusal(tmp_path / "a.wav") == "no_video"
     monkeypatch.setattr("crfnet.movies.stream.MAX_PIXELS", 100)
-    assert refusal(movie) == "movie_too_large"
+    assert refusal(movie) == "plate_too_large"
     monkeypatch.setitem(sys.modules, "av", None)
     assert refusal(movie) == "pyav_missing"
 

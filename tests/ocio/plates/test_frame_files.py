@@ -38,26 +38,27 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
 
 
 @pytest.mark.parametrize(
-    ("channels", "attributes", "message"),
+    ("channels", "attributes", "code"),
     [
-        (("R", "G", "B"), {"colorInteropID": "lin_ap1_scene"}, r"is scene-linear already \(lin_ap1_scene\); give the"),
-        (("R", "G"), {}, "needs channels R, G and B, or a gray one; found R, G"),
-        (("left.R", "left.G", "left.B"), {}, "needs channels R, G and B, or a gray one; found"),
-        (("A",), {}, "needs channels R, G and B, or a gray one; found A"),
+        (("R", "G", "B"), {"colorInteropID": "lin_ap1_scene"}, "plate_is_linear"),
+        (("R", "G"), {}, "exr_channels"),
+        (("left.R", "left.G", "left.B"), {}, "exr_channels"),
+        (("A",), {}, "exr_channels"),
     ],
 )
-def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, message):
+def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, code):
     path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
-    with pytest.raises(PlateError, match=message) as caught:
+    with pytest.raises(PlateError) as caught:
         read_frame(path)
-    assert str(caught.value).startswith(str(path))
+    assert (caught.value.code, caught.value.facts["path"]) == (code, path)
 
 
 @pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
 def test_an_exr_that_says_nothing_of_its_encoding_is_refused_unless_told(tmp_path, tag):
     path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), **tag)
-    with pytest.raises(PlateError, match=r"does not say whether its values are linear.*add --encoded"):
+    with pytest.raises(PlateError) as caught:
         read_frame(path)
+    assert caught.value.code == "exr_untagged"
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, [[[0.5, 0.5, 0.5]]])
 
 
@@ -80,7 +81,7 @@ def test_a_cut_exr_is_refused(tmp_path):
 
 def test_other_files_are_read_as_photographs(tmp_path):
     (tmp_path / "a.png").write_text("no picture")
-    with pytest.raises(PhotoError, match="is no JPEG, HEIC"):
+    with pytest.raises(PhotoError):
         read_frame(tmp_path / "a.png")
 
 
@@ -93,11 +94,12 @@ def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):
 
 def test_the_tags_alone_are_refused_where_the_frame_is(tmp_path):
     pixels = np.full((4, 4, 3), 0.5, np.float32)
-    for space, message in (("lin_rec709_scene", "is scene-linear already"), ("", "--encoded")):
+    for space, code in (("lin_rec709_scene", "plate_is_linear"), ("", "exr_untagged")):
         path = write_image(tmp_path / "a.exr", pixels, colorInteropID=space)
         for read in (read_frame, read_color_tags):
-            with pytest.raises(PlateError, match=message):
+            with pytest.raises(PlateError) as caught:
                 read(path)
+            assert caught.value.code == code
     assert read_color_tags(path, is_encoded=True).primaries is None
 
 

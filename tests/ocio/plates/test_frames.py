@@ -76,8 +76,9 @@ def test_a_name_without_a_placeholder_is_no_pattern(name):
 
 @pytest.mark.parametrize("name", ["a.%04d.%04d.png", "a.##.##.png", "@a@.png", "$F.$F4.png", "[1-2].[3-4].png"])
 def test_several_placeholders_are_refused(name):
-    with pytest.raises(PlateError, match="holds 2 frame placeholders; leave one"):
+    with pytest.raises(PlateError) as caught:
         FramePattern.parse(name)
+    assert (caught.value.code, caught.value.facts["count"]) == ("several_placeholders", 2)
 
 
 def test_a_single_file_has_no_frame_numbers(tmp_path):
@@ -152,8 +153,9 @@ def test_a_folder_with_one_sequence_is_that_sequence(tmp_path, files, numbers):
 
 def test_a_folder_with_several_sequences_lists_them(tmp_path):
     touch(tmp_path, *(f"{shot}.{number:04d}.png" for shot in "ab" for number in (1, 2)))
-    with pytest.raises(PlateError, match=r"holds 2 sequences: a\.%04d\.png, b\.%04d\.png; give one of them"):
+    with pytest.raises(PlateError) as caught:
         find_frames(tmp_path)
+    assert (caught.value.code, caught.value.facts["patterns"]) == ("several_sequences", "a.%04d.png, b.%04d.png")
 
 
 def test_the_add_on_needs_no_fileseq(tmp_path, monkeypatch):
@@ -187,19 +189,18 @@ def test_a_specification_stands_for_ascending_numbers(frames, numbers):
     assert parse_frames(frames) == numbers
 
 
-@pytest.mark.parametrize(
-    "frames", ["", "a", "1-", "-", "1-2-3", "1-5x", "1..5", "1;2", "1,,2", "1.5", "x2", "٣", "1-5x0", "1-2x0.5"]
-)
+@pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1.5", "٣", "1-5x0", "1-2x0.5"])
 def test_a_malformed_specification_is_refused(frames):
-    with pytest.raises(PlateError, match="is no frame or range; give, say, 1001-1100") as caught:
+    with pytest.raises(PlateError) as caught:
         parse_frames(frames)
-    assert "\n" not in str(caught.value)
+    assert caught.value.code == "bad_frames"
 
 
 def test_an_endless_range_is_refused_at_once():
     for frames in ("0-999999999", "1-5000000"):
-        with pytest.raises(PlateError, match=f"more than {MAX_FRAMES} frames; give fewer"):
+        with pytest.raises(PlateError) as caught:
             parse_frames(frames)
+        assert (caught.value.code, caught.value.facts["most"]) == ("too_many_frames", MAX_FRAMES)
 
 
 def test_frames_that_are_no_integers_are_refused():
@@ -209,32 +210,33 @@ def test_frames_that_are_no_integers_are_refused():
 
 def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
-    with pytest.raises(PlateError, match="frames 1 to 20261121 are too far apart; say which"):
+    with pytest.raises(PlateError) as caught:
         find_frames(tmp_path / "p.%d.png")
+    assert caught.value.code == "frames_far_apart"
     assert find_frames(tmp_path / "p.%d.png", "1").numbers == (1,)
 
 
 @pytest.mark.parametrize(
-    ("name", "frames", "message"),
+    ("name", "frames", "code"),
     [
-        ("q.png", None, "there is no such file; check the name, or give a sequence such as"),
-        ("empty", None, "is a folder without a sequence; give a file in it, or a sequence such as"),
-        ("p.1-2#.png", "1", "names the frames 1-2 itself; give them once"),
-        ("p.0001.png", "1-3", "is a single file, which has no frames to choose from"),
-        ("q.%04d.png", None, "there is no frame of this name; check the name and the frames"),
-        ("p.%04d.png", "7-9", "there are 1-2; check the name and the frames"),
-        ("absent/p.%04d.png", None, "cannot be listed .*No such file"),
-        ("x" * 300 + ".png", None, "there is no such file"),
-        ("p.*.png", None, "there is no such file; check the name, or give a sequence such as plate.%04d.png"),
+        ("q.png", None, "no_such_plate"),
+        ("empty", None, "folder_without_sequence"),
+        ("p.1-2#.png", "1", "frames_twice"),
+        ("p.0001.png", "1-3", "single_file"),
+        ("q.%04d.png", None, "no_such_frames"),
+        ("p.%04d.png", "7-9", "no_such_frames"),
+        ("absent/p.%04d.png", None, "cannot_list"),
+        ("x" * 300 + ".png", None, "no_such_plate"),
+        ("p.*.png", None, "no_such_plate"),
     ],
 )
-def test_what_cannot_be_found_is_named_with_a_remedy(tmp_path, name, frames, message):
+def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     (tmp_path / "empty").mkdir()
     touch(tmp_path / "empty", "readme.txt", "p.0001.png", ".p.0002.png")
-    with pytest.raises(PlateError, match=message) as caught:
+    with pytest.raises(PlateError) as caught:
         find_frames(tmp_path / name, frames)
-    assert "\n" not in str(caught.value)
+    assert caught.value.code == code
 
 
 @pytest.mark.parametrize(
