@@ -12,7 +12,7 @@ EXAMPLES = """examples:
   crfnet camera list
   crfnet camera show "A7 III"                                  how good the response is, and what disagrees with it
   crfnet camera remove "A7 III" IMG_2.jpg                      or its SHA-256, where two have one name
-  crfnet camera export "A7 III" a7.spi1d                       or another format of crfnet convert, or .json
+  crfnet camera export "A7 III" a7.spi1d                       or another LUT format, or .json
   crfnet estimate plate.jpg --camera "A7 III" --out look
 
 Of photographs the evidence is kept, not the pixels. One name is for one picture mode: a camera set to another has
@@ -52,7 +52,7 @@ def _add_export(actions: Commands) -> None:
         "out",
         type=written_path,
         metavar="OUT",
-        help="a LUT or a file that crfnet convert writes, or .json to hand it on",
+        help="a LUT, or .json to hand it on",
     )
     add_model(parser)
     parser.add_argument("--overwrite", action="store_true", help="replace a file that is already there")

@@ -22,7 +22,7 @@ from crfnet_core.library import (
 from crfnet_core.network import ResponseNetwork
 
 from ... import pipeline, report
-from ...interchange.files import write_response
+from ...luts.files import write_lut
 from .printing import print_json, print_lines, progress_bar
 
 
@@ -98,18 +98,17 @@ def _remove(arguments: argparse.Namespace) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> None:
-    """Write the response of a camera as a LUT, for another program, or as the library keeps it."""
+    """Write the response of a camera as a LUT, or as the library keeps it."""
     camera, out = find_camera(arguments.name), arguments.out
-    notes: tuple[str, ...] = ()
     if out.suffix.lower() == ".json":
         atomic_write_text(out, json_text(camera_document(camera)), overwrite=arguments.overwrite, error=CameraError)
     else:
         lut = pipeline.response_lut(camera_estimate(camera, model=pipeline.model_label(arguments.model)))
-        notes = write_response(out, lut, overwrite=arguments.overwrite)
+        write_lut(out, lut, overwrite=arguments.overwrite)
     if arguments.json:
-        print_json({"camera": camera.name, "written": str(out), "notes": notes})
+        print_json({"camera": camera.name, "written": str(out)})
     else:
-        print_lines([*(f"{note}." for note in notes), f"Written: {out}."])
+        print_lines([f"Written: {out}."])
 
 
 def _print_camera(camera: Camera, arguments: argparse.Namespace) -> None:

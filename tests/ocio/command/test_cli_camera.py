@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
-from crfnet.luts.files import read_lut
+from crfnet.luts.files import WRITERS, read_lut
 from crfnet.luts.response import response_of_lut
 from crfnet_core import ResponseCurve
 from crfnet_core.files import file_sha256
@@ -179,8 +179,8 @@ def test_plates_are_linearized_with_a_camera_as_with_its_exported_lut(run, crfne
     assert np.array_equal(read_image(tmp_path / "a.exr"), read_image(tmp_path / "b.exr"))
 
 
-@pytest.mark.parametrize("suffix", [".cube", ".clf", ".npy", ".m"])
-def test_a_response_is_exported_in_the_formats_of_convert(run, crfnet, measured, tmp_path, suffix):
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_a_response_is_exported_in_every_format(run, crfnet, measured, tmp_path, suffix):
     path = tmp_path / f"measured{suffix}"
     assert f"Written: {path}." in run("camera", "export", "measured", path)
     assert crfnet("info", path).code == 0
