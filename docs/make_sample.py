@@ -18,13 +18,14 @@ from matplotlib import image
 from numpy.typing import NDArray
 
 from crfnet.cli.main import main
+from crfnet.luts.files import WRITERS
 
 ROOT = Path(__file__).resolve().parents[1]
 PHOTO = ROOT / "tests" / "data" / "plate.jpg"
 SAMPLE = ROOT / "docs" / "sample"
 
 #: What is copied as it is.
-COPIED = ("config.ocio", "plate.spi1d", "plate.cube", "plate.clf", "plate.json")
+COPIED = ("config.ocio", *(f"plate{suffix}" for suffix in WRITERS), "plate.json")
 
 SHEET = "plate_sheet.png"
 

@@ -9,7 +9,6 @@ configs       OpenColorIO configs with a plate's color space
 plates        frame sequences, and linear EXR files made of them
 movies        movies as sources of frames
 luts          the LUT, and its file formats
-interchange   responses in the files of other programs
 output_files  which files an estimate writes, and whether they may be written
 staging       a set of files that appears whole or not at all
 options       typed options of the pipeline

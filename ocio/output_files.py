@@ -32,8 +32,8 @@ class OutputFiles:
 
     Parameters
     ----------
-    spi1d, cube, clf : Path
-        The inverse response in three formats.
+    luts : tuple of Path
+        The inverse response in each format of `WRITERS`.
     config : Path
         The OpenColorIO config; several estimates may share it.
     linear : tuple of Path
@@ -45,12 +45,10 @@ class OutputFiles:
     color_space : str
         The name of the photograph's colour space in the config.
     forward : tuple of Path
-        The response itself in three formats; empty if it is not written.
+        The response itself in each format; empty if it is not written.
     """
 
-    spi1d: Path
-    cube: Path
-    clf: Path
+    luts: tuple[Path, ...]
     config: Path
     linear: tuple[Path, ...]
     sheet: Path | None
@@ -73,9 +71,7 @@ class OutputFiles:
         """
         stem, outputs = plain_stem(photos[0]), outputs or OutputOptions()
         return cls(
-            spi1d=folder / f"{stem}.spi1d",
-            cube=folder / f"{stem}.cube",
-            clf=folder / f"{stem}.clf",
+            luts=tuple(folder / f"{stem}{suffix}" for suffix in WRITERS),
             config=folder / CONFIG_NAME,
             linear=tuple(folder / f"{plain_stem(photo)}_linear.exr" for photo in photos if outputs.has_linear),
             sheet=folder / f"{stem}{SHEET_ENDING}" if outputs.has_sheet else None,
@@ -85,9 +81,9 @@ class OutputFiles:
         )
 
     @property
-    def luts(self) -> tuple[Path, ...]:
-        """The inverse response in every format."""
-        return (self.spi1d, self.cube, self.clf)
+    def lut(self) -> Path:
+        """The LUT that the config names: the first format."""
+        return self.luts[0]
 
     @property
     def own(self) -> tuple[Path, ...]:
@@ -99,9 +95,7 @@ class OutputFiles:
         """Return the same files in another folder."""
         return replace(
             self,
-            spi1d=folder / self.spi1d.name,
-            cube=folder / self.cube.name,
-            clf=folder / self.clf.name,
+            luts=tuple(folder / path.name for path in self.luts),
             config=folder / self.config.name,
             linear=tuple(folder / path.name for path in self.linear),
             sheet=self.sheet and folder / self.sheet.name,
@@ -131,12 +125,12 @@ class OutputFiles:
         """
         return PlateColorSpace(
             name=self.color_space,
-            lut_file=self.spi1d.name,
+            lut_file=self.lut.name,
             aliases=_aliases(self.color_space),
             description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
             file_pattern=file_pattern or plate_pattern(photo.name),
             exposure=exposure,
-            linear_patterns=linear_patterns(self.spi1d.stem, [path.name for path in self.linear]),
+            linear_patterns=linear_patterns(self.lut.stem, [path.name for path in self.linear]),
         )
 
 

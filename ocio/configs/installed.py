@@ -15,8 +15,8 @@ import PyOpenColorIO as OCIO
 
 from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
+from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
-from ..luts.spi1d import write_spi1d
 from ..output_files import check_config_folder, distinct_names, output_folder
 from .files import load_config, loaded_or_empty, write_config
 from .installation_record import (
@@ -129,7 +129,7 @@ def install(
             as_before_on_failure([lut_file, config, record_file(config)]),
             backed_up(config, record) as backup,
         ):
-            write_spi1d(lut_file, lut, overwrite=True)
+            write_lut(lut_file, lut, overwrite=True)
             added = add_plate_color_space(source, replace(space, lut_file=f"{FOLDER}/{space.lut_file}"))
             write_config(config, added, check={space.name: lut}, overwrite=True)
             folders = record.folders if record and not copied else copied

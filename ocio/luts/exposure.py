@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
+from ..errors import LutError
 from .rgb_lut import AnyLut
 
 
@@ -28,14 +28,14 @@ def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = 
 
     Raises
     ------
-    CRFNetError
+    LutError
         If the gray is black in this response.
     """
     if gray is None:
         return stops
     irradiance = linear_gray(response, gray)
     if irradiance <= 0:
-        raise CRFNetError(f"a brightness of {gray:g} is black in this response; anchor a brighter gray")
+        raise LutError("gray_is_black", gray=gray)
     return float(np.log2(MIDDLE_GRAY / irradiance)) + stops
 
 

@@ -3,64 +3,69 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
+from crfnet_core.files import atomic_write_text
+
 from ..errors import LutError
-from .agreement import check_agreement
-from .clf import read_clf, write_clf
-from .cube import read_cube, write_cube
+from .clf import clf_text
+from .cube import cube_text
+from .opencolorio import read_lut
 from .rgb_lut import AnyLut
-from .spi1d import read_spi1d, write_spi1d
+from .spi1d import spi1d_text
 
-#: The reader of each format, by suffix.
-READERS: dict[str, Callable[[str | Path], AnyLut]] = {".spi1d": read_spi1d, ".cube": read_cube, ".clf": read_clf}
-
-#: The writer of each format, by suffix.
-WRITERS: dict[str, Callable[..., None]] = {".spi1d": write_spi1d, ".cube": write_cube, ".clf": write_clf}
+__all__ = ["WRITERS", "LutFormat", "read_lut", "write_lut"]
 
 
-def read_lut(path: str | Path) -> AnyLut:
-    """Return the LUT in a .spi1d, .cube or .clf file, as OpenColorIO reads it too.
+@dataclass(frozen=True)
+class LutFormat:
+    """A format that LUTs are written in.
 
     Parameters
     ----------
-    path : str or Path
-        The file; its suffix, in lower or upper case, names the format.
-
-    Raises
-    ------
-    LutError
-        If the suffix is another one, as the reader of the format raises it, and if OpenColorIO refuses the file or
-        reads another table in it.
+    suffix : str
+        The suffix of its files, in lower case.
+    title : str
+        Its name in words.
+    text : callable
+        Returns a LUT as the text of a file, the comments of the LUT included; the same LUT gives the same text.
     """
-    lut = READERS[_known_suffix(path)](path)
-    check_agreement(Path(path), lut)
-    return lut
+
+    suffix: str
+    title: str
+    text: Callable[[AnyLut], str]
+
+
+#: The formats that are written, by suffix; each estimate writes all of them, and configs name the first.
+WRITERS = {
+    each.suffix: each
+    for each in (
+        LutFormat(".spi1d", "Sony Imageworks 1D", spi1d_text),
+        LutFormat(".cube", "Adobe and Resolve 1D cube", cube_text),
+        LutFormat(".clf", "Academy Common LUT Format", clf_text),
+    )
+}
 
 
 def write_lut(path: str | Path, lut: AnyLut, *, overwrite: bool = False) -> None:
-    """Write a LUT as .spi1d, .cube or .clf.
+    """Write a LUT in one of the formats of `WRITERS`.
 
     Parameters
     ----------
     path : str or Path
         The file to be written; its suffix, in lower or upper case, names the format.
     lut : Lut1D or RgbLut1D
-        The table.
+        The table; nine digits keep its float32 values bit for bit.
     overwrite : bool
         Whether an existing file may be replaced.
 
     Raises
     ------
     LutError
-        If the suffix is another one, and as the writer of the format raises it.
+        If no format has the suffix, the file exists and may not be replaced, or it cannot be written.
     """
-    WRITERS[_known_suffix(path)](path, lut, overwrite=overwrite)
-
-
-def _known_suffix(path: str | Path) -> str:
-    """Return the suffix in lower case; raise a LutError if no format has it."""
-    suffix = Path(path).suffix.lower()
-    if suffix not in READERS:
-        raise LutError(f"{path}: LUT files end in {', '.join(READERS)}, found {suffix or 'no suffix'!r}; rename it")
-    return suffix
+    path = Path(path)
+    if path.suffix.lower() not in WRITERS:
+        raise LutError("lut_suffix", path=path, suffixes=", ".join(WRITERS))
+    atomic_write_text(path, WRITERS[path.suffix.lower()].text(lut), overwrite=overwrite, error=LutError)

@@ -51,8 +51,8 @@ class Lut1D(EqualByFields):
     Raises
     ------
     LutError
-        If the values are not finite, do not increase strictly as float32, the domain is no finite interval, or either
-        spans more than `LARGEST_SPAN`.
+        If the values are not finite, do not increase strictly as float32, the domain is not a finite interval, or
+        either spans more than `LARGEST_SPAN`.
     """
 
     values: Float64Array
@@ -63,14 +63,14 @@ class Lut1D(EqualByFields):
         values = single_precision(self.values)
         low, high = (float(end) for end in single_precision(self.domain))
         if values.ndim != 1 or not 2 <= values.size <= MAX_LENGTH:
-            raise LutError(f"a LUT needs a row of 2 to {MAX_LENGTH} values, found shape {values.shape}")
+            raise LutError("lut_shape", most=MAX_LENGTH, shape=values.shape)
         if not (np.isfinite(low) and np.isfinite(high) and low < high):
-            raise LutError(f"a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}")
+            raise LutError("lut_domain", low=low, high=high)
         entry = first_fault(values)
         if entry is not None:
-            raise LutError(f"entry {entry} of the LUT, {values[entry]:.9g}, is not finite or not above the one before")
+            raise LutError("lut_entry", entry=entry, value=values[entry])
         if max(high - low, values[-1] - values[0]) > LARGEST_SPAN:
-            raise LutError(f"the LUT spans more than {LARGEST_SPAN:g}, too much to compute with in single precision")
+            raise LutError("lut_span", most=LARGEST_SPAN)
         values.flags.writeable = False
         object.__setattr__(self, "values", values)
         object.__setattr__(self, "domain", (low, high))
@@ -134,7 +134,7 @@ class Lut1D(EqualByFields):
     def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the input that gives every pixel, clamped to the domain; NaN gives the low end of the domain.
 
-        OpenColorIO agrees to 1e-6 if its optimisation is lossless. By default, and so in most hosts, it inverts
+        OpenColorIO agrees to 1e-6 if its optimization is lossless. By default, and so in most hosts, it inverts
         through an approximate table, which differs by up to 4e-4 on the steepest curves.
 
         Parameters
@@ -200,10 +200,10 @@ def inverse_response_lut(
         If the length is out of range, or the domain is not finite or does not include [0, 1].
     """
     if not 2 <= length <= MAX_LENGTH:
-        raise LutError(f"a LUT has 2 to {MAX_LENGTH} entries, found a length of {length}; {LUT_LENGTH} suits most")
+        raise LutError("lut_length", most=MAX_LENGTH, length=length, usual=LUT_LENGTH)
     low, high = domain
     if not (-np.inf < low <= 0 and 1 <= high < np.inf):
-        raise LutError(f"the domain of an inverse response must hold 0 to 1, found {low:.9g} to {high:.9g}")
+        raise LutError("lut_domain_short", low=low, high=high)
     code = 1 / 255
     toe = min(float(curve.inverse(code)) / code, MAX_END_SLOPE)
     shoulder = min((1 - float(curve.inverse(1 - code))) / code, MAX_END_SLOPE)
@@ -267,8 +267,5 @@ def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
     """Return float32 for half and single precision, float64 for everything else; refuse integers above `last`."""
     given = np.asarray(pixels)
     if given.dtype.kind in "iu" and given.size and given.max() > max(last, 1):
-        raise LutError(
-            f"found integers up to {given.max()}, but the LUT ends at {last:g}: divide code values by the largest code,"
-            " such as 255"
-        )
+        raise LutError("lut_codes", found=int(given.max()), last=last)
     return given.astype(np.float32 if given.dtype in (np.float16, np.float32) else np.float64, copy=False)

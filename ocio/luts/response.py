@@ -1,21 +1,74 @@
-"""The response of a camera from a LUT of its inverse: the reverse of `inverse_response_lut`."""
+"""The response of a camera from a LUT of its inverse, and from a LUT file of either direction."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
-from crfnet_core.types import Float64Array
 
+from ..defaults import LUT_LENGTH
 from ..errors import LutError
-from .lut1d import Lut1D
-from .rgb_lut import AnyLut, RgbLut1D
+from .lut1d import Lut1D, strictly_increasing
+from .opencolorio import read_lut
+from .rgb_lut import AnyLut, RgbLut1D, lut_of_channels
 
-#: Largest irradiance of brightness 0, as a part of that of brightness 1.
+#: Largest irradiance of brightness 0, as a part of the irradiance of brightness 1.
 MOST_BLACK = 0.01
 
-#: Largest mean of an inverse response, as a part of its range; that of linear light is 0.5, those of cameras are below.
+#: Largest mean of an inverse response, as a part of its range; the mean of linear light is 0.5, cameras have less.
 MOST_MEAN = 0.55
+
+
+@dataclass(frozen=True)
+class ResponseFile:
+    """The response in a LUT file.
+
+    Parameters
+    ----------
+    path : Path
+        The file.
+    table : Lut1D or RgbLut1D
+        The LUT in the file.
+    lut : Lut1D or RgbLut1D
+        The inverse response, from code values to light.
+    """
+
+    path: Path
+    table: AnyLut
+    lut: AnyLut
+
+    @property
+    def was_forward(self) -> bool:
+        """Whether the file leads from light to code values."""
+        return self.lut is not self.table
+
+    @property
+    def words(self) -> str:
+        """The format, the channels and the direction of the file in one line."""
+        channels = "one table" if isinstance(self.table, Lut1D) else "R, G and B apart"
+        direction = "from light to code values" if self.was_forward else "from code values to light"
+        return f"LUT of the format {self.path.suffix.lower()}, {channels}, {direction}"
+
+
+def read_response(path: str | Path) -> ResponseFile:
+    """Return the response in a LUT file of either direction; a LUT that brightens is inverted.
+
+    Raises
+    ------
+    LutError
+        As `read_lut`.
+    """
+    path, table = Path(path), read_lut(path)
+    if not is_forward(table):
+        return ResponseFile(path, table, table)
+    codes = np.linspace(0, 1, LUT_LENGTH)
+    inverse = lut_of_channels([Lut1D(strictly_increasing(each.apply_inverse(codes))) for each in table.channels])
+    found = ResponseFile(path, table, inverse)
+    comments = (f"Read from {path.name}: {found.words}; this is its inverse", *table.comments)
+    return replace(found, lut=replace(inverse, comments=comments))
 
 
 def response_of_lut(lut: AnyLut) -> ResponseCurve:
@@ -32,36 +85,30 @@ def response_of_lut(lut: AnyLut) -> ResponseCurve:
     Raises
     ------
     LutError
-        If the LUT treats the channels apart, the domain does not hold [0, 1], black is no 0, or the LUT brightens: it
+        If the LUT treats the channels apart, the domain does not hold [0, 1], black is not 0, or the LUT brightens: it
         then leads from light to codes.
     CurveError
         If the response does not increase strictly.
     """
     if isinstance(lut, RgbLut1D):
-        raise LutError("the LUT treats R, G and B apart; give one that treats the channels alike")
+        raise LutError("lut_channels_differ")
     low, high = lut.domain
     if low > 0 or high < 1:
-        raise LutError(f"the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1")
+        raise LutError("lut_domain_short", low=low, high=high)
     black, white = lut.apply(np.array([0.0, 1.0]))
     if not white > 0 or abs(black) > MOST_BLACK * white:
-        raise LutError(f"the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0")
+        raise LutError("lut_black_or_white", black=black, white=white)
     if is_forward(lut):
-        raise LutError("the LUT brightens, so it leads from light to code values; give its inverse")
-    brightness = brightness_samples(lut)
+        raise LutError("lut_brightens")
+    brightness = np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1).astype(np.float64)
     brightness[0], brightness[-1] = 0, 1
     return ResponseCurve(brightness)
-
-
-def brightness_samples(lut: Lut1D) -> Float64Array:
-    """Return the response of a LUT of its inverse at 1024 uniform irradiances from black to white, in [0, 1]."""
-    black, white = lut.apply(np.array([0.0, 1.0]))
-    return np.asarray(np.clip(lut.apply_inverse(np.linspace(black, white, SAMPLES)), 0, 1), dtype=np.float64)
 
 
 def is_forward(lut: AnyLut) -> bool:
     """Return whether a LUT brightens on average over its domain: it then leads from light to code values.
 
-    The inverses of camera responses darken: in linear light the mean is 0.5 of the range, in theirs it is less.
+    The inverses of camera responses darken: the mean of linear light is 0.5 of its range, their mean is less.
     """
     ramp = np.linspace(*lut.domain, SAMPLES)
     means = []

@@ -38,7 +38,7 @@ class RgbLut1D:
     def __post_init__(self) -> None:
         shapes = {(channel.values.size, channel.domain) for channel in self.channels}
         if len(self.channels) != 3 or len(shapes) != 1:
-            raise LutError("a LUT of R, G and B needs three tables of one length and one domain")
+            raise LutError("lut_tables_differ")
         object.__setattr__(self, "comments", clean_comments(self.comments))
         object.__setattr__(self, "channels", tuple(replace(channel, comments=()) for channel in self.channels))
 
@@ -104,3 +104,19 @@ def lut_of_columns(
     if (table == table[:, :1]).all():
         return Lut1D(table[:, 0], domain, tuple(comments))
     return RgbLut1D(tuple(Lut1D(column, domain) for column in table.T), tuple(comments))
+
+
+def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:
+    """Return the rows of a table with nine digits, which keep float32 values bit for bit.
+
+    Parameters
+    ----------
+    lut : Lut1D or RgbLut1D
+        The LUT.
+    columns : int
+        Values in each row; by default as many as the LUT has channels. A single one is repeated.
+    """
+    table = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
+    if columns > 1:
+        table = np.broadcast_to(table, (len(table), columns))
+    return [" ".join(f"{value:.9g}" for value in row) for row in table.tolist()]

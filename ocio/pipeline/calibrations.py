@@ -17,10 +17,9 @@ from crfnet_core.response.curve import ResponseCurve
 from ..configs.files import write_config
 from ..configs.portable import portable_config
 from ..errors import PlateError
-from ..interchange.files import read_response
 from ..luts.files import write_lut
 from ..luts.lut1d import inverse_response_lut
-from ..luts.response import response_of_lut
+from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions
 from ..output_files import OutputFiles, check_outputs, output_folder
 from ..report import calibration_document, calibration_provenance
@@ -125,14 +124,14 @@ def write_calibration(
 
 
 def response_to_compare(path: Path) -> ResponseCurve:
-    """Return the response in the JSON document of an estimate or a calibration, or in a file that `convert` reads.
+    """Return the response in the JSON document of an estimate or a calibration, or in a LUT file.
 
     Raises
     ------
     CalibrationError
         If the document cannot be read or holds no response.
     CRFNetError
-        If another file holds none: see `crfnet.interchange.files.read_response`.
+        If a LUT file holds none: see `crfnet.luts.response.read_response`.
     """
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)

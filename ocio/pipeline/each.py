@@ -178,8 +178,8 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
     for record in manifest.records.values():
         folder = out / record.folder
         own = OutputFiles.named(folder, [Path(record.photograph)])
-        if not record.error and own.spi1d.exists():
-            folders.setdefault(folder, {}).setdefault(own.spi1d, (own, record))
+        if not record.error and own.lut.exists():
+            folders.setdefault(folder, {}).setdefault(own.lut, (own, record))
     for written in folders.values():
         files = [own for own, _ in written.values()]
         if len(files) > MAX_COLOR_SPACES:
@@ -188,7 +188,7 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
         spaces, check = [], {}
         for own, record in written.values():
             try:
-                check[own.color_space] = read_lut(own.spi1d).channels[0]
+                check[own.color_space] = read_lut(own.lut).channels[0]
                 spaces.append(_color_space(own, record, output_space))
             except LutError as problem:  # damaged since: the next run estimates it again
                 damaged.append(replace(record, error=str(problem)))

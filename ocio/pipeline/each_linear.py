@@ -12,7 +12,7 @@ from crfnet_core.types import Progress
 
 from ..defaults import PLATES
 from ..errors import PlateError
-from ..interchange.files import read_response
+from ..luts.response import read_response
 from ..luts.rgb_lut import AnyLut
 from ..movies.library import is_movie
 from ..options import EstimateOptions, PlateOptions

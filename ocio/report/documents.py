@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import dataclasses
 from collections.abc import Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -14,9 +13,8 @@ from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.network import ModelConfig
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ..interchange.response_file import ResponseFile
 from ..luts.exposure import linear_gray
-from ..luts.rgb_lut import AnyLut
+from ..luts.response import ResponseFile
 from ..output_files import OutputFiles
 from ..plates.light import PlateLight
 from ..plates.linear import PlateReport
@@ -56,18 +54,18 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
     }
 
 
-def lut_document(path: Path, lut: AnyLut, found: ResponseFile) -> dict[str, Any]:
-    """Return what a LUT file holds, or the inverse response of another file, ready for JSON."""
+def lut_document(found: ResponseFile) -> dict[str, Any]:
+    """Return the contents of a LUT file, ready for JSON."""
+    lut = found.table
     first, last = lut.domain
     quarters = [channel.apply(np.array(QUARTERS)) for channel in lut.channels]
-    is_inverse = lut is found.lut or not found.was_forward
     return {
         "kind": "lut",
-        "file": path.name,
+        "file": found.path.name,
         "response": found.words,
         "direction": "forward" if found.was_forward else "inverse",
         "channels": len(lut.channels),
-        "converts": ["brightness", "irradiance"] if is_inverse else ["irradiance", "brightness"],
+        "converts": ["irradiance", "brightness"] if found.was_forward else ["brightness", "irradiance"],
         "length": len(lut.values),
         "domain": [rounded(first), rounded(last)],
         "range": [rounded(lut.values[0].min()), rounded(lut.values[-1].max())],
@@ -104,9 +102,7 @@ def _light_document(light: PlateLight) -> dict[str, Any]:
 def file_names(files: OutputFiles) -> dict[str, str | list[str] | None]:
     """Return the file names by kind."""
     return {
-        "spi1d": files.spi1d.name,
-        "cube": files.cube.name,
-        "clf": files.clf.name,
+        **{path.suffix[1:]: path.name for path in files.luts},
         "forward": [path.name for path in files.forward],
         "config": files.config.name,
         "linear": [path.name for path in files.linear],

@@ -95,7 +95,7 @@ def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any],
     is_converted = is_known and linear["name"] != f"linear {primaries['name']}"
     is_kept = is_known and not is_converted and linear["interop_id"] == "unknown"
     is_more = is_converted or document["exposure"]["stops"] != 0
-    lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.spi1d, files.config, photo))
+    lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.lut, files.config, photo))
     space = shlex.quote(files.color_space)
     oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
     # Straight colours are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
@@ -153,7 +153,7 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
         f"{document['file']}: 1D LUT of {document['length']} entries, strictly increasing",
         f"  {first} {low:g} to {high:g} becomes {second} {bottom:g} to {top:g}; {quarters}",
         f"  {document['response']}",
-        *(f"  {line}" for line in document["provenance"] if not line.startswith("Read from ")),
+        *(f"  {line}" for line in document["provenance"]),
     ]
 
 

@@ -11,7 +11,7 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.frame_files import frames_of, read_plate_frame
 from blender_addon.work.job import ApplyMode
 from crfnet.errors import ConfigError
-from crfnet.luts.files import read_lut
+from crfnet.luts.files import WRITERS, read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.plates.frames import find_frames
 from crfnet_core.errors import CRFNetError
@@ -142,10 +142,10 @@ def test_existing_files_are_replaced_only_when_asked(make_job, mode):
 def test_an_export_is_that_of_the_command(make_job, tmp_path, plate_file, codes):
     exported = write(make_job(mode=ApplyMode.EXPORT))
     assert exported.folder == tmp_path / "out"
-    assert files_in(exported.folder) == ["config.ocio", "plate.clf", "plate.cube", "plate.spi1d"]
+    assert files_in(exported.folder) == sorted(["config.ocio", *(f"plate{suffix}" for suffix in WRITERS)])
     assert sorted(exported.files) == sorted(exported.folder.iterdir())
-    for suffix in ("spi1d", "cube", "clf"):
-        np.testing.assert_array_equal(read_lut(exported.folder / f"plate.{suffix}").values, LUT.values)
+    for suffix in WRITERS:
+        np.testing.assert_array_equal(read_lut(exported.folder / f"plate{suffix}").values, LUT.values)
 
 
 def test_an_export_whose_config_is_refused_leaves_nothing(make_job, tmp_path, monkeypatch):
@@ -188,7 +188,7 @@ def test_a_folder_is_needed_that_can_be_written(make_job, tmp_path, mode):
 def test_names_with_placeholders_of_configs_are_made_plain(make_job, tmp_path):
     plate = dataclasses.replace(make_job().plate, name="50% gray")
     assert writers.baked_name(plate) == "50_ gray_linear.exr"
-    assert writers.output_files(plate, tmp_path).spi1d.name == "50_ gray.spi1d"
+    assert writers.output_files(plate, tmp_path).lut.name == "50_ gray.spi1d"
 
 
 def test_baked_files_can_be_read_by_everybody(make_job):

@@ -96,14 +96,16 @@ def test_bake_shows_the_linear_plate(image, in_editor):
 
 
 def test_export(image, plate_file, tmp_path, codes, estimate):
-    from crfnet.luts.files import read_lut
+    from crfnet.luts.files import WRITERS, read_lut
 
     folder = tmp_path / "look"
     assert run(image, apply="EXPORT", folder=str(folder)) == {"FINISHED"}
-    assert sorted(path.name for path in folder.iterdir()) == ["config.ocio", "plate.clf", "plate.cube", "plate.spi1d"]
+    assert sorted(path.name for path in folder.iterdir()) == sorted(
+        ["config.ocio", *(f"plate{suffix}" for suffix in WRITERS)]
+    )
     expected = estimate(plate_file).curve.inverse(codes / 255)
-    for suffix in ("spi1d", "cube", "clf"):
-        assert np.abs(read_lut(folder / f"plate.{suffix}").apply(codes / 255) - expected).max() < FLOAT
+    for suffix in WRITERS:
+        assert np.abs(read_lut(folder / f"plate{suffix}").apply(codes / 255) - expected).max() < FLOAT
     assert np.abs(converted(folder / "config.ocio", codes) - expected).max() < 1e-5
     with pytest.raises(RuntimeError, match="exists already"):
         run(image, apply="EXPORT", folder=str(folder))

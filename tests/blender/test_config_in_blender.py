@@ -12,8 +12,8 @@ import pytest
 from crfnet.configs.files import write_config
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
+from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.luts.spi1d import write_spi1d
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 
@@ -76,7 +76,7 @@ def blender(tmp_path_factory):
     """The plates' code values, and what Blender made of them under our config."""
     folder = tmp_path_factory.mktemp("plate")
     lut = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))
-    write_spi1d(folder / "plate01.spi1d", lut)
+    write_lut(folder / "plate01.spi1d", lut)
     space = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",))
     write_config(folder / "config.ocio", portable_config([space]), check={"CRF plate01": lut})
 

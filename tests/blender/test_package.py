@@ -16,7 +16,7 @@ import numpy as np
 import pytest
 
 from blender_addon import build
-from crfnet.luts.spi1d import read_spi1d
+from crfnet.luts.files import read_lut
 from crfnet_core import ResponseNetwork, estimate_response, read_photo
 from tests.helpers.colored_ramp import colored_ramp
 
@@ -251,9 +251,7 @@ def test_the_exported_lut_is_the_inverse_response(found, look, plate, tolerance)
     (path,) = look.glob("*.spi1d")
     here = estimate_response(read_photo(plate), network=ResponseNetwork.load())
     brightness = np.linspace(0, 1, 256)
-    np.testing.assert_allclose(
-        read_spi1d(path).apply(brightness), here.curve.inverse(brightness), atol=tolerance.parity
-    )
+    np.testing.assert_allclose(read_lut(path).apply(brightness), here.curve.inverse(brightness), atol=tolerance.parity)
 
 
 def test_an_estimator_of_another_build_asks_for_a_restart(monkeypatch, tmp_path):

@@ -8,6 +8,7 @@ import math
 import numpy as np
 import pytest
 
+from crfnet.luts.files import WRITERS
 from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
@@ -112,6 +113,7 @@ def test_it_names_the_code_s_own_choices(schema):
     entries, origin = schema["properties"], schema["$defs"]["origin"]["properties"]
     assert entries["schema_version"]["const"] == SCHEMA_VERSION
     assert schema["$id"].endswith(f":{SCHEMA_VERSION}")
+    assert set(WRITERS) >= {f".{name}" for name in entries["files"]["required"][:3]}
     assert entries["verdict"]["enum"] == [*Verdict]
     assert entries["families"]["propertyNames"]["enum"] == [*Family]
     assert origin["device"]["enum"] == [*Device]

@@ -70,5 +70,5 @@ def test_the_names_are_those_that_crfnet_writes(root):
 
     files = OutputFiles.named(root / "look", [root / "plate01.jpg"])
     text = (root / "docs" / "nuke" / "plate01.nk").read_text(encoding="utf-8")
-    for name in (f"look/{files.spi1d.name}", files.color_space, view_names(files.color_space)[0], files.linear[0].name):
+    for name in (f"look/{files.lut.name}", files.color_space, view_names(files.color_space)[0], files.linear[0].name):
         assert name in text

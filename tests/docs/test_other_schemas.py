@@ -7,6 +7,7 @@ import shutil
 import pytest
 
 from crfnet.defaults import ESTIMATES
+from crfnet.luts.files import WRITERS
 from crfnet.pipeline import PhotographRecord
 from crfnet_core.posterior import Verdict
 from tests.helpers.looks import write_look
@@ -75,7 +76,7 @@ def test_what_each_prints(each):
     assert problems(printed) == []
     assert problems(linear) == []
     assert [bool(record["error"]) for record in printed["estimates"]] == [False, True]
-    assert printed["left"] == ["good_forward.spi1d", "good_forward.cube", "good_forward.clf"]
+    assert printed["left"] == [f"good_forward{suffix}" for suffix in WRITERS]
 
 
 def test_the_lines_of_a_manifest_are_records(each):

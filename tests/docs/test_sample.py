@@ -6,6 +6,8 @@ import re
 import numpy as np
 import pytest
 
+from crfnet.luts.files import WRITERS
+
 #: A number that is no part of a word, such as the digest of a model.
 NUMBER = re.compile(r"(?<![\w.+-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.])")
 
@@ -57,7 +59,7 @@ def test_the_config_is_byte_for_byte_the_sample(sample, written):
     assert (written / "config.ocio").read_bytes() == (sample / "config.ocio").read_bytes()
 
 
-@pytest.mark.parametrize("name", ["plate.spi1d", "plate.cube", "plate.clf", "plate.json"])
+@pytest.mark.parametrize("name", [*(f"plate{suffix}" for suffix in WRITERS), "plate.json"])
 def test_luts_and_figures_are_the_sample_but_for_the_last_digits(sample, written, name):
     text, numbers = text_and_numbers(written / name)
     sample_text, sample_numbers = text_and_numbers(sample / name)

@@ -53,7 +53,7 @@ def write_look(
     """Write LUT, document, config and linear plates of photographs with these names, and return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     files = OutputFiles.named(folder, [Path(name) for name in photographs])
-    write_lut(files.spi1d, lut, overwrite=True)
+    write_lut(files.lut, lut, overwrite=True)
     space = replace(files.plate_color_space(Path(photographs[0]), exposure=exposure), primaries=primaries)
     write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=True)
     for path in files.linear:
@@ -65,7 +65,7 @@ def write_look(
         "exposure": {"stops": exposure},
         "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
         "files": {
-            "spi1d": files.spi1d.name,
+            "spi1d": files.lut.name,
             "config": files.config.name,
             "linear": [path.name for path in files.linear],
         },

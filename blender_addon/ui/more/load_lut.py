@@ -25,8 +25,8 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
     bl_idname = "crf.load_lut"
     bl_label = "Load Response from LUT"
     bl_description = (
-        "Use the response in a .spi1d, .cube or .clf file, which leads from code values to linear light, in place of an"
-        " estimate. Nothing else changes until it is applied"
+        "Use the response in a LUT file, which leads from code values to linear light, in place of an estimate. Nothing"
+        " else changes until it is applied"
     )
     bl_options: ClassVar[set[str]] = {"UNDO"}
 
@@ -36,10 +36,15 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
         subtype="FILE_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
-    filter_glob: bpy.props.StringProperty(default="*.spi1d;*.cube;*.clf", options={"HIDDEN", "SKIP_SAVE"})
+    filter_glob: bpy.props.StringProperty(options={"HIDDEN", "SKIP_SAVE"})
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
-        """Let the user choose the file."""
+        """Let the user choose a file of a format that OpenColorIO reads."""
+        try:
+            suffixes = lazy_import.load("crfnet.luts.opencolorio").READABLE
+        except expected_errors() as problem:
+            return failed(self, problem)
+        self.filter_glob = ";".join(f"*{suffix}" for suffix in suffixes)
         context.window_manager.fileselect_add(self)
         return {"RUNNING_MODAL"}
 
@@ -50,7 +55,7 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
             primaries = self._primaries(plate)
             path = absolute(self.filepath)
             if path is None or not Path(self.filepath).name:
-                raise AddonError("No LUT file is chosen: choose a .spi1d, .cube or .clf file")
+                raise AddonError("No LUT file is chosen: choose one")
             lut = lazy_import.load("crfnet.luts.files").read_lut(path)
             curve = lazy_import.load("crfnet.luts.response").response_of_lut(lut)
             model = f"{LOADED}{path.name}"

@@ -15,7 +15,7 @@ EXAMPLES = """examples:
 
 A stack is one still scene, from a tripod, in 4 or more frames a stop or so apart: the darkest shows nearly nothing
 white, the brightest is mostly white. Fix ISO, aperture, white balance and the picture style; switch off automatic
-tones. For eos20d the folder then holds eos20d.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
+tones. For eos20d the folder then holds eos20d.spi1d and other LUTs of the inverse response, config.ocio,
 eos20d_sheet.png (every frame's points on the curve) and eos20d.json."""
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 
-from . import calibrate, camera, completion, config, convert, estimate, info, linearize
+from . import calibrate, camera, completion, config, estimate, info, linearize
 from .parts import Parser
 
 
@@ -30,6 +30,6 @@ def build_parser() -> argparse.ArgumentParser:
         "--version", action=_Version, nargs=0, default=argparse.SUPPRESS, help="show program's version number and exit"
     )
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND")
-    for subcommand in (estimate, calibrate, camera, linearize, config, convert, info, completion):
+    for subcommand in (estimate, calibrate, camera, linearize, config, info, completion):
         subcommand.add(commands)
     return parser

@@ -27,8 +27,8 @@ EXAMPLES = """examples:
   crfnet estimate scan.tif --out look --prior any              film scans, old video: not only today's cameras
   crfnet estimate plate01.jpg --out look --camera "A7 III"       the response of a stored camera: see crfnet camera
 
-For plate01.jpg the folder then holds plate01.spi1d, .cube and .clf (the inverse response as a LUT), config.ocio,
-plate01_linear.exr, plate01_sheet.png (what was found, as a picture) and plate01.json."""
+For plate01.jpg the folder then holds plate01.spi1d and other LUTs of the inverse response, config.ocio,
+plate01_linear.exr, plate01_sheet.png (the estimate as a picture) and plate01.json."""
 
 
 def add(commands: Commands) -> None:

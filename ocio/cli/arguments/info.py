@@ -15,6 +15,6 @@ def add(commands: Commands) -> None:
     """Add `crfnet info`."""
     parser = add_command(commands, "info", "say what a LUT file or a model folder holds", EXAMPLES)
     parser.add_argument(
-        "subject", type=Path, metavar="FILE|MODEL", help="a LUT or whatever crfnet convert reads, or a model folder"
+        "subject", type=Path, metavar="FILE|MODEL", help="a LUT that OpenColorIO reads, or a model folder"
     )
     add_json(parser)

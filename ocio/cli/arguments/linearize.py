@@ -39,7 +39,7 @@ def add(commands: Commands) -> None:
         "--lut",
         type=Path,
         metavar="FILE",
-        help="the response: a LUT (.spi1d, .cube, .clf, .csp, .3dl), or as crfnet convert reads it",
+        help="the response: a 1D LUT of any format that OpenColorIO reads",
     )
     add_frames(parser)
     add_each(parser, "photographs, not a sequence: without --lut and --camera each by its own response")

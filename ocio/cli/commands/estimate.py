@@ -99,7 +99,7 @@ def _print_estimate(estimated: PhotographEstimate, document: Mapping[str, Any], 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:
     """Return the command line by which all frames of a movie become linear plates like the one that was written."""
     frames = Path("linear", f"{plain_stem(movie)}.%04d.exr")
-    command = ["crfnet", "linearize", str(movie), "--lut", str(files.spi1d), "--out", str(frames)]
+    command = ["crfnet", "linearize", str(movie), "--lut", str(files.lut), "--out", str(frames)]
     return shlex.join([*command, *plate_arguments(plates)])
 
 

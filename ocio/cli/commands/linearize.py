@@ -12,9 +12,7 @@ from crfnet_core.estimate.estimate import ResponseEstimate
 from ... import pipeline, report
 from ...defaults import PLATES
 from ...errors import PlateError
-from ...interchange.files import read_response
-from ...interchange.response_file import ResponseFile
-from ...luts.files import READERS
+from ...luts.response import ResponseFile, read_response
 from ...luts.rgb_lut import AnyLut
 from ...movies.source import PlateSource, find_source, movie_of
 from ...movies.stream import check_progressive
@@ -50,7 +48,7 @@ def run(arguments: argparse.Namespace) -> None:
         lut, lines = pipeline.response_lut(estimate), [report.source_line(estimate), *report.verdict_lines(estimate)]
     else:
         found = read_response(arguments.lut)
-        lut, lines = found.lut, _lut_lines(arguments.lut, found)
+        lut, lines = found.lut, _lut_lines(found)
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
     document = report.plate_document(done, estimate)
@@ -91,11 +89,9 @@ def _run_each(arguments: argparse.Namespace) -> None:
     pipeline.check_records(records)
 
 
-def _lut_lines(path: Path, found: ResponseFile) -> list[str]:
-    """Return which response is used and what was mended; nothing for an inverse response as a LUT, which is usual."""
-    inverted = "; its inverse is used" if found.was_forward else ""
-    lines = [f"{path.name}: {found.words}{inverted}.", *(f"{note}." for note in found.notes)]
-    return lines if inverted or path.suffix.lower() not in READERS else []
+def _lut_lines(found: ResponseFile) -> list[str]:
+    """Return a line on a LUT that is inverted; none for the usual inverse response."""
+    return [f"{found.path.name}: {found.words}; its inverse is used."] if found.was_forward else []
 
 
 def _response(sequence: PlateSource, arguments: argparse.Namespace) -> ResponseEstimate:

@@ -13,9 +13,8 @@ from pathlib import Path
 import PyOpenColorIO as OCIO
 
 from ...errors import ConfigError
-from ...luts.files import read_lut
+from ...luts.files import read_lut, write_lut
 from ...luts.lut1d import Lut1D
-from ...luts.spi1d import write_spi1d
 from ...output_files import output_folder
 from ..file_rules import LINEAR_SUFFIX, add_file_rule
 from ..files import write_config
@@ -172,7 +171,7 @@ def _write(
             backed_up(target, record) as backup,
         ):
             for path, lut in files.items():
-                write_spi1d(path, lut, overwrite=True)
+                write_lut(path, lut, overwrite=True)
             notes = check_in_ap0(config, target.parent, added)
             write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=True)
             folders = record.folders if record else ()

@@ -17,7 +17,7 @@ import PyOpenColorIO as OCIO
 from crfnet_core.files import atomic_write_text, check_target
 
 from ...errors import ConfigError
-from ...luts.spi1d import write_spi1d
+from ...luts.files import write_lut
 from ...output_files import check_config_folder, output_folder
 from ..files import write_config
 from ..installation_record import own_folder
@@ -132,7 +132,7 @@ def write_overlay(base: ConfigSource, target: Path, looks: Sequence[Look], *, ov
             check_target(path, overwrite=overwrite, error=ConfigError)
         with as_before_on_failure([*files, target, merge_file]):
             for path, lut in files.items():
-                write_spi1d(path, lut, overwrite=overwrite)
+                write_lut(path, lut, overwrite=overwrite)
             check_in_ap0(config, target.parent, added)
             write_config(target, config, check={name: look.lut for name, look in added.items()}, overwrite=overwrite)
             atomic_write_text(merge_file, text, overwrite=overwrite, error=ConfigError)

@@ -13,6 +13,7 @@ import shtab
 from crfnet.cli.arguments.command_line import build_parser
 from crfnet.cli.commands import printing
 from crfnet.cli.commands.completion import FILES, FOLDERS, all_arguments
+from crfnet.luts.files import WRITERS
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 
 COMMANDS = ("estimate", "linearize", "info", "completion")
@@ -49,10 +50,10 @@ class TestHelp:
 
 
 class TestInfo:
-    @pytest.mark.parametrize("suffix", ["spi1d", "cube", "clf"])
+    @pytest.mark.parametrize("suffix", WRITERS)
     def test_of_a_lut(self, crfnet, look, suffix):
-        out = crfnet("info", look / f"plate.{suffix}").out
-        assert f"plate.{suffix}: 1D LUT of 4081 entries" in out
+        out = crfnet("info", look / f"plate{suffix}").out
+        assert f"plate{suffix}: 1D LUT of 4081 entries" in out
         assert "Photographs: plate.jpg" in out
 
     def test_of_a_lut_as_json(self, crfnet, look):

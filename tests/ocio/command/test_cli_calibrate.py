@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
-from crfnet.luts.spi1d import read_spi1d
 from crfnet.pipeline.calibrations import response_to_compare
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
@@ -55,7 +55,7 @@ def test_says_in_words_what_was_measured(camera):
 
 
 def test_the_luts_hold_the_inverse_of_the_response(camera, true_response):
-    lut = read_spi1d(camera[0] / "eos20d.spi1d")
+    lut = read_lut(camera[0] / "eos20d.spi1d")
     assert shape_error(true_response, response_of_lut(lut)) < 0.05
     assert any("Measured from 6 frames of Canon EOS 20D" in comment for comment in lut.comments)
     assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
@@ -68,7 +68,7 @@ def test_the_lut_reads_the_code_of_white_as_1(crfnet, root, tmp_path, code):
     paths = make_stack(tmp_path, light, response, StackOptions(white=code / 255, quality=0))
     done = crfnet("calibrate", *paths, "--out", tmp_path / "out", "--name", "a", "--no-sheet")
     assert (done.code, done.err) == (0, "")
-    lut = read_spi1d(tmp_path / "out" / "a.spi1d")
+    lut = read_lut(tmp_path / "out" / "a.spi1d")
     np.testing.assert_allclose(lut.apply(np.arange(code, 256) / 255), 1, atol=2e-3)
     codes = np.arange(16, code + 1)
     stops = np.log2(lut.apply(codes / 255) / response.inverse(codes / code))
@@ -86,7 +86,7 @@ def test_the_document_says_all(camera):
     assert found["shape_uncertainty_stops"] == pytest.approx(np.linalg.norm([*parts.values()]), abs=1e-4)
     curve = response_to_compare(camera[0] / "eos20d.json")
     assert curve.brightness.tolist() == found["response"]["brightness"], "to the last bit"
-    lut = read_spi1d(camera[0] / "eos20d.spi1d")
+    lut = read_lut(camera[0] / "eos20d.spi1d")
     np.testing.assert_allclose(lut.values, inverse_response_lut(curve).values, rtol=1e-7)
     assert len(found["weights"]) == 11
     assert [frame["name"] for frame in found["frames"]] == [f"stack_{i:02d}.png" for i in range(6)]

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
-from crfnet.luts.files import read_lut
+from crfnet.luts.files import WRITERS, read_lut
 from crfnet.luts.response import response_of_lut
 from crfnet_core.library import CameraLibrary
 from crfnet_core.response.metrics import estimation_error
@@ -124,6 +124,14 @@ def test_plates_are_linearized_with_a_camera_as_with_its_exported_lut(run, crfne
     assert crfnet("linearize", photos[0], *lut, "--out", tmp_path / "b.exr", "--depth", "float").code == 0
     assert np.array_equal(read_image(tmp_path / "a.exr"), read_image(tmp_path / "b.exr"))
     assert crfnet("camera", "export", "measured", lut[1]).code == BAD_INPUT
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+def test_a_response_is_exported_in_every_format(run, crfnet, measured, tmp_path, suffix):
+    path = tmp_path / f"measured{suffix}"
+    assert f"Written: {path}." in run("camera", "export", "measured", path)
+    assert crfnet("info", path).code == 0
+    assert crfnet("camera", "export", "measured", path).code == BAD_INPUT
 
 
 def test_a_camera_is_handed_on_as_a_file(run, measured, library, tmp_path):

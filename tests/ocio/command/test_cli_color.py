@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
-from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata.color_tags import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709
@@ -229,8 +229,8 @@ class TestConfig:
         assert found["primaries"]["green"] == [0.265, 0.69]
         assert found["output_space"] == {"name": "linear Rec.709", "interop_id": "lin_rec709_scene"}
         assert "primaries Display P3 (ICC profile)" in (look / "config.ocio").read_text(encoding="utf-8")
-        for suffix in ("spi1d", "cube", "clf"):
-            comments = read_lut(look / f"shot.{suffix}").comments
+        for suffix in WRITERS:
+            comments = read_lut(look / f"shot{suffix}").comments
             assert comments[-1] == "Primaries: Display P3 (ICC profile); the LUT leaves them as they are"
 
 

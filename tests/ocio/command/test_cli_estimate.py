@@ -13,7 +13,7 @@ import pytest
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.cli.commands import printing
 from crfnet.errors import ConfigError
-from crfnet.luts.spi1d import read_spi1d
+from crfnet.luts.files import WRITERS, read_lut
 from crfnet.pipeline import folders
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response.curve import ResponseCurve
@@ -21,9 +21,7 @@ from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 
 FILES = {
-    "plate.spi1d",
-    "plate.cube",
-    "plate.clf",
+    *(f"plate{suffix}" for suffix in WRITERS),
     "config.ocio",
     "plate_linear.exr",
     "plate_sheet.png",
@@ -140,7 +138,7 @@ def test_a_photograph_that_was_developed_from_a_raw_file_is_told_from_the_camera
 
 
 def test_the_luts_hold_the_inverse_of_the_response(look, true_response):
-    lut = read_spi1d(look / "plate.spi1d")
+    lut = read_lut(look / "plate.spi1d")
     found = json.loads((look / "plate.json").read_text(encoding="utf-8"))["response"]["brightness"]
     expected = ResponseCurve.from_samples(np.array(found))
     np.testing.assert_allclose(lut.values, expected.inverse(np.linspace(0, 1, 4081)), atol=1e-3)

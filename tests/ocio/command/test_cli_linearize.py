@@ -4,6 +4,8 @@ import json
 
 import numpy as np
 
+from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.forward import forward_lut
 from tests.helpers.images import read_image, write_image
 
 
@@ -65,3 +67,17 @@ def test_an_untagged_exr_is_linearized_only_if_the_user_says_that_it_is_encoded(
     assert not (tmp_path / "linear.exr").exists()
     assert crfnet(*arguments, "--encoded").code == 0
     assert read_image(tmp_path / "linear.exr").max() < 0.5
+
+
+def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
+    forward = tmp_path / "forward.cube"
+    write_lut(forward, forward_lut(read_lut(look / "plate.spi1d")))
+    arguments = ("linearize", plate, "--depth", "float", "--out")
+    done = crfnet(*arguments, tmp_path / "a.exr", "--lut", forward)
+    assert (
+        "forward.cube: LUT of the format .cube, one table, from light to code values; its inverse is used." in done.out
+    )
+    assert "plate.spi1d" not in crfnet(*arguments, tmp_path / "b.exr", "--lut", look / "plate.spi1d").out
+    assert np.abs(read_image(tmp_path / "a.exr") - read_image(tmp_path / "b.exr")).max() < 1e-4
+    document = json.loads(crfnet("info", forward, "--json").out)
+    assert (document["direction"], document["converts"]) == ("forward", ["irradiance", "brightness"])

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.luts.spi1d import write_spi1d
 from crfnet.pipeline import estimates
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import tree
@@ -21,7 +21,7 @@ def make_bad_inputs(folder):
     (folder / "folder.jpg").mkdir()
     write_image(folder / "small.png", np.zeros((100, 100, 3), np.uint8))
     write_image(folder / "linear.exr", np.zeros((100, 100, 3), np.float16))
-    write_spi1d(folder / "good.spi1d", inverse_response_lut(ResponseCurve.gamma()))
+    write_lut(folder / "good.spi1d", inverse_response_lut(ResponseCurve.gamma()))
     (folder / "bad.spi1d").write_text("Version 1\nFrom 0 1\nLength 2\nComponents 1\n{\n1\n0\n}\n")
     (folder / "bad_model").mkdir()
     (folder / "bad_model" / "model.json").write_text("{}")
@@ -140,7 +140,7 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
     """At once, since hosts would find no LUT beside the config. Linear plates need no config, and are written."""
     (tmp_path / folder).mkdir()
     lut_file = tmp_path / "a.spi1d"
-    write_spi1d(lut_file, inverse_response_lut(ResponseCurve.gamma()))
+    write_lut(lut_file, inverse_response_lut(ResponseCurve.gamma()))
     base = "ocio://studio-config-v2.2.0_aces-v1.3_ocio-v2.4"
     for command in (
         ("estimate", plate, "--out", tmp_path / folder),

@@ -13,8 +13,8 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.defaults import CONFIG_NAME
 from crfnet.errors import ConfigError, PlateError
+from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.luts.spi1d import read_spi1d, write_spi1d
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
@@ -75,7 +75,7 @@ def test_the_rules_of_earlier_versions_go(folder, base):
     rules.insertRule(0, "mine", "sRGB", r".*\.tif")
     config.setFileRules(rules)
     (folder / CONFIG_NAME).write_text(config.serialize())
-    write_spi1d(folder / "0001.spi1d", LUT)
+    write_lut(folder / "0001.spi1d", LUT)
     done = install(folder, base, SPACE, LUT, plate=PLATE)
     assert rule_names(loaded(done.config)) == ["mine", *rule_names(loaded(base))]
     assert "CRF 0001" in space_names(done.config)
@@ -118,7 +118,7 @@ def test_another_response_of_the_same_plate_is_a_change(folder, base):
     install(folder, base, SPACE, LUT, plate=PLATE)
     assert install(folder, base, SPACE, OTHER_LUT, plate=PLATE).is_changed
     assert space_names(folder / CONFIG_NAME).count("CRF plate") == 1
-    np.testing.assert_array_equal(read_spi1d(folder / FOLDER / "plate.spi1d").values, OTHER_LUT.values)
+    np.testing.assert_array_equal(read_lut(folder / FOLDER / "plate.spi1d").values, OTHER_LUT.values)
 
 
 def test_several_plates_share_the_config(folder, base, tolerance):

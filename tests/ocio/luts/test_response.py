@@ -1,11 +1,14 @@
-"""A response from the LUT of its inverse."""
+"""A response from the LUT of its inverse, and from a LUT file of either direction."""
 
 import numpy as np
 import pytest
 
 from crfnet.errors import LutError
+from crfnet.luts.files import WRITERS, write_lut
+from crfnet.luts.forward import forward_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut
-from crfnet.luts.response import response_of_lut
+from crfnet.luts.response import read_response, response_of_lut
+from crfnet.luts.rgb_lut import RgbLut1D
 from crfnet_core.response.curve import ResponseCurve
 
 GRID = np.linspace(0, 1, 4081)
@@ -26,13 +29,37 @@ def test_the_scale_of_the_lut_does_not_count():
 
 
 @pytest.mark.parametrize(
-    ("lut", "message"),
+    ("lut", "code"),
     [
-        (Lut1D(GRID ** (1 / 2.2)), "from light to code values"),
-        (Lut1D(GRID + 0.1), "of black"),
-        (Lut1D(GRID**2.2, domain=(0.1, 1.0)), "needs 0 to 1"),
+        (Lut1D(GRID ** (1 / 2.2)), "lut_brightens"),
+        (Lut1D(GRID + 0.1), "lut_black_or_white"),
+        (Lut1D(GRID**2.2, domain=(0.1, 1.0)), "lut_domain_short"),
+        (RgbLut1D((Lut1D(GRID), Lut1D(GRID), Lut1D(GRID**2))), "lut_channels_differ"),
     ],
 )
-def test_other_luts_are_refused(lut, message):
-    with pytest.raises(LutError, match=message):
+def test_other_luts_are_refused(lut, code):
+    with pytest.raises(LutError) as caught:
         response_of_lut(lut)
+    assert caught.value.code == code
+
+
+@pytest.mark.parametrize("suffix", WRITERS)
+class TestFiles:
+    def test_an_inverse_response_is_taken_as_it_is(self, tmp_path, suffix, true_response):
+        lut = inverse_response_lut(true_response, comments=("mine",))
+        write_lut(tmp_path / f"a{suffix}", lut)
+        found = read_response(tmp_path / f"a{suffix}")
+        assert (found.lut, found.table, found.was_forward) == (lut, lut, False)
+        assert found.words == f"LUT of the format {suffix}, one table, from code values to light"
+
+    def test_a_response_is_inverted(self, tmp_path, suffix, true_response):
+        write_lut(tmp_path / f"a{suffix}", forward_lut(inverse_response_lut(true_response)))
+        found = read_response(tmp_path / f"a{suffix}")
+        assert found.was_forward
+        assert np.abs(found.lut.apply(GRID) - true_response.inverse(GRID)).max() < 1e-4
+        assert found.lut.comments[0].endswith("from light to code values; this is its inverse")
+
+
+def test_linear_light_is_not_inverted(tmp_path):
+    write_lut(tmp_path / "a.cube", Lut1D([0, 1]))
+    assert not read_response(tmp_path / "a.cube").was_forward

@@ -6,8 +6,8 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
-from crfnet.luts.spi1d import write_spi1d
 from crfnet.plates.exr import STANDARD_NAMES
 from tests.helpers.folders import listed
 from tests.helpers.images import write_image
@@ -71,7 +71,7 @@ def test_a_gray_plate_becomes_rgb(tmp_path, out):
 )
 def test_every_format_gives_what_oiiotool_gives(tmp_path, out, oiiotool, tolerance, name, codes, options):
     plate = write_image(tmp_path / name, codes, **options)
-    write_spi1d(tmp_path / "x.spi1d", LUT)
+    write_lut(tmp_path / "x.spi1d", LUT)
     linearize(plate, out / "a.exr", LUT, depth="float", is_encoded=True)
     transform = f"--ociofiletransform:unpremult={int(codes.shape[2] == 4)}"
     oiiotool(plate, transform, tmp_path / "x.spi1d", "-d", "float", "-o", tmp_path / "expected.exr")
@@ -85,7 +85,7 @@ def test_every_format_gives_what_oiiotool_gives(tmp_path, out, oiiotool, toleran
 
 def test_unassociated_alpha_is_kept_and_multiplied_in(tmp_path, out, oiiotool, tolerance):
     plate = write_image(tmp_path / "a.png", SMALL, oiio__UnassociatedAlpha=1)
-    write_spi1d(tmp_path / "x.spi1d", LUT)
+    write_lut(tmp_path / "x.spi1d", LUT)
     linearize(plate, out / "a.exr", LUT, depth="float")
     pixels, spec = read_exr(out / "a.exr")
     alpha = SMALL[..., 3:] / 255
@@ -101,7 +101,7 @@ def test_associated_alpha_is_divided_out_before_the_lut(tmp_path, out, oiiotool,
     codes = np.sort(SMALL, axis=2)
     codes[..., 3] = np.maximum(codes[..., 3], 1)
     plate = write_image(tmp_path / "a.tif", codes)
-    write_spi1d(tmp_path / "x.spi1d", LUT)
+    write_lut(tmp_path / "x.spi1d", LUT)
     linearize(plate, out / "a.exr", LUT, depth="float", exposure=1)
     alpha = codes[..., 3:] / 255
     pixels = read_exr(out / "a.exr")[0]
