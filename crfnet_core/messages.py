@@ -44,4 +44,10 @@ SENTENCES: Mapping[str, str] = {
     "bad_prior_values": "{path}: its values are numbers from 0 to 1, and one share is above 0",
     "no_prior": "{name}: there is no prior ({reason}); give {names} or a JSON file",
     "prior_not_json": "{path}: is not JSON; see crfnet_core/data/priors for examples",
+    # statistics
+    "negative_seed": "a seed of {seed} draws no windows; give 0 or more",
+    "no_windows_asked": "{count} windows cannot be analyzed; ask for at least 1, usually {usual}",
+    "smaller_than_window": "the photograph is {width} x {height} pixels; at least {least} x {least} are needed: give"
+    " the original, never one scaled up",
+    "step_too_large": "a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}",
 }
