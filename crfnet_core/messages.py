@@ -51,4 +51,10 @@ SENTENCES: Mapping[str, str] = {
     "heif_package_missing": "{path}: {kind} needs the package {package}; pip install pi-heif pillow",
     "jxl_linear": "{path}: this JPEG XL file is decoded to linear light, as lossy ones with a camera's ICC profile are;"
     " give the original that it was made from",
+    # statistics
+    "negative_seed": "a seed of {seed} draws no windows; give 0 or more",
+    "no_windows_asked": "{count} windows cannot be analyzed; ask for at least 1, usually {usual}",
+    "smaller_than_window": "the photograph is {width} x {height} pixels; at least {least} x {least} are needed: give"
+    " the original, never one scaled up",
+    "step_too_large": "a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}",
 }

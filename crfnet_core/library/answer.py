@@ -44,42 +44,42 @@ def camera_estimate(camera: Camera) -> ResponseEstimate:
     )
 
 
-def with_camera(own: ResponseEstimate, camera: Camera) -> ResponseEstimate:
-    """Return the answer of a camera for photographs, in the place of their own estimate.
+def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
+    """Return the answer of a camera for photographs, in the place of their estimate.
 
     The response, its errors and its band are the camera's. The photographs keep their windows, metadata and
     recognition: no stored response makes log footage a photograph.
 
     Parameters
     ----------
-    own : ResponseEstimate
+    estimate : ResponseEstimate
         The estimate from the photographs alone.
     camera : Camera
         The camera.
     """
     answer = camera_estimate(camera)
-    warnings = [own.recognition.reason] if own.recognition else []
-    warnings += [*editor_warnings(own.origins), *_other_cameras(camera, own), *answer.warnings]
+    warnings = [estimate.recognition.reason] if estimate.recognition else []
+    warnings += [*editor_warnings(estimate.origins), *_other_cameras(camera, estimate), *answer.warnings]
     return replace(
         answer,
-        windows=own.windows,
-        verdict=Verdict.DO_NOT_TRUST if own.recognition else answer.verdict,
-        origins=own.origins,
+        windows=estimate.windows,
+        verdict=Verdict.DO_NOT_TRUST if estimate.recognition else answer.verdict,
+        origins=estimate.origins,
         warnings=tuple(dict.fromkeys(warnings)),
-        model=own.model,
-        photos=own.photos,
-        recognition=own.recognition,
+        model=estimate.model,
+        photos=estimate.photos,
+        recognition=estimate.recognition,
     )
 
 
-def offered_cameras(own: ResponseEstimate) -> tuple[CameraAnswer, ...]:
+def offered_cameras(estimate: ResponseEstimate) -> tuple[CameraAnswer, ...]:
     """Return the cameras of the first photograph's make and model: offered, never used unasked.
 
     A photograph that a program developed from a raw file has none, because its response is not the camera's.
     """
-    if not own.origins or any(origin.is_developed for origin in own.origins):
+    if not estimate.origins or any(origin.is_developed for origin in estimate.origins):
         return ()
-    model = own.origins[0].camera.casefold()
+    model = estimate.origins[0].camera.casefold()
     cameras = [camera for camera in known_cameras() if model and camera.settings.camera.casefold() == model]
     return tuple(CameraAnswer(camera.name, camera.basis) for camera in cameras)
 
@@ -95,10 +95,10 @@ def brightness_per_stop(curve: ResponseCurve) -> Float64Array:
     return np.asarray(np.log(2) * curve.irradiance * rise)
 
 
-def _other_cameras(camera: Camera, own: ResponseEstimate) -> list[str]:
+def _other_cameras(camera: Camera, estimate: ResponseEstimate) -> list[str]:
     """Return a warning for each other camera that the files name."""
     name = camera.settings.camera
-    others = dict.fromkeys(origin.camera for origin in own.origins if origin.camera)
+    others = dict.fromkeys(origin.camera for origin in estimate.origins if origin.camera)
     return [
         str(Notice("other_camera", {"other": other, "name": camera.name, "camera": name}))
         for other in others

@@ -18,7 +18,7 @@ NAME = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[^\W_][\w '.,+()-
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """What files state about their camera. None states the picture mode, which matters more than the sensitivity.
+    """A camera and its settings as files name them; the picture mode, which matters more than ISO, is unknown.
 
     Parameters
     ----------
@@ -62,7 +62,7 @@ class Camera:
     shape_stops, scale_stops : float
         Standard deviations of the shape of the linear light, and of its scale against white, in stops.
     source : str
-        What it was measured from, in words.
+        The photographs that it was measured from, in words.
     settings : CameraSettings
         Of the photographs that it was measured on.
     warnings : tuple of str
@@ -79,7 +79,7 @@ class Camera:
 
     @property
     def basis(self) -> str:
-        """What the response rests on, in words."""
+        """The measurement in words."""
         iso = self.settings.iso
         ends = " to ".join(map(str, dict.fromkeys((iso[0], iso[-1])))) if iso else ""
         return ", ISO ".join(filter(None, [f"measured from {self.source}", ends]))

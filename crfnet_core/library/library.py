@@ -1,4 +1,4 @@
-"""Cameras in a folder, one JSON file each: listed, found, kept and removed."""
+"""Cameras in a folder, one JSON file each: listed, read, written and removed."""
 
 from __future__ import annotations
 

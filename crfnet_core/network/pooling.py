@@ -1,7 +1,7 @@
-"""From the windows' evidence to that of a photograph, as the CRF-net paper does it: outliers removed, then a mean.
+"""Pool the evidence of windows as the CRF-net paper does: remove outliers, then take the mean.
 
-Only a network without learned pooling is pooled this way. `inliers` runs for every network, because the report says
-how many windows agree.
+Only a network without learned pooling is pooled this way. `inliers` runs for every network, because the report counts
+the windows that agree.
 """
 
 from __future__ import annotations
@@ -35,8 +35,8 @@ def agreeing(windows: Sequence[Evidence]) -> BoolArray:
 def robust_mean(windows: Sequence[Evidence]) -> Evidence:
     """Return the mean of the evidence of the windows that agree.
 
-    The factor of such a network is that of a whole photograph already: it was fitted to errors of these means.
+    Such a network states the factor of a whole photograph already: it was fitted to errors of these means.
     """
-    kept = [evidence for evidence, is_kept in zip(windows, agreeing(windows), strict=True) if is_kept]
-    parts = zip(*((evidence.location, evidence.factor, evidence.log_odds) for evidence in kept), strict=True)
+    inside = [evidence for evidence, agrees in zip(windows, agreeing(windows), strict=True) if agrees]
+    parts = zip(*((evidence.location, evidence.factor, evidence.log_odds) for evidence in inside), strict=True)
     return Evidence(*(np.mean(part, axis=0) for part in parts))

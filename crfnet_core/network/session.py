@@ -25,7 +25,7 @@ OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len
 #: length, here 8, stands before it.
 _OTHER_FILE = re.compile(rb"[\x00\x08]location")
 
-#: Errors of onnxruntime, most of which are not Python's own.
+#: The errors that onnxruntime raises.
 _PROBLEMS: tuple[type[Exception], ...] = (
     RuntimeError,
     ValueError,
@@ -37,7 +37,7 @@ _PROBLEMS: tuple[type[Exception], ...] = (
     ),
 )
 
-#: onnxruntime's own lines on stderr are suppressed below this severity: fatal.
+#: Lines that onnxruntime writes to stderr are suppressed below this severity: fatal.
 _FATAL = 4
 
 

@@ -1,12 +1,11 @@
 """From evidence to an answer: a bank of responses, a prior over their families, and the posterior.
 
-- `families`: where responses come from.
+- `families`: the sources of responses.
 - `responses`: the bank.
 - `prior`: how likely each family is before the photograph is looked at.
 - `factors`: how metadata shifts the prior.
-- `evidence`: what a network says of a photograph, as a likelihood of responses.
-- `posterior`: prior times evidence, the answer (the mean in log irradiance), and how large its errors are expected
-  to be.
+- `evidence`: a network's reading of a photograph, as a likelihood of responses.
+- `posterior`: prior times evidence, the answer (the mean in log irradiance), and its expected errors.
 - `verdict`: the posterior in one word.
 """
 

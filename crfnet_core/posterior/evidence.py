@@ -1,4 +1,4 @@
-"""The evidence of a photograph: how likely each response makes what the network read in it."""
+"""The evidence of a photograph: the likelihood of each response, as the network reads it."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ class Evidence(EqualByFields):
     factor : ndarray, float64, shape (5, 5)
         A factor of the precision matrix P = factor @ factor.T.
     log_odds : ndarray, float64, shape (3,)
-        Logarithms of the likelihoods of the families `UNUSUAL` against that of an ordinary response at `location`.
+        Logarithms of the likelihoods of the families `UNUSUAL`, relative to an ordinary response at `location`.
     """
 
     location: Float64Array
@@ -51,7 +51,7 @@ class Evidence(EqualByFields):
 
 
 def independent_fraction(similarities: Float64Array) -> float:
-    """Return what fraction of the photographs' evidence is independent: Eq. 23 of docs/METHOD.md.
+    """Return the independent fraction of the photographs' evidence: Eq. 23 of docs/METHOD.md.
 
     Photographs of one scene repeat each other's errors. With similarities r between 0 and 1, n photographs count as
     n^2 / sum(r) independent ones: n if all differ, one if all are alike.
@@ -65,7 +65,7 @@ def independent_fraction(similarities: Float64Array) -> float:
 
 
 def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
-    """Return how alike the scenes of photographs are, shape (n, n): the correlations of their thumbnails, at least 0.
+    """Return the similarities of the scenes of photographs, shape (n, n): correlations of their thumbnails, at least 0.
 
     Parameters
     ----------

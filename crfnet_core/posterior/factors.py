@@ -1,8 +1,8 @@
-"""How metadata shifts the prior: the probability of what the file says under each family of responses.
+"""Factors by which metadata shifts the prior: the probability of the metadata under each family of responses.
 
-The factors of several findings are multiplied as if they were independent, so each is mild where another says the same.
-They are set by hand, by the reasons beside them; only how likely a camera's file has lost its EXIF, "no camera", was
-chosen on real photographs (docs/ACCURACY.md).
+The factors of several findings are multiplied as if they were independent, so each is mild where another repeats it.
+They are set by hand, for the reasons given; only the probability that a camera's file has lost its EXIF, "no camera",
+was chosen on real photographs (docs/ACCURACY.md).
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from crfnet_core.posterior.families import Family
 #: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.
 LEAST_FACTOR = 0.005
 
-#: Finding -> P(finding | family) in the order of `Family`, up to a common factor; 1 says nothing.
+#: Finding -> P(finding | family) in the order of `Family`, up to a common factor; 1 is neutral.
 FACTORS: dict[str, tuple[float, ...]] = {
     # EXIF of a device is kept by editors and lost by scans and frames; apps write linear and log pictures, rarely.
     Device.PHONE: (1, 0.03, 0.03, 0.1, 0.3, 0.02, 0.02, 0.05, 0.2),
@@ -29,19 +29,19 @@ FACTORS: dict[str, tuple[float, ...]] = {
     Device.CAMERA: (0.03, 0.1, 1, 1, 0.3, 0.02, 0.03, 0.05, 0.2),
     # Behind a scan lies film or a print, and the program of the scanner changes tones like an editor.
     Device.SCANNER: (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
-    # People know what took a picture whatever became of it: log footage, raw files and graded pictures are taken with
-    # cameras, too. Nobody says so of screenshots and renderings. What a scanner gives is the same, whoever says so.
-    "told phone": (1, 0.03, 0.03, 0.3, 1, 0.05, 1, 1, 0.5),
-    "told compact": (0.03, 1, 0.15, 0.3, 1, 0.05, 1, 1, 0.5),
-    "told camera": (0.03, 0.1, 1, 1, 1, 0.05, 1, 1, 0.5),
-    "told other": (1, 1, 1, 1, 1, 0.3, 1, 1, 0.5),
-    "told scanner": (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
+    # The user states the device, whatever became of the picture: log footage, raw files and graded pictures are taken
+    # with cameras, too, screenshots and renderings are not. A scan is the same, whoever states the scanner.
+    "stated phone": (1, 0.03, 0.03, 0.3, 1, 0.05, 1, 1, 0.5),
+    "stated compact": (0.03, 1, 0.15, 0.3, 1, 0.05, 1, 1, 0.5),
+    "stated camera": (0.03, 0.1, 1, 1, 1, 0.05, 1, 1, 0.5),
+    "stated other": (1, 1, 1, 1, 1, 0.3, 1, 1, 0.5),
+    "stated scanner": (0.01, 0.01, 0.01, 0.01, 0.5, 1, 0.05, 0.02, 0.3),
     # Cameras write EXIF, which editors and scanners mostly keep or write, and messengers strip. Frames, linear and log
     # data, renderings and screenshots never had it.
     "no camera": (0.2, 0.2, 0.2, 0.2, 0.3, 0.5, 1, 1, 1),
     # Who saves from an editor mostly changed tones, though some only scale or turn; developers also write the rest.
     "editor": (1, 1, 1, 3, 5, 2, 2, 1, 2),
-    # The same program may have edited what it developed. Few use such programs for the camera's own files.
+    # The same program may have edited the picture that it developed. Few use such programs for the camera's own files.
     "developed": (0.01, 0.01, 0.01, 1, 0.05, 0.01, 0.1, 0.05, 0.2),
     # Nothing but the camera has written the file; its picture may still be flat on purpose, or an app's.
     "as the camera wrote it": (1, 1, 1, 0.02, 0.05, 0.1, 0.1, 0.3, 0.4),
@@ -49,7 +49,7 @@ FACTORS: dict[str, tuple[float, ...]] = {
     "scaled": (1, 1, 1, 1.5, 1.5, 1, 0.5, 0.5, 1.2),
     # The program that encoded it again is a messenger, a site or an editor.
     "encoded again": (1, 1, 1, 1.5, 1.5, 1, 0.7, 0.7, 1.2),
-    # The shapes count only where no device is named. 3:2 is that of reflex and mirrorless cameras, and of 35 mm film.
+    # The shapes count only where no device is named. Reflex and mirrorless cameras and 35 mm film have 3:2.
     "3:2": (0.15, 0.15, 1, 1, 0.8, 1, 0.7, 0.3, 0.6),
     # Phones, compacts and Micro Four Thirds take 4:3, and old video does.
     "4:3": (1, 1, 0.35, 0.4, 0.7, 0.6, 0.7, 0.4, 0.7),
@@ -57,7 +57,7 @@ FACTORS: dict[str, tuple[float, ...]] = {
     "16:9": (1, 0.4, 0.3, 0.3, 0.7, 0.7, 0.8, 2, 1),
     # Phones as long as their screens, and cinema.
     "2:1": (1, 0.1, 0.1, 0.3, 0.5, 0.5, 0.5, 1, 0.8),
-    # The profile was written by a program that knew: it says what the values are.
+    # The profile was written by a program that knew the values.
     Encoding.LINEAR: (0.02, 0.02, 0.02, 0.05, 0.1, 0.05, 1, 0.05, 0.3),
     Encoding.LOG: (0.02, 0.02, 0.02, 0.05, 0.1, 0.1, 0.05, 1, 0.3),
     # DPX holds scanned film, log and video frames; no still camera writes it.
@@ -68,7 +68,7 @@ FACTORS: dict[str, tuple[float, ...]] = {
 
 
 def metadata_factors(origins: Sequence[FileOrigin]) -> dict[Family, float]:
-    """Return what to multiply the prior shares of the families by, for photographs of one camera; {} without any.
+    """Return the factors of the prior shares of the families, for photographs of one camera; {} without any.
 
     It is the geometric mean of their `family_factors`, since one camera took them all.
     """
@@ -92,7 +92,7 @@ def findings(origin: FileOrigin) -> list[str]:
     """Return the rows of `FACTORS` that hold of a file."""
     is_still = origin.encoding != Encoding.MOVIE  # most movies are 16:9, and few name their camera
     rows = {
-        f"told {origin.device or 'other'}": origin.is_told,
+        f"stated {origin.device or 'other'}": origin.is_told,
         origin.device: not origin.is_told and origin.device != Device.UNKNOWN,
         "no camera": is_still and not origin.camera and not origin.is_told,
         origin.picture_shape: is_still and origin.device == Device.UNKNOWN and origin.picture_shape in FACTORS,

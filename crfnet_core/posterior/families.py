@@ -1,4 +1,4 @@
-"""Families of responses: what kinds of tone curves photographs have gone through."""
+"""Families of responses: the kinds of tone curves of photographs."""
 
 from __future__ import annotations
 
@@ -8,10 +8,10 @@ from enum import StrEnum
 
 
 class Family(StrEnum):
-    """Where a response comes from.
+    """The source of a response.
 
     The first three are renderings that cameras write themselves, apart because phones leave another headroom and shape
-    than compact cameras and cameras with interchangeable lenses. `DEVELOPED` is what programs make of raw files: the
+    than compact cameras and cameras with interchangeable lenses. `DEVELOPED` are raw files as programs render them: the
     same shape, but more headroom. `UNEXPLAINED` holds no responses: it stands for pictures that no response of the bank
     explains, such as screenshots or tone-mapped HDR.
     """
@@ -27,7 +27,7 @@ class Family(StrEnum):
     UNEXPLAINED = "unexplained"
 
 
-#: What a camera renders itself.
+#: The renderings of cameras themselves.
 IN_CAMERA = (Family.PHONE, Family.COMPACT, Family.CAMERA)
 
 #: Families in which the answer is not to be trusted as a display-referred camera response. All others are "ordinary". A
@@ -75,6 +75,6 @@ class LikelyKind:
         return max(kinds, key=lambda kind: kind.probability)
 
     def __str__(self) -> str:
-        """Return the words with the probability in percent; never 100, because nothing is as certain."""
+        """Return the words with the probability in percent; never 100, because nothing is certain."""
         percent = "over 99" if self.probability > 0.99 else f"{100 * self.probability:.0f}"
         return f"{self.words}, {percent} %"

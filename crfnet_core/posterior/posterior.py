@@ -1,4 +1,4 @@
-"""The posterior: prior times evidence over the bank, and what follows from it."""
+"""The posterior: prior times evidence over the bank; its answer, errors and band."""
 
 from __future__ import annotations
 
@@ -36,7 +36,7 @@ class Posterior(EqualByFields):
     unexplained : float
         The probability that none of them is.
     prior : Prior, optional
-        What was known before photographs were seen; None if none was.
+        The knowledge before photographs were seen; None if there were none.
     """
 
     bank: ResponseBank
@@ -175,5 +175,5 @@ def _log_prior(bank: ResponseBank, prior: Prior) -> Float64Array:
 
 
 def _log(share: float) -> float:
-    """Return the logarithm of a share; that of 0 is so low that no evidence brings it back."""
+    """Return the logarithm of a share; for 0 it is so low that no evidence brings it back."""
     return float(np.log(max(share, 1e-300)))

@@ -1,4 +1,4 @@
-"""The prior: how likely each family of responses is before the photograph is looked at."""
+"""The prior: the probability of each family of responses before a photograph is seen."""
 
 from __future__ import annotations
 

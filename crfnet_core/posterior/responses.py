@@ -34,7 +34,7 @@ BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
 @dataclass(frozen=True, eq=False)
 class ResponseBank(EqualByFields):
-    """Responses of every family; those of one family are equally likely before a photograph is seen.
+    """Responses of every family; before a photograph is seen, all of one family are equally likely.
 
     Parameters
     ----------

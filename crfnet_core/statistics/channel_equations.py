@@ -1,6 +1,6 @@
 """Linear equations for the curvature of the inverse response, from the differences between channels at edges.
 
-At an edge a, b, c let the light of b mix that of a and c in the ratio alpha, the same in every channel (Eq. 2 of
+At an edge a, b, c the light of b mixes the light of a and c in the ratio alpha, the same in every channel (Eq. 2 of
 docs/METHOD.md). In codes the ratio is, to first order (Eq. 3),
 
     (b - a) / h = alpha + alpha (1 - alpha) h k(m) / 2,    h = c - a,  m = (a + c) / 2,  k = g'' / g'

@@ -1,4 +1,4 @@
-"""The cues: everything that is counted in a window, and how it lies in one vector.
+"""The cues: all sums that are counted in a window, and their layout in one vector.
 
 A new cue is a function of `Samples` and a row at the end of `CUES`; models that were trained before read the cues
 before it. The network of `training` unpacks the vector with the same table, and docs/METHOD.md prints it.
@@ -44,7 +44,7 @@ class Cue:
     count : callable
         From the samples of a window to the sums; of a cue with `terms`, to the sums and their numbers of terms.
     meaning : str
-        What is counted, in words.
+        The sums in words.
     symbol : str
         The same in docs/METHOD.md.
     terms : tuple of int, optional

@@ -1,4 +1,4 @@
-"""Mixtures: whether the light of b mixes that of its two sides as it should, under each of the candidate responses.
+"""Mixtures: whether the light of b is a mixture of the light of its two sides, under each candidate response.
 
 Light adds. Three samples a, b, c in a row with b between a and c obey g(b) = (1 - alpha) g(a) + alpha g(c) (Eq. 2 of
 docs/METHOD.md). Under the true inverse response g the mixing ratio alpha is the same in every channel, and all mixing

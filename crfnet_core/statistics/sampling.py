@@ -102,7 +102,7 @@ class Mixtures:
 
 
 class Samples:
-    """The codes of a window, and what several cues look for in them, found once.
+    """The codes of a window, and the triples and mixtures in them, which several cues share.
 
     Only every second row and every second column is looked at: adjacent ones are nearly the same.
 

@@ -20,7 +20,7 @@ LITTLE, MUCH = (4, 24), (24, 80)
 #: The strides, and the ranges of the difference, at which shading is looked for.
 SHADING = ((1, LITTLE), (2, LITTLE), (4, LITTLE), (8, LITTLE), (16, LITTLE), (2, MUCH), (8, MUCH), (16, MUCH))
 
-#: The first sample's channels have to differ by more codes than these: in gray, shading says nothing.
+#: The first sample's channels have to differ by more codes than these: gray shows nothing of shading.
 LEAST_CHROMA = 24
 
 #: Samples at these codes and beyond are skipped: black level and clipping distort their ratios.

@@ -1,4 +1,4 @@
-"""Choose the windows of a photograph that the network looks at (CRF-net paper, Sec. 3.2)."""
+"""Choose the windows of a photograph that are analyzed (CRF-net paper, Sec. 3.2)."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from crfnet_core.types import Float32Array, Pixels, Uint8Array
 #: Side of a window in samples.
 WINDOW_SIZE = 227
 
-#: Windows that are analysed in a photograph.
+#: Windows that are analyzed in a photograph.
 WINDOWS_PER_PHOTOGRAPH = 10
 
 #: Code values over all three channels that a good window holds, of 256 (CRF-net paper, Sec. 3.2).
@@ -25,7 +25,7 @@ POSITIONS_TRIED = 400
 #: The shorter side of a photograph holds at least this many windows.
 WINDOWS_ACROSS = 2
 
-#: Windows begin at even rows and columns: JPEG and video keep the colour of 2 x 2 pixels together, and in training,
+#: Windows begin at even rows and columns: JPEG and video keep the color of 2 x 2 pixels together, and in training,
 #: where windows are compressed as pictures of their own, these pixels always begin at a window's first.
 GRID = 2
 
@@ -90,7 +90,7 @@ def select_windows(
     step: int | None = None,
     coverage: int = FULL_COVERAGE,
 ) -> tuple[Window, ...]:
-    """Return the windows to analyse (CRF-net paper, Sec. 3.2).
+    """Return the windows to analyze (CRF-net paper, Sec. 3.2).
 
     Even positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least
     `coverage` bins filled. If `POSITIONS_TRIED` positions do not give enough of them, the best-covering others fill
@@ -116,19 +116,16 @@ def select_windows(
         than 1, or `seed` is negative.
     """
     if count < 1:
-        raise PhotoError(f"{count} windows cannot be analysed; ask for at least 1, usually {WINDOWS_PER_PHOTOGRAPH}")
+        raise PhotoError("no_windows_asked", count=count, usual=WINDOWS_PER_PHOTOGRAPH)
     if seed < 0:
-        raise PhotoError(f"a seed of {seed} draws no windows; give 0 or more")
+        raise PhotoError("negative_seed", seed=seed)
     height, width = pixels.shape[:2]
     if min(height, width) < WINDOW_SIZE:
-        raise PhotoError(
-            f"the photograph is {width} x {height} pixels; at least {WINDOW_SIZE} x {WINDOW_SIZE} are needed:"
-            " give the original, never one scaled up"
-        )
+        raise PhotoError("smaller_than_window", width=width, height=height, least=WINDOW_SIZE)
     step = sampling_step(height, width) if step is None else step
     if step < 1 or window_extent(step) > min(height, width):
         most = (min(height, width) - 1) // (WINDOW_SIZE - 1)
-        raise PhotoError(f"a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}")
+        raise PhotoError("step_too_large", step=step, width=width, height=height, most=most)
     chosen: list[Window] = []
     others: list[Window] = []
     for x, y in _positions(height, width, step, seed):

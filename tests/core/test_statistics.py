@@ -68,7 +68,7 @@ def test_a_flat_window_has_flat_neighbors_of_one_level_and_no_edge():
     assert not absolute_difference.any()
     assert not log_difference.any()
     assert not signed_difference.any()
-    assert not any(part.any() for part in found.values())
+    assert not any(found[cue.name].any() for cue in CUES if cue.name in found)
 
 
 def test_a_step_has_the_sums_that_one_can_count():

@@ -77,20 +77,23 @@ def test_a_photograph_of_one_window_gives_that_window():
 
 @pytest.mark.parametrize(("height", "width"), [(226, 500), (500, 226), (1, 1)])
 def test_a_photograph_smaller_than_a_window_is_refused(height, width):
-    with pytest.raises(PhotoError, match=f"{width} x {height} pixels; at least 227 x 227"):
+    with pytest.raises(PhotoError) as caught:
         select_windows(np.zeros((height, width, 3), np.float32))
+    assert caught.value.code == "smaller_than_window"
 
 
 @pytest.mark.parametrize("count", [0, -3])
 def test_less_than_one_window_is_refused(count):
-    with pytest.raises(PhotoError, match=f"^{count} windows cannot be analysed; ask for at least 1, usually 10$"):
+    with pytest.raises(PhotoError) as caught:
         select_windows(noise(300, 300), count=count)
+    assert caught.value.code == "no_windows_asked"
 
 
 @pytest.mark.parametrize("step", [3, 0, -1])
 def test_a_step_that_does_not_fit_is_refused(step):
-    with pytest.raises(PhotoError, match=f"a step of {step} pixels does not fit into 500 x 453 pixels; take 1 to 2"):
+    with pytest.raises(PhotoError) as caught:
         select_windows(noise(453, 500), step=step)
+    assert (caught.value.code, caught.value.facts["most"]) == ("step_too_large", 2)
     assert {window.extent for window in select_windows(noise(453, 500), step=2)} == {453}
 
 

@@ -1,4 +1,4 @@
-"""What metadata says of the families of responses."""
+"""Factors of the families of responses by metadata."""
 
 import pytest
 
@@ -15,7 +15,7 @@ def origin(**fields):
 
 
 def largest(**fields):
-    """The family that the metadata favours."""
+    """The family that the metadata favors."""
     factors = family_factors(origin(**fields))
     return max(factors, key=factors.__getitem__)
 
@@ -34,7 +34,7 @@ def test_factors_are_relative_to_the_largest(fields):
     assert min(factors.values()) >= LEAST_FACTOR
 
 
-def test_the_device_favours_its_family():
+def test_the_device_favors_its_family():
     assert largest(make="Apple", model="iPhone 6") == "phone"
     assert largest(make="Canon", model="Canon PowerShot G7") == "compact"
     assert largest(make="Canon", model="Canon EOS 20D") == "camera"
@@ -75,22 +75,22 @@ def test_a_profile_decides_for_linear_and_log():
 
 
 @pytest.mark.parametrize("device", [Device.PHONE, Device.COMPACT, Device.CAMERA, Device.UNKNOWN])
-def test_what_a_person_tells_says_nothing_of_log_and_linear_pictures(device):
+def test_a_stated_device_is_neutral_about_log_and_linear_pictures(device):
     """They are taken with cameras, too; of screenshots and renderings nobody says so."""
-    factors = FACTORS[f"told {device or 'other'}"]
-    told = dict(zip(Family, factors, strict=True))
+    factors = FACTORS[f"stated {device or 'other'}"]
+    stated = dict(zip(Family, factors, strict=True))
     own = [Family.PHONE, Family.COMPACT, Family.CAMERA] if device is Device.UNKNOWN else [Family(device)]
-    assert {told[family] for family in (*own, Family.LINEAR, Family.LOG, Family.EDITED)} == {1}
-    assert told[Family.UNEXPLAINED] < 1
+    assert {stated[family] for family in (*own, Family.LINEAR, Family.LOG, Family.EDITED)} == {1}
+    assert stated[Family.UNEXPLAINED] < 1
 
 
-def test_what_a_person_tells_overrules_the_file():
+def test_a_stated_device_overrules_the_file():
     assert largest(**OWN_CAMERA) == "camera"
     factors = family_factors(as_told(origin(**OWN_CAMERA), Device.PHONE))
     assert factors["phone"] > 10 * factors["camera"]
 
 
-def test_what_a_scanner_gives_is_the_same_whoever_says_so():
-    assert FACTORS["told scanner"] == FACTORS[Device.SCANNER]
+def test_a_scan_is_the_same_whoever_states_the_scanner():
+    assert FACTORS["stated scanner"] == FACTORS[Device.SCANNER]
     factors = family_factors(as_told(origin(), Device.SCANNER))
     assert max(factors, key=factors.__getitem__) == "film"
