@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
@@ -239,7 +240,7 @@ def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     return tuple(
         start + 1 + sum(_is_before(time, packets[start][0]) for time, _ in packets[start:end])
-        for start, end in zip(keys, [*keys[1:], len(packets)], strict=True)
+        for start, end in pairwise([*keys, len(packets)])
     )
 
 

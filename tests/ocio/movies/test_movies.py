@@ -12,7 +12,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
-from crfnet.movies.stream import check_progressive, read_stream
+from crfnet.movies.stream import _key_numbers, check_progressive, read_stream
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, write_movie
@@ -102,6 +102,23 @@ def test_key_frames_are_decoded_alone(tmp_path, name):
     for number, photo in frames.photos(keys):
         np.testing.assert_array_equal(photo.pixels, everything[number].pixels)
     assert {number for number, _ in frames.photos(keys)} == set(keys)
+
+
+@pytest.mark.parametrize(
+    ("packets", "keys"),
+    [
+        ([], ()),
+        ([(None, False)] * 3, ()),
+        ([(0, True), (2, False), (1, False), (3, True), (4, False)], (1, 4)),
+        (
+            [(2, True), (0, False), (1, False), (5, True), (3, False)],
+            (3, 5),
+        ),  # an open group
+        ([(0, True), (1, False), (0, True), (1, False)], (1, 3)),  # two clocks
+    ],
+)
+def test_numbers_of_key_frames(packets, keys):
+    assert _key_numbers(packets) == keys
 
 
 def test_two_transport_streams_in_one_file_give_all_frames(tmp_path):
@@ -290,8 +307,10 @@ def test_an_unknown_codec_is_refused(movie):
     assert refusal(movie) in ("no_video", "movie_undecodable")
 
 
-def test_many_empty_boxes_take_seconds(movie):
+def test_many_empty_boxes_take_seconds_and_opening_ends(movie, monkeypatch):
     movie.write_bytes(movie.read_bytes() + 500_000 * b"\0\0\0\x08free")
     start = time.monotonic()
     assert read_stream(movie).frame_count == 24
     assert time.monotonic() - start < 10
+    monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
+    assert refusal(movie) == "movie_undecodable"
