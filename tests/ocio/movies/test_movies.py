@@ -308,7 +308,7 @@ def test_an_unknown_codec_is_refused(movie):
 
 
 def test_many_empty_boxes_take_seconds_and_opening_ends(movie, monkeypatch):
-    movie.write_bytes(movie.read_bytes() + 500_000 * b"\0\0\0\x08free")
+    movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
     start = time.monotonic()
     assert read_stream(movie).frame_count == 24
     assert time.monotonic() - start < 10
