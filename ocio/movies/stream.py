@@ -5,14 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from fractions import Fraction
-from io import BytesIO
+from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
 from crfnet_core.photograph.image_io import MAX_PIXELS
-from crfnet_core.photograph.metadata.cicp import cicp_tags
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
 from crfnet_core.photograph.orientation import UPRIGHT, Turn
@@ -20,6 +19,7 @@ from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
 from .library import ffmpeg_line, opened, undecodable
+from .tags import IPT_PROFILE, color_tags, dolby_vision_profile
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -39,15 +39,6 @@ CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9"
 MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
 MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
 FIRMWARE = ("com.apple.quicktime.software",)
-
-#: Metadata by FFmpeg's names, in lower case -> a text in it -> the log curve that it names.
-LOG_TAGS = {
-    "com.arri.camera.colorgammasxs": {"log-c": "ARRI LogC3"},
-    "com.panasonic.semi-pro.metadata.xml": {"<capturegamma>v-log</capturegamma>": "Panasonic V-Log"},
-}
-
-#: The profile of Dolby Vision whose samples are IPTPQc2: neither YCbCr nor for an ordinary display.
-_IPT_PROFILE = 5
 
 
 @dataclass(frozen=True)
@@ -193,8 +184,8 @@ def read_stream(path: Path) -> MovieStream:
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:
             raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
-        if _dolby_vision_profile(stream) == _IPT_PROFILE:
-            raise PlateError("dolby_vision", path=path, profile=_IPT_PROFILE)
+        if dolby_vision_profile(stream) == IPT_PROFILE:
+            raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         packets, frame = _survey(container, stream)
         if frame is None:
             raise undecodable(path, "it holds no frame")
@@ -239,7 +230,7 @@ def _key_numbers(packets: Sequence[Entry]) -> tuple[int, ...]:
     keys = [index for index, (_, is_key) in enumerate(packets) if is_key]
     return tuple(
         start + 1 + sum(_is_before(time, packets[start][0]) for time, _ in packets[start:end])
-        for start, end in zip(keys, [*keys[1:], len(packets)], strict=True)
+        for start, end in pairwise([*keys, len(packets)])
     )
 
 
@@ -264,21 +255,11 @@ def _described(
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
         rate=Fraction(stream.average_rate or 0),
-        color=_color(frame, metadata),
+        color=color_tags(frame, metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
     )
-
-
-def _color(frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
-    """Return primaries and transfer function as the stream tags them, or else the log curve that metadata names."""
-    tags = cicp_tags((frame.color_primaries, frame.color_trc))
-    texts = {name: "".join(metadata.get(name, "").lower().split()) for name in LOG_TAGS}
-    curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
-    if tags.transfer or not curves:
-        return tags
-    return ColorTags(tags.primaries, curves[0], " and ".join(filter(None, (tags.source, "the maker's entry"))))
 
 
 def _turn(frame: VideoFrame) -> Turn:
@@ -290,21 +271,3 @@ def _turn(frame: VideoFrame) -> Turn:
     a, b, c, d = (round(float(value)) for value in values)
     is_quarter = bool(np.allclose(values, (a, b, c, d), atol=0.01)) and abs(a * d - b * c) == 1
     return (a, b, c, d) if is_quarter else UPRIGHT
-
-
-def _dolby_vision_profile(stream: VideoStream) -> int:
-    """Return the profile of Dolby Vision, or 0: of the box that FFmpeg would write, as PyAV does not give it."""
-    import av
-
-    if stream.codec_context.codec.canonical_name != "hevc":
-        return 0
-    header, options = BytesIO(), {"movflags": "empty_moov", "strict": "unofficial"}
-    try:
-        with av.open(header, "w", format="mp4", options=options) as container:
-            container.add_stream_from_template(stream)
-            container.start_encoding()
-            content = header.getvalue()
-    except (av.FFmpegError, ValueError):
-        return 0
-    at = content.find(b"dvcC")
-    return content[at + 6] >> 1 if at >= 0 else 0

@@ -8,38 +8,15 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 
-from .frame_files import EncodedFrame, FrameLoader, FrameSource
-
-
-@dataclass(frozen=True, eq=False)
-class SourceFrame:
-    """A frame to be read.
-
-    Parameters
-    ----------
-    position : int
-        Its position in the source.
-    path : Path
-        Its file.
-    load : callable
-        What reads it.
-    """
-
-    position: int
-    path: Path
-    load: FrameLoader
-
-    @classmethod
-    def of(cls, sequence: FrameSource, position: int, load: FrameLoader) -> SourceFrame:
-        """Return a frame of a source; those of a movie have one file."""
-        return cls(position, sequence.paths[min(position, len(sequence.paths) - 1)], load)
+from .frame_files import EncodedFrame, FrameSource
 
 
 @dataclass(frozen=True, eq=False)
 class FirstFrame:
-    """The first frame that can be read, so that it is not read twice."""
+    """The first frame that can be read, its position in the source and its file, so that it is not read twice."""
 
-    source: SourceFrame
+    position: int
+    path: Path
     frame: EncodedFrame
 
     @property
@@ -52,5 +29,10 @@ def first_frame(sequence: FrameSource) -> FirstFrame | None:
     """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
     for position, load in enumerate(sequence.loaders(range(max(1, len(sequence.numbers))))):
         with suppress(CRFNetError):
-            return FirstFrame(SourceFrame.of(sequence, position, load), load())
+            return FirstFrame(position, frame_path(sequence, position), load())
     return None
+
+
+def frame_path(sequence: FrameSource, position: int) -> Path:
+    """Return the file of a frame; those of a movie have one file."""
+    return sequence.paths[min(position, len(sequence.paths) - 1)]

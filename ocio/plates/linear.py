@@ -25,8 +25,8 @@ from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
 from ..staging import STALE_SECONDS
 from .exr import SAMPLE_TYPES, linear_header, write_exr
-from .first_frame import FirstFrame, SourceFrame, first_frame
-from .frame_files import EncodedFrame, FrameSource
+from .first_frame import FirstFrame, first_frame, frame_path
+from .frame_files import EncodedFrame, FrameLoader, FrameSource
 from .frame_numbers import format_frames
 from .frame_pattern import FramePattern
 from .frames import FrameSequence
@@ -152,7 +152,7 @@ def linearize_plates(
     light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in targets if not options.overwrite and target.exists())
-    sizes = {targets[first.source.position]: first.size} if first else {}
+    sizes = {targets[first.position]: first.size} if first else {}
     check_finished(skipped, light, options.depth, sizes=sizes)
     left_alone = set(skipped)
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
@@ -160,10 +160,10 @@ def linearize_plates(
     failures: dict[Path, CRFNetError] = {}
     elsewhere: list[Path] = []  # finished by another process meanwhile
     loaders = sequence.loaders([*pending.values()])
-    plates = (
-        SourceFrame.of(sequence, position, load) for position, load in zip(pending.values(), loaders, strict=True)
+    jobs = (
+        (target, partial(conversion.write, position, frame_path(sequence, position), load, target))
+        for (target, position), load in zip(pending.items(), loaders, strict=True)
     )
-    jobs = ((target, partial(conversion.write, plate, target)) for target, plate in zip(pending, plates, strict=True))
     show_progress(progress, len(skipped), len(targets))
     with closing(finished(jobs, _worker_count(workers))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
@@ -191,22 +191,24 @@ class _Conversion:
     options: PlateOptions
     first: FirstFrame | None
 
-    def write(self, plate: SourceFrame, target: Path) -> None:
+    def write(self, position: int, path: Path, load: FrameLoader, target: Path) -> None:
         """Read one plate and write its linear EXR."""
-        frame = self._read(plate)
+        frame = self._read(position, path, load)
         pixels = self._linear_pixels(frame)
         attributes, depth = self.light.attributes, self.options.depth
         header = linear_header(frame.header, channels=pixels.shape[2], depth=depth, attributes=attributes)
         with atomic_write(target, overwrite=self.options.overwrite, error=PlateError) as temporary:
             write_exr(temporary, header, pixels, name=target)
 
-    def _read(self, plate: SourceFrame) -> EncodedFrame:
+    def _read(self, position: int, path: Path, load: FrameLoader) -> EncodedFrame:
         """Return a plate, which must have the primaries of the first."""
-        if self.first is None or plate.position == self.first.source.position:
-            return self.first.frame if self.first else plate.load()
-        frame = plate.load()
-        found = plate_primaries(frame.color, self.options.primaries)
-        check_same_primaries(plate.path, found, self.first.source.path, self.light.plate)
+        if self.first is None:
+            return load()
+        if position == self.first.position:
+            return self.first.frame
+        frame = load()
+        primaries = plate_primaries(frame.color, self.options.primaries)
+        check_same_primaries(path, primaries, self.first.path, self.light.plate)
         return frame
 
     def _linear_pixels(self, frame: EncodedFrame) -> NDArray[Any]:

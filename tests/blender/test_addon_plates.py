@@ -136,7 +136,7 @@ def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon
 @pytest.mark.parametrize(
     ("name", "words"),
     [
-        ("shot.0001.png", r"shot\.####\.png: none of its frames is found; find them with File, External Data\s*$"),
+        ("shot.0001.png", r"shot\.####\.png: there are none of this name"),
         ("still.png", r"still\.png: there is no such file; find it with File, External Data\s*$"),
     ],
 )

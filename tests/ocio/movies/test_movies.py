@@ -1,10 +1,8 @@
 """Frames of movies: all of them, in order, upright; and movies that are refused in one line."""
 
 import os
-import struct
 import sys
 import time
-from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -12,8 +10,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import WHITE, MovieFrames, decoded
 from crfnet.movies.library import is_movie
-from crfnet.movies.stream import check_progressive, read_stream
-from crfnet_core.photograph.metadata import file_origin
+from crfnet.movies.stream import _key_numbers, check_progressive, read_stream
 from tests.helpers.images import write_image
 from tests.helpers.movies import pictures, write_movie
 
@@ -104,6 +101,23 @@ def test_key_frames_are_decoded_alone(tmp_path, name):
     assert {number for number, _ in frames.photos(keys)} == set(keys)
 
 
+@pytest.mark.parametrize(
+    ("packets", "keys"),
+    [
+        ([], ()),
+        ([(None, False)] * 3, ()),
+        ([(0, True), (2, False), (1, False), (3, True), (4, False)], (1, 4)),
+        (
+            [(2, True), (0, False), (1, False), (5, True), (3, False)],
+            (3, 5),
+        ),  # an open group
+        ([(0, True), (1, False), (0, True), (1, False)], (1, 3)),  # two clocks
+    ],
+)
+def test_numbers_of_key_frames(packets, keys):
+    assert _key_numbers(packets) == keys
+
+
 def test_two_transport_streams_in_one_file_give_all_frames(tmp_path):
     content = write_movie(tmp_path / "a.ts", 12, options=B_FRAMES).read_bytes()
     (tmp_path / "b.ts").write_bytes(2 * content)
@@ -192,62 +206,6 @@ def test_alpha_is_kept(tmp_path):
     np.testing.assert_allclose(next(MovieFrames.find(path).loaders([0]))().alpha, 1, atol=0.01)
 
 
-def with_box(path, box):
-    """Insert a box in front of the decoder configuration of a HEVC movie whose header stands at the end."""
-    content = path.read_bytes()
-    at = content.index(b"hvcC") - 4
-    assert content.index(b"mdat") < at
-    content = bytearray(content[:at] + box + content[at:])
-    for name in (b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd", b"hev1"):
-        place = content.index(name) - 4
-        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(box))
-    path.write_bytes(content)
-
-
-@pytest.mark.parametrize(("profile", "code"), [(5, "dolby_vision"), (8, "")])
-def test_dolby_vision_of_profile_5_is_refused(tmp_path, profile, code):
-    path = write_movie(tmp_path / "a.mp4", codec="libx265")
-    with_box(path, struct.pack(">I4s", 32, b"dvcC") + bytes([1, 0, profile << 1, 13, 0]) + bytes(19))
-    assert (refusal(path) if code else read_stream(path).codec) == (code or "HEVC")
-
-
-def test_metadata_that_is_not_utf8_is_read(tmp_path):
-    path = write_movie(tmp_path / "a.mov", metadata={"title": "Voigt"})
-    content = path.read_bytes()
-    assert b"Voigt" in content
-    path.write_bytes(content.replace(b"Voigt", b"Vo\xefgt"))
-    assert read_stream(path).metadata["title"] == "Vo\ufffdgt"
-
-
-def test_maker_model_rate_and_timecode(tmp_path):
-    tags = {"com.apple.quicktime.make": "Apple", "com.apple.quicktime.model": "iPhone", "timecode": "01:00:00:00"}
-    path = write_movie(tmp_path / "a.mov", metadata=tags, muxer={"movflags": "use_metadata_tags"})
-    found = read_stream(path)
-    assert (found.rate, "timecode 01:00:00:00" in str(found)) == (Fraction(24), True)
-    assert file_origin(found.file_metadata).words == ("taken by Apple iPhone, a phone", "a frame of a movie")
-    header = next(MovieFrames.find(path).loaders([0]))().header
-    assert header.getattribute("FramesPerSecond") == (24, 1)
-    assert header.get_string_attribute("Model") == "iPhone"
-
-
-@pytest.mark.parametrize(
-    ("tags", "metadata", "transfer"),
-    [
-        ({"color_trc": 16}, {}, "PQ"),
-        ({"color_trc": 1}, {}, ""),
-        ({}, {"com.arri.camera.ColorGammaSxS": "LOG-C"}, "ARRI LogC3"),
-        (
-            {},
-            {"com.panasonic.Semi-Pro.metadata.xml": "<a><CaptureGamma> V-Log </CaptureGamma></a>"},
-            "Panasonic V-Log",
-        ),
-    ],
-)
-def test_published_curves_are_known_by_tags_and_metadata(tmp_path, tags, metadata, transfer):
-    path = write_movie(tmp_path / "a.mov", tags=tags, metadata=metadata, muxer={"movflags": "use_metadata_tags"})
-    assert read_stream(path).color.transfer == transfer
-
-
 def test_what_is_not_a_movie(tmp_path):
     for name in ("a.png", "a.jpg", "a.tif", "a.webp", "a.exr"):
         write_image(tmp_path / name, np.zeros((8, 8, 3), np.uint8))
@@ -290,8 +248,10 @@ def test_an_unknown_codec_is_refused(movie):
     assert refusal(movie) in ("no_video", "movie_undecodable")
 
 
-def test_many_empty_boxes_take_seconds(movie):
-    movie.write_bytes(movie.read_bytes() + 500_000 * b"\0\0\0\x08free")
+def test_many_empty_boxes_take_seconds_and_opening_ends(movie, monkeypatch):
+    movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
     start = time.monotonic()
     assert read_stream(movie).frame_count == 24
     assert time.monotonic() - start < 10
+    monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
+    assert refusal(movie) == "movie_undecodable"

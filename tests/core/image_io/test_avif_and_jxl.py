@@ -1,0 +1,82 @@
+"""AVIF of more than 8 bits and AVIF with XMP; lossy JPEG XL."""
+
+import struct
+
+import numpy as np
+import OpenImageIO as oiio
+import pytest
+from PIL import ImageCms
+
+from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.image_io import read_codes, read_metadata
+from tests.helpers.colored_ramp import colored_ramp
+
+
+def test_xmp_does_not_turn_avif(tmp_path):
+    """In AVIF only its own boxes turn the picture (MIAF), and Pillow writes them from EXIF."""
+    image = pytest.importorskip("PIL.Image")
+    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
+    xmp += b'<rdf:Description xmlns:tiff="http://ns.adobe.com/tiff/1.0/" tiff:Orientation="3"/></rdf:RDF></x:xmpmeta>'
+    codes = colored_ramp(8)
+    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", xmp=xmp)
+    with image.open(tmp_path / "a.avif") as file:
+        assert file.getexif()[0x0112] == 3, "Pillow by itself would turn it"
+    assert np.abs(read_codes(tmp_path / "a.avif").codes.astype(int) - codes).max() <= 3
+
+
+def deep_avif(path, codes, color_range):
+    """Write codes of 10 bits as AVIF of 4:2:0 in limited (1) or full range (2)."""
+    av = pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
+    if "libsvtav1" not in av.codecs_available:
+        pytest.skip("needs libsvtav1")
+    picture = av.VideoFrame.from_ndarray(codes.astype(np.uint16) << 6, format="rgb48le")
+    frame = picture.reformat(format="yuv420p10le", dst_colorspace=1, dst_color_range=color_range)
+    with av.open(str(path), "w", format="avif") as container:
+        stream = container.add_stream("libsvtav1", rate=1, options={"crf": "8"})
+        stream.width, stream.height, stream.pix_fmt = frame.width, frame.height, "yuv420p10le"
+        stream.codec_context.color_range, stream.codec_context.colorspace = color_range, 1
+        container.mux([*stream.encode(frame), *stream.encode()])
+
+
+@pytest.mark.parametrize("color_range", [1, 2])
+def test_avif_of_10_bits_with_odd_width_in_limited_and_full_range(tmp_path, color_range):
+    x, y = np.meshgrid(np.arange(131), np.arange(98))
+    codes = np.dstack([x * 7, y * 10, 400 + x + y])
+    deep_avif(tmp_path / "a.avif", codes, color_range)
+    values = read_codes(tmp_path / "a.avif")
+    assert values.codes.shape == (98, 131, 3)
+    assert np.abs(values.codes.astype(int) - codes).mean() < 6
+
+
+def test_the_range_of_the_box_overrides_the_stream(tmp_path):
+    codes = np.tile(np.linspace(0, 1023, 128).round()[None, :, None], (96, 1, 3))
+    deep_avif(tmp_path / "a.avif", codes, 1)
+    content = (tmp_path / "a.avif").read_bytes()
+    at = content.index(b"colrnclx") + 14
+    (tmp_path / "b.avif").write_bytes(content[:at] + b"\x80" + content[at + 1 :])
+    limited, full = (read_codes(tmp_path / name).codes.astype(int) for name in ("a.avif", "b.avif"))
+    assert np.abs(limited - codes).mean() < 4
+    assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
+
+
+@pytest.mark.parametrize("quality", [90, 100])
+def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
+    """OpenImageIO would return linear light."""
+    srgb = ImageCms.ImageCmsProfile(ImageCms.createProfile("sRGB")).tobytes()
+    curve = struct.pack(">i", round(2.4 * 65536))
+    assert curve in srgb
+    header = oiio.ImageSpec(64, 48, 3, oiio.UINT8)
+    header.attribute("compression", f"jpegxl:{quality}")
+    profile = np.frombuffer(srgb.replace(curve, struct.pack(">i", round(1.7 * 65536))), np.uint8)
+    header.attribute("ICCProfile", oiio.TypeDesc(f"uint8[{profile.size}]"), profile)
+    output = oiio.ImageOutput.create(str(tmp_path / "a.jxl"))
+    assert output.open(str(tmp_path / "a.jxl"), header)
+    assert output.write_image(colored_ramp(8))
+    output.close()
+    if quality == 100:
+        np.testing.assert_array_equal(read_codes(tmp_path / "a.jxl").codes, colored_ramp(8))
+        return
+    for read in (read_codes, read_metadata):
+        with pytest.raises(PhotoError) as caught:
+            read(tmp_path / "a.jxl")
+        assert caught.value.code == "jxl_linear"
