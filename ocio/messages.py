@@ -3,6 +3,8 @@
 from collections.abc import Mapping
 
 SENTENCES: Mapping[str, str] = {
+    # exr
+    "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts
     "gray_is_black": "a brightness of {gray:g} is black in this response; anchor a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",

@@ -204,10 +204,10 @@ def test_pipes_devices_and_huge_files_are_not_read(tmp_path, name):
     path = write_model(tmp_path / "m", model(evidence_graph())) / name
     path.unlink()
     os.mkfifo(path)
-    assert "it is no regular file" in refusal(tmp_path / "m")
+    assert "it is not a regular file" in refusal(tmp_path / "m")
     path.unlink()
     path.symlink_to("/dev/zero")
-    assert "it is no regular file" in refusal(tmp_path / "m")
+    assert "it is not a regular file" in refusal(tmp_path / "m")
     path.unlink()
     path.touch()
     os.truncate(path, MAX_GRAPH_SIZE + 1)
