@@ -28,7 +28,7 @@ comma := ,
 
 .DEFAULT_GOAL := help
 .DELETE_ON_ERROR:
-.PHONY: help demo addon test fuzz hardness test-training test-blender test-blender-window blender-pictures check format model docs bench clean
+.PHONY: help demo addon test fuzz faults test-training test-blender test-blender-window blender-pictures check format model docs bench clean
 
 help:  ## list the targets
 	@sed -n 's/^\([a-z-]*\):[^#]*## \(.*\)/  make \1\t\2/p' $(MAKEFILE_LIST) | expand -t 28
@@ -46,8 +46,8 @@ test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as
 fuzz: $(TEST)/ready  ## damaged files for an hour (SECONDS_EACH=400 of every test), before a release
 	CRFNET_FUZZ_SECONDS=$(SECONDS_EACH) $(TEST)/bin/python -m pytest tests/fuzz
 
-hardness: $(TEST)/ready  ## kills, full disks, two runs at once, many runs and fuzzing, before a release; writes docs/RELIABILITY.md
-	$(TEST)/bin/python -m benchmarks.hardness
+faults: $(TEST)/ready  ## every write, fsync, close and rename of an estimate fails once: EIO, ENOSPC, SIGKILL (10 minutes)
+	$(TEST)/bin/python -m tests.faults
 
 test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)
 	$(TRAIN)/bin/python -m pytest tests/training

@@ -1,4 +1,4 @@
-"""Read a file of bounded size; write one whole or not at all; a document as text."""
+"""Read a file of bounded size; write a file whole or not at all; write a document as text."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ import re
 import secrets
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -32,10 +32,10 @@ def read_bytes(path: Path, *, most: int) -> bytes:
     Raises
     ------
     OSError
-        If the file cannot be read, is no regular file, or is larger.
+        If the file cannot be read, is not a regular file, or is larger.
     """
     if not stat.S_ISREG(path.stat().st_mode):
-        raise OSError(errno.EINVAL, "it is no regular file", str(path))
+        raise OSError(errno.EINVAL, "it is not a regular file", str(path))
     with path.open("rb") as file:
         content = file.read(most + 1)
     if len(content) > most:
@@ -50,7 +50,7 @@ def file_sha256(path: Path) -> str:
 
 
 def read_json(path: Path) -> Any:
-    """Return what a JSON file of at most `MAX_JSON_SIZE` bytes holds; see `parse_json`.
+    """Return the content of a JSON file of at most `MAX_JSON_SIZE` bytes; see `parse_json`.
 
     Raises
     ------
@@ -63,12 +63,12 @@ def read_json(path: Path) -> Any:
 
 
 def parse_json(text: bytes) -> Any:
-    """Return what a JSON text holds; its numbers are finite, but its whole ones may be too large for a float.
+    """Return the content of a JSON text; its numbers are finite, but integers may be too large for a float.
 
     Raises
     ------
     ValueError
-        If it is no JSON, holds NaN or an infinity, or is nested too deeply.
+        If it is not JSON, holds NaN or an infinity, or is nested too deeply.
     """
     try:
         return json.loads(text, parse_constant=_refused, parse_float=_finite)
@@ -95,13 +95,13 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
     """
     path = Path(path)
     if not path.parent.is_dir():
-        raise error(f"{path}: the folder {path.parent} does not exist; create it first")
+        raise error("folder_absent", path=path, folder=path.parent)
     if not os.access(path.parent, os.W_OK):
-        raise error(f"{path}: the folder {path.parent} is not writable; choose another")
+        raise error("folder_read_only", path=path, folder=path.parent)
     if path.is_dir():
-        raise error(f"{path}: is a folder; give the name of a file")
+        raise error("is_folder", path=path)
     if os.path.lexists(path) and not overwrite:
-        raise error(f"{path}: exists already; choose another name or ask to overwrite it")
+        raise error("exists", path=path)
     return path
 
 
@@ -109,7 +109,10 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
 def atomic_write(
     path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> Iterator[Path]:
-    """Yield a temporary file beside `path` that takes its name only if the block succeeds.
+    """Yield a temporary file in the folder of `path` that takes its name only if the block succeeds.
+
+    The content is on the disk before the name is: `fsync` may fail as a write does. Only the user may
+    open the temporary file; a file that somebody else put in its place is refused.
 
     Parameters
     ----------
@@ -123,8 +126,8 @@ def atomic_write(
     Yields
     ------
     Path
-        An empty file in the same folder and with the same suffix, to be filled by the caller. Its permissions are those
-        of any new file.
+        An empty file in the same folder and with the same suffix, to be filled by the caller, not replaced. In the end
+        it has the permissions of any new file.
 
     Raises
     ------
@@ -134,20 +137,30 @@ def atomic_write(
     try:
         path = check_target(path, overwrite=overwrite, error=error)
         temporary = _temporary_name(path)
-        os.close(os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o666))
+        descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666)
         try:
-            yield temporary
+            try:
+                mode = os.fstat(descriptor).st_mode
+                _change_mode(descriptor, 0o600)
+                yield temporary
+                if not os.path.samestat(os.fstat(descriptor), os.lstat(temporary)):
+                    raise OSError(errno.EPERM, "another file took its place meanwhile")
+                _change_mode(descriptor, mode)
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
             temporary.replace(path)
         finally:
             temporary.unlink(missing_ok=True)
+        _flush_folder(path.parent)
     except OSError as problem:
-        raise error(f"{path}: cannot be written ({problem.strerror or problem})") from problem
+        raise error("not_written", path=path, reason=problem.strerror or problem) from problem
 
 
 def atomic_write_text(
     path: str | Path, text: str, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> None:
-    """Write `text` as UTF-8, its line ends as they are; options and errors are those of `atomic_write`."""
+    """Write `text` as UTF-8, its line ends as they are; options and errors as for `atomic_write`."""
     with atomic_write(path, overwrite=overwrite, error=error) as temporary:
         temporary.write_text(text, encoding="utf-8", newline="\n")
 
@@ -169,8 +182,8 @@ def json_text(document: Mapping[str, Any]) -> str:
 
 
 def _refused(constant: str) -> NoReturn:
-    """Refuse what Python takes for a number and JSON does not: NaN and the infinities."""
-    raise ValueError(f"{constant} is no number of JSON")
+    """Refuse NaN and the infinities, which Python takes for numbers and JSON does not."""
+    raise ValueError(f"{constant} is not a number of JSON")
 
 
 def _finite(text: str) -> float:
@@ -178,6 +191,23 @@ def _finite(text: str) -> float:
     return number if math.isfinite(number := float(text)) else _refused(text)
 
 
+def _change_mode(descriptor: int, mode: int) -> None:
+    """Change the permissions of an open file where the system has them."""
+    if os.name != "nt":
+        os.fchmod(descriptor, stat.S_IMODE(mode))
+
+
+def _flush_folder(folder: Path) -> None:
+    """Flush the names in a folder; file systems that cannot do so keep the whole file under one name or none."""
+    if os.name != "nt":
+        with suppress(OSError):
+            descriptor = os.open(folder, os.O_RDONLY)
+            try:
+                os.fsync(descriptor)
+            finally:
+                os.close(descriptor)
+
+
 def _temporary_name(path: Path) -> Path:
-    """Return the name of a hidden file beside a file, `.stem.XXXXXXXX.suffix`."""
+    """Return the name of a hidden file in the folder of a file, `.stem.XXXXXXXX.suffix`."""
     return path.with_name(f".{temporary_stem(path)}.{secrets.token_hex(4)}{path.suffix}")

@@ -1,14 +1,20 @@
 """The errors of LUTs, configs and plates: codes and facts; `messages` has their sentences."""
 
+from collections.abc import Mapping
+
 from crfnet_core.errors import CRFNetError
+from crfnet_core.messages import SENTENCES as CORE_SENTENCES
 
 from .messages import SENTENCES
+
+#: The sentences of both packages: writers in `crfnet_core` raise these errors, too.
+_SENTENCES: Mapping[str, str] = {**CORE_SENTENCES, **SENTENCES}
 
 
 class OutputError(CRFNetError):
     """Base of the errors of this package."""
 
-    sentences = SENTENCES
+    sentences = _SENTENCES
 
 
 class LutError(OutputError):

@@ -51,6 +51,8 @@ SENTENCES: Mapping[str, str] = {
     "unknown_depth": "depth {depth!r} is unknown; choose half or float",
     "unknown_output_space": "output space {space!r} is unknown; choose one of {spaces}",
     "unknown_primaries": "primaries {primaries!r} are unknown; choose one of {choices}",
+    # exr
+    "exr_not_written": "{path}: cannot be written ({reason}); check the disk",
     # luts
     "gray_is_black": "a brightness of {gray:g} is black in this response; anchor a brighter gray",
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",

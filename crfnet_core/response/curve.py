@@ -19,6 +19,9 @@ SAMPLES = 1024
 #: Fraction of the identity mixed into every response: its least slope, which bounds the slope of the inverse.
 LEAST_SLOPE = 1e-4
 
+#: Largest brightness that counts as one; super-whites reach 1.1, and larger numbers are codes that nobody divided.
+MOST_BRIGHTNESS = 2.0
+
 #: Values that are interpolated at a time, because they fit into a core's cache; arrays of more are interpolated by
 #: `_PiecewiseLinear._evaluated`.
 BLOCK = 32768
@@ -51,9 +54,9 @@ class ResponseCurve(EqualByFields):
     def __post_init__(self) -> None:
         brightness = np.array(self.brightness, dtype=np.float64)
         if brightness.shape != (SAMPLES,):
-            raise CurveError(f"a response needs shape ({SAMPLES},), found {brightness.shape}; use from_samples")
+            raise CurveError("curve_shape", samples=SAMPLES, shape=brightness.shape)
         if brightness[0] != 0 or brightness[-1] != 1 or not (np.diff(brightness) > 0).all():
-            raise CurveError("a response must increase strictly from 0 to 1; use from_samples")
+            raise CurveError("curve_not_strict")
         brightness.flags.writeable = False
         object.__setattr__(self, "brightness", brightness)
 
@@ -66,7 +69,7 @@ class ResponseCurve(EqualByFields):
 
     @classmethod
     def from_samples(cls, samples: ArrayLike) -> ResponseCurve:
-        """Return the strictly monotone, normalised response nearest to `samples` (Eq. 26 and 27 of docs/METHOD.md).
+        """Return the strictly monotone, normalized response nearest to `samples` (Eq. 26 and 27 of docs/METHOD.md).
 
         The samples are scaled to run from 0 to 1 and projected on the increasing sequences (`nearest_increasing`):
         a projection on a convex set brings a curve no farther from any member of the set, so this never raises the
@@ -84,9 +87,9 @@ class ResponseCurve(EqualByFields):
         """
         values = np.asarray(samples, dtype=np.float64)
         if values.ndim != 1 or values.size < 2 or not np.isfinite(values).all():
-            raise CurveError("a response needs a row of two or more finite samples")
+            raise CurveError("curve_samples")
         if values[-1] <= values[0]:
-            raise CurveError("a response must be brighter at full irradiance than in the dark")
+            raise CurveError("curve_dark")
         uniform = np.linspace(0, 1, SAMPLES)
         if values.size != SAMPLES:
             values = np.interp(uniform, np.linspace(0, 1, values.size), values)
@@ -104,7 +107,7 @@ class ResponseCurve(EqualByFields):
 
     @classmethod
     def gamma(cls, exponent: float = 2.2) -> ResponseCurve:
-        """Return the power law f(E) = E ** (1 / exponent), what people guess without an estimate.
+        """Return the power law f(E) = E ** (1 / exponent), the usual guess without an estimate.
 
         Raises
         ------
@@ -112,7 +115,7 @@ class ResponseCurve(EqualByFields):
             If `exponent` is not above 0.
         """
         if not exponent > 0:
-            raise CurveError(f"a gamma must be above 0, found {exponent}")
+            raise CurveError("curve_exponent", exponent=exponent)
         return cls.from_samples(np.linspace(0, 1, SAMPLES) ** (1 / exponent))
 
     @cached_property
@@ -155,7 +158,7 @@ class ResponseCurve(EqualByFields):
     @overload
     def inverse(self, brightness: NDArray[Any] | Sequence[Any]) -> Float64Array: ...
     def inverse(self, brightness: ArrayLike) -> Any:
-        """Return irradiance g(B) in [0, 1]; B is clipped to [0, 1], and NaN stays NaN.
+        """Return irradiance g(B) in [0, 1]; B up to `MOST_BRIGHTNESS` is clipped to [0, 1], and NaN stays NaN.
 
         This is the exact inverse of `forward`. Our LUTs of it have the same values at the codes that they are exact on:
         see `crfnet.luts.lut1d.inverse_response_lut`.
@@ -173,7 +176,8 @@ class ResponseCurve(EqualByFields):
         Raises
         ------
         CurveError
-            If integers above 1 are given: code values, which have to be divided by the largest code.
+            If integers above 1, or other numbers above `MOST_BRIGHTNESS`, are given: code values, which have to be
+            divided by the largest code.
         """
         return self._inverse(brightness)
 
@@ -185,27 +189,26 @@ class ResponseCurve(EqualByFields):
     @cached_property
     def _inverse(self) -> _PiecewiseLinear:
         """The inverse response as a function of arrays."""
-        return _PiecewiseLinear(self.brightness, self.irradiance)
+        return _PiecewiseLinear(self.brightness, self.irradiance, most=MOST_BRIGHTNESS)
 
 
 class _PiecewiseLinear:
     """A function that is linear between knots from 0 to 1, and evaluated fast on large arrays.
 
     It has the values of `numpy.interp`, which searches the segment of each value by bisection. Here a table of cells
-    tells it, or the one before it. Where knots lie closer than cells, `numpy.interp` is asked.
+    holds the segment or the one before it. Where knots lie closer than cells, `numpy.interp` is used.
     """
 
-    def __init__(self, knots: Float64Array, values: Float64Array) -> None:
-        self._knots, self._values = knots, values
+    def __init__(self, knots: Float64Array, values: Float64Array, *, most: float = np.inf) -> None:
+        self._knots, self._values, self._most = knots, values, most
 
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
         given = np.asarray(arguments)
+        if self._most < np.inf and (largest := float(np.fmax.reduce(given, axis=None, initial=0))) > self._most:
+            raise CurveError("brightness_codes", found=largest)
         if given.dtype.kind in "iu" and given.size and given.max() > 1:
-            raise CurveError(
-                f"found integers up to {given.max()}, but brightness and irradiance lie in [0, 1]: divide code values"
-                " by the largest code, such as 255"
-            )
+            raise CurveError("brightness_codes", found=int(given.max()))
         kind = np.float32 if given.dtype.kind == "f" and given.dtype.itemsize <= 4 else np.float64
         if given.size <= BLOCK:
             return kind(np.interp(given.astype(np.float64), self._knots, self._values))

@@ -25,7 +25,7 @@ class EmorBasis(EqualByFields):
 
     `data/emor.npz` was computed from the 201 curves of DoRF (Grossberg & Nayar) by
     ``python -m training.data.emor_basis``: the curves at 1024 uniform irradiances; their mean; the singular vectors of
-    what is left, the 11 of largest singular value, each with unit L2 norm over the 1024 samples and a positive sum. So
+    the remainder, the 11 of largest singular value, each with unit L2 norm over the 1024 samples and a positive sum. So
     a distance between two weight vectors is the estimation error between the two reconstructions.
 
     Source: Grossberg & Nayar, "Modeling the space of camera response functions", TPAMI 2004.
@@ -65,6 +65,6 @@ class EmorBasis(EqualByFields):
     def reconstruct(self, weights: ArrayLike) -> Float64Array:
         """Return the responses, shape (..., 1024), of weights of shape (..., 11).
 
-        What comes out of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`.
+        The response of arbitrary weights need not be monotone: see `ResponseCurve.from_samples`.
         """
         return self.mean + np.asarray(weights, dtype=np.float64) @ self.components

@@ -29,7 +29,7 @@ def brightness_percent(error: float) -> float:
 def linearization_error(
     brightness: ArrayLike, true: ResponseCurve, estimated: ResponseCurve, *, counts: ArrayLike | None = None
 ) -> float:
-    """Return E_lin, the RMSE between a photograph linearised by the true and by the estimated inverse response: Eq. 33.
+    """Return E_lin, the RMSE between a photograph linearized by the true and by the estimated inverse response: Eq. 33.
 
     Parameters
     ----------
@@ -43,7 +43,7 @@ def linearization_error(
     Returns
     -------
     float
-        The error, relative to the peak of the photograph linearised by the true response.
+        The error, relative to the peak of the photograph linearized by the true response.
     """
     brightness = np.asarray(brightness, dtype=np.float64)
     irradiance = true.inverse(brightness)
@@ -63,7 +63,7 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 
 
 def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
-    """Return by how many stops the estimated linear light is too bright beside white: Eq. 42.
+    """Return by how many stops the estimated linear light is too bright relative to white: Eq. 42.
 
     The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out. Both
     responses have white at 1.
@@ -72,7 +72,7 @@ def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 
 
 def peak_signal_to_noise(error: float) -> float:
-    """Return the PSNR in decibels of a linearisation error above 0 (peak of the true linear image = 1)."""
+    """Return the PSNR in decibels of a linearization error above 0 (peak of the true linear image = 1)."""
     return float(-20 * np.log10(error))
 
 

@@ -94,7 +94,11 @@ def _processor(path: Path) -> OCIO.Processor:
 
 def _check_steps(path: Path, steps: list[OCIO.Transform]) -> None:
     """Raise a LutError unless the steps hold a table and keep the channels apart."""
-    found = [type(step).__name__ for step in steps if not _keeps_channels(step)]
+    names = {
+        OCIO.Lut1DTransform: "a table that adjusts hues or has half floats for inputs",
+        OCIO.Lut3DTransform: "a 3D LUT",
+    }
+    found = [names.get(type(step), type(step).__name__) for step in steps if not _keeps_channels(step)]
     if found or not any(isinstance(step, OCIO.Lut1DTransform) for step in steps):
         raise LutError("lut_not_1d", path=path, found=", ".join(found) or "no table")
 

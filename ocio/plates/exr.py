@@ -118,9 +118,19 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
     output = oiio.ImageOutput.create(str(path))
     problem = oiio_message()
     if output is None:
-        raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the OpenImageIO installation")
+        raise PlateError("exr_not_written", path=name, reason=first_line(problem))
     is_written = output.open(str(path), header) and output.write_image(pixels)
     is_closed = output.close()
     problem = oiio_message(output)
     if problem or not (is_written and is_closed):
-        raise PlateError(f"{name}: cannot be written ({first_line(problem)}); check the disk")
+        raise PlateError("exr_not_written", path=name, reason=first_line(problem))
+    _check_chunks(path, name)
+
+
+def _check_chunks(path: Path, name: Path) -> None:
+    """Raise a PlateError unless every chunk of a file can be read: OpenEXR reports no error of its last write."""
+    written = oiio.ImageInput.open(str(path))
+    is_whole = written is not None and written.read_image() is not None
+    problem = oiio_message(written or oiio)
+    if problem or not is_whole:
+        raise PlateError("exr_not_written", path=name, reason=first_line(problem))

@@ -1,3 +1,4 @@
+import errno
 import os
 import re
 import stat
@@ -28,8 +29,9 @@ def test_a_failure_leaves_nothing_behind(tmp_path):
 def test_an_existing_file_is_replaced_only_when_asked(tmp_path):
     target = tmp_path / "plate.cube"
     target.write_text("old")
-    with pytest.raises(LutError, match="exists already"), atomic_write(target, error=LutError):
+    with pytest.raises(LutError) as caught, atomic_write(target, error=LutError):
         pass
+    assert caught.value.code == "exists"
     assert target.read_text() == "old"
     with atomic_write(target, overwrite=True) as temporary:
         temporary.write_text("new")
@@ -37,20 +39,18 @@ def test_an_existing_file_is_replaced_only_when_asked(tmp_path):
 
 
 def test_the_folder_has_to_exist(tmp_path):
-    with pytest.raises(CRFNetError, match="does not exist"), atomic_write(tmp_path / "no" / "plate.cube"):
+    with pytest.raises(CRFNetError) as caught, atomic_write(tmp_path / "no" / "plate.cube"):
         pass
+    assert caught.value.code == "folder_absent"
 
 
-def test_a_folder_is_no_target(tmp_path):
-    with pytest.raises(CRFNetError, match="is a folder"), atomic_write(tmp_path):
+@pytest.mark.parametrize("name", [".", "", "../folder"])
+def test_a_folder_is_not_a_target(tmp_path, monkeypatch, name):
+    (tmp_path / "folder").mkdir()
+    monkeypatch.chdir(tmp_path / "folder")
+    with pytest.raises(CRFNetError) as caught, atomic_write(name):
         pass
-
-
-@pytest.mark.parametrize("name", [".", ""])
-def test_a_folder_without_a_name_is_no_target_either(tmp_path, monkeypatch, name):
-    monkeypatch.chdir(tmp_path)
-    with pytest.raises(CRFNetError, match="is a folder"), atomic_write(name):
-        pass
+    assert caught.value.code == "is_folder"
 
 
 def test_the_file_has_the_permissions_of_any_other(tmp_path):
@@ -74,6 +74,34 @@ def test_the_mask_of_permissions_holds_and_is_left_alone(tmp_path, monkeypatch):
     assert stat.S_IMODE((tmp_path / "plate.cube").stat().st_mode) == 0o640
 
 
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX permissions")
+def test_nobody_else_may_open_or_replace_the_temporary_file(tmp_path):
+    """In a folder that others may write to, the file behind a link in its place would be written to."""
+    (tmp_path / "mine").write_text("mine")
+
+    def swap(temporary):
+        assert stat.S_IMODE(temporary.stat().st_mode) == 0o600
+        temporary.unlink()
+        temporary.symlink_to(tmp_path / "mine")
+
+    with pytest.raises(CRFNetError) as caught, atomic_write(tmp_path / "plate.cube") as temporary:
+        swap(temporary)
+    assert caught.value.code == "not_written"
+    assert [path.name for path in tmp_path.iterdir()] == ["mine"]
+
+
+@pytest.mark.parametrize("call", ["fsync", "close", "rename"])
+def test_a_call_that_fails_leaves_nothing(tmp_path, monkeypatch, call):
+    def fail(*_arguments):
+        raise OSError(errno.EIO, "Input/output error")
+
+    with pytest.raises(CRFNetError) as caught, atomic_write(tmp_path / "plate.cube"):
+        monkeypatch.setattr(os, "replace" if call == "rename" else call, fail)
+    monkeypatch.undo()
+    assert (caught.value.code, caught.value.facts["reason"]) == ("not_written", "Input/output error")
+    assert list(tmp_path.iterdir()) == []
+
+
 @pytest.mark.parametrize("character", ["a", "\u00e9", "\u5199", "\U0001f4f7"])
 def test_the_longest_names_are_written(tmp_path, character):
     ending = ".cube"
@@ -84,9 +112,10 @@ def test_the_longest_names_are_written(tmp_path, character):
     assert [path.name for path in tmp_path.iterdir()] == [name]
 
 
-def test_a_name_that_is_too_long_is_told(tmp_path):
-    with pytest.raises(LutError, match="cannot be written"), atomic_write(tmp_path / ("a" * 300), error=LutError):
+def test_a_name_that_is_too_long_is_refused(tmp_path):
+    with pytest.raises(LutError) as caught, atomic_write(tmp_path / ("a" * 300), error=LutError):
         pass
+    assert caught.value.code == "not_written"
     assert list(tmp_path.iterdir()) == []
 
 
