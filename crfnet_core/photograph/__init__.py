@@ -1,7 +1,9 @@
 """Photographs: read from files, with their metadata.
 
 image_io      the one reader of image files
-photo         a photograph's code values, of a file or an array
-metadata      the origin of a file: device, editor, and its primaries
+photo         a photograph's code values, and the integer samples of a file
+arrays        pixels from the arrays of NumPy, Pillow and OpenCV
+orientation   quarter turns: pictures upright
+metadata      the origin of a file: device, editor, encoding, color tags
 recognition   inputs that are not camera photographs: log footage, limited range, tagged encodings
 """

@@ -11,8 +11,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from crfnet_core.photograph.image_io import MAX_PIXELS
-from crfnet_core.photograph.metadata.cicp import cicp_tags
-from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 
 from ..errors import PlateError
 from .color import Coding

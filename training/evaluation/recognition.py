@@ -80,7 +80,8 @@ def print_log_footage(data: Path, network: ResponseNetwork, *, is_stretched: boo
             found += 1
             named += recognition.curves[0] == name
             among += name in recognition.curves
-            errors = [light_error(curves[each], curves[name], Levels.of(pixels)) for each in recognition.curves]
+            levels = Levels.from_pixels(pixels)
+            errors = [light_error(curves[each], curves[name], levels) for each in recognition.curves]
             least = int(np.argmin(recognition.errors))
             first.append(errors[0])
             safest.append(errors[least])
@@ -109,8 +110,8 @@ def print_limited(data: Path) -> None:
     as_stored, as_jpeg, total = 0, 0, 0
     for _, photo in _real(data):
         codes = limited(photo.pixels)
-        as_stored += is_limited_range(Levels.of(_brightness(codes)))
-        as_jpeg += is_limited_range(Levels.of(_brightness(compressed(codes))))
+        as_stored += is_limited_range(Levels.from_pixels(_brightness(codes)))
+        as_jpeg += is_limited_range(Levels.from_pixels(_brightness(compressed(codes))))
         total += 1
     print(f"limited range: {total} photographs, recognized {as_stored}, as JPEG of quality {QUALITY} {as_jpeg}")
 

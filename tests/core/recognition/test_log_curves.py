@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crfnet.movies import log_tags
-from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.metadata.color_tags import TRANSFERS
 from crfnet_core.photograph.recognition import COLOR_SPACES, log_curves
 from crfnet_core.photograph.recognition.tagged import TAGGED_SPACES
 
@@ -81,7 +81,7 @@ def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
     ocio = pytest.importorskip("PyOpenColorIO")
     names = set(ocio.Config.CreateFromFile("ocio://studio-config-latest").getColorSpaceNames())
     assert set(TAGGED_SPACES.values()) <= names
-    assert set(TAGGED_SPACES) <= {*log_curves(), *cicp.TRANSFERS.values(), *log_tags.TEXTS.values()}
+    assert set(TAGGED_SPACES) <= {*log_curves(), *TRANSFERS.values(), *log_tags.TEXTS.values()}
     assert {*log_tags.TEXTS.values(), log_tags.ARRI_CURVE} <= {*log_curves(), *TAGGED_SPACES}
 
 

@@ -13,8 +13,9 @@ from crfnet.movies.frames import MovieFrames
 from crfnet.movies.header import frame_header, movie_metadata
 from crfnet.movies.library import is_movie
 from crfnet.movies.stream import check_progressive, read_stream
-from crfnet_core.photograph.metadata import cicp, file_origin
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, REC2020, ColorTags
+from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020
+from crfnet_core.photograph.metadata import file_origin
+from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
 from tests.helpers.images import write_image
 from tests.helpers.movies import INTERLACED, make_movie, run_ffmpeg
 
@@ -35,8 +36,8 @@ def movie(tmp_path_factory):
         ("bt709", REC709),
         ("bt2020", REC2020),
         ("smpte432", DISPLAY_P3),
-        ("smpte170m", cicp.PRIMARIES[6]),
-        ("film", cicp.PRIMARIES[8]),
+        ("smpte170m", PRIMARIES[6]),
+        ("film", PRIMARIES[8]),
     ],
 )
 def test_primaries_are_those_of_the_tag(tmp_path, tag, primaries):

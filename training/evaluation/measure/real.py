@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 
@@ -91,7 +90,7 @@ def measure_real(
 def read_real_photo(photograph: RealPhotograph) -> Photo:
     """Return the photograph as the product reads it, with the metadata of its original where the file lost it."""
     photo = read_photo(photograph.photograph)
-    return replace(photo, metadata=photograph.metadata or photo.metadata)
+    return photo.with_metadata(photograph.metadata or photo.metadata)
 
 
 def estimates(
@@ -106,7 +105,7 @@ def estimates(
 def without_exif(photo: Photo) -> Photo:
     """Return the photograph as a web site sends it: its file says nothing but the size of the picture."""
     height, width = photo.pixels.shape[:2]
-    return replace(photo, metadata=FileMetadata(width=width, height=height, file_format="WebP"))
+    return photo.with_metadata(FileMetadata(width=width, height=height, file_format="WebP"))
 
 
 def bank_without_fold(photograph: RealPhotograph, data: Path) -> ResponseBank:

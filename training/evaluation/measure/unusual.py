@@ -77,7 +77,7 @@ def measure_unusual(
         for name, file in files.items():
             for way, (metadata, device) in ways_of_picture(kind).items():
                 if (one := label(scene, kind, way)) not in file.verdicts:
-                    asked = replace(photo, metadata=metadata)
+                    asked = photo.with_metadata(metadata)
                     file.verdicts[one] = estimate_response(asked, network=networks[name], device=device).verdict
                     file.save()
 
