@@ -1,8 +1,9 @@
-"""From the chromaticities of an RGB to matrices: RGB to CIE XYZ, and chromatic adaptation between white points."""
+"""Chromaticities of RGB color spaces, and the matrices between them: RGB to CIE XYZ, and chromatic adaptation."""
 
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -46,3 +47,75 @@ def adaptation(source: Chromaticity, target: Chromaticity) -> Float64Array:
     """Return the Bradford matrix from XYZ under one white to the corresponding XYZ under another, shape (3, 3)."""
     before, after = BRADFORD @ xyz_of(source), BRADFORD @ xyz_of(target)
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
+
+
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
+D65: Chromaticity = (0.3127, 0.3290)
+D50: Chromaticity = (0.3457, 0.3585)
+D60: Chromaticity = (0.32168, 0.33767)
+
+
+@dataclass(frozen=True)
+class Primaries:
+    """The chromaticities of an RGB.
+
+    Parameters
+    ----------
+    name : str
+        As people know it, for example "Display P3".
+    red, green, blue, white : (float, float)
+        CIE 1931 x and y.
+    interop_id : str
+        The Color Interop Forum's name of the scene-linear space with these primaries; empty if there is none.
+    """
+
+    name: str
+    red: Chromaticity
+    green: Chromaticity
+    blue: Chromaticity
+    white: Chromaticity = D65
+    interop_id: str = ""
+
+    @property
+    def corners(self) -> Float64Array:
+        """The x and y of red, green, blue and white, shape (4, 2)."""
+        return np.array([self.red, self.green, self.blue, self.white])
+
+    def to_xyz(self) -> Float64Array:
+        """Return the matrix from linear RGB to CIE XYZ under its own white, shape (3, 3) (Eq. 35 of docs/METHOD.md)."""
+        return rgb_to_xyz(self.red, self.green, self.blue, self.white)
+
+
+#: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB).
+REC709 = Primaries("Rec.709", (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), interop_id="lin_rec709_scene")
+
+#: SMPTE EG 432-1 with a D65 white.
+DISPLAY_P3 = Primaries("Display P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), interop_id="lin_p3d65_scene")
+
+#: Adobe RGB (1998) Color Image Encoding, 4.3.1.
+ADOBE_RGB = Primaries("Adobe RGB", (0.64, 0.33), (0.21, 0.71), (0.15, 0.06), interop_id="lin_adobergb_scene")
+
+#: ISO 22028-2 (ROMM RGB).
+PROPHOTO = Primaries("ProPhoto RGB", (0.734699, 0.265301), (0.159597, 0.840403), (0.036598, 0.000105), D50)
+
+#: ITU-R BT.2020-2.
+REC2020 = Primaries("Rec.2020", (0.708, 0.292), (0.17, 0.797), (0.131, 0.046), interop_id="lin_rec2020_scene")
+
+#: SMPTE ST 2065-1 (ACES2065-1), and the Academy's S-2014-004 (ACEScg).
+AP0 = Primaries("ACES AP0", (0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), D60, "lin_ap0_scene")
+AP1 = Primaries("ACES AP1", (0.713, 0.293), (0.165, 0.83), (0.128, 0.044), D60, "lin_ap1_scene")
+
+#: The primaries that photographs have, by the names that users give them.
+PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophoto": PROPHOTO, "rec2020": REC2020}
+
+
+def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
+    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
+
+    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
+    configs of OpenColorIO. Colours outside the target's gamut become negative.
+    """
+    if source == target:
+        return np.eye(3)
+    adapted = adaptation(source.white, target.white) @ source.to_xyz()
+    return np.asarray(np.linalg.solve(target.to_xyz(), adapted))

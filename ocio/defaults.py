@@ -35,7 +35,7 @@ MIDDLE_GRAY = 0.18
 GRAY_BRIGHTNESS = 0.4614
 
 #: What may be said of a plate's primaries: the first, the default, goes by the file's tags; the others are the names in
-#: `crfnet_core.photograph.metadata.color_tags.PHOTOGRAPHIC`.
+#: `crfnet_core.colorimetry.PHOTOGRAPHIC`.
 PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
 
 #: The spaces of linear EXR files: linear Rec.709, which is the role scene_linear of the configs that we write (the

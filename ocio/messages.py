@@ -41,8 +41,6 @@ SENTENCES: Mapping[str, str] = {
     "primaries_differ": "{path}: its primaries are {primaries}, but {expected} in {first}; process them separately, or"
     " state the primaries of all",
     "primaries_unknown": "the primaries are {primaries}, so {space} cannot be reached; state the primaries",
-    "primaries_unknown": "the plate's primaries are {primaries}, so it cannot be converted to {space}; state what they"
-    " are",
     "several_placeholders": "{path}: holds {count} frame placeholders; leave one of them",
     "several_sequences": "{path}: holds {count} sequences: {patterns}; give one of them",
     "single_file": "{path}: is a single file, which has no frames to choose from; give a pattern",

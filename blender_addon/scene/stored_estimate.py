@@ -19,7 +19,7 @@ from ..work.wording import LOADED
 
 if TYPE_CHECKING:
     from crfnet_core import ResponseEstimate
-    from crfnet_core.photograph.metadata.color_tags import Primaries
+    from crfnet_core.colorimetry import Primaries
     from crfnet_core.types import BoolArray, Float64Array, IndexArray
 
     from .plates import Datablock
@@ -44,7 +44,7 @@ FILE_STATE, _SAME_TIME = "file_state", 2
 #: The entry with the stored cameras of the plate's make and model, in JSON: name and words of each.
 OFFERS = "offers"
 
-#: The primaries of the plate, in JSON: the fields of `crfnet_core.photograph.metadata.color_tags.Primaries`.
+#: The primaries of the plate, in JSON: the fields of `crfnet_core.colorimetry.Primaries`.
 PRIMARIES = "primaries"
 
 #: The verdict of an estimate that is not to be trusted: `crfnet_core.posterior.Verdict`, repeated because the panel is
@@ -209,7 +209,7 @@ def is_file_changed(datablock: Datablock, state: str) -> bool:
 
 def matrix(datablock: Datablock) -> Float64Array | None:
     """Return the matrix from a plate's linear RGB to linear Rec.709, shape (3, 3); None if they are the same."""
-    tags, found = lazy_import.load("crfnet_core.photograph.metadata.color_tags"), primaries(datablock)
+    tags, found = lazy_import.load("crfnet_core.colorimetry"), primaries(datablock)
     return None if found in (None, tags.REC709) else tags.conversion_matrix(found, tags.REC709)
 
 
@@ -219,7 +219,7 @@ def primaries(datablock: Datablock) -> Primaries | None:
     if text is None:
         return None
     fields = {name: tuple(value) if isinstance(value, list) else value for name, value in json.loads(text).items()}
-    return lazy_import.load("crfnet_core.photograph.metadata.color_tags").Primaries(**fields)
+    return lazy_import.load("crfnet_core.colorimetry").Primaries(**fields)
 
 
 def set_primaries(datablock: Datablock, found: Primaries) -> None:

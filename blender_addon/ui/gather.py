@@ -10,7 +10,7 @@ from typing import Any
 import bpy
 
 from crfnet.options import EstimateOptions
-from crfnet_core.photograph.metadata.color_tags import Primaries
+from crfnet_core.colorimetry import Primaries
 
 from ..scene import color_management, node_group, packed_images, plates, stored_estimate
 from ..work.errors import AddonError

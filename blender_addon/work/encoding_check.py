@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate or to undo.
 
-What the metadata of their files says is the estimator's to judge: `crfnet_core.photograph.recognition.tag_refusal`.
+What the metadata of their files says is the estimator's to judge: `crfnet_core.photograph.metadata.color_tags`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,6 @@ from pathlib import Path
 from crfnet.configs.files import load_config
 from crfnet.errors import ConfigError
 from crfnet_core.photograph.image_io import read_metadata
-from crfnet_core.photograph.recognition import tag_refusal
 
 from .errors import AddonError
 from .job import Job, Plate
@@ -74,7 +73,7 @@ def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
 
 def is_tagged(files: Iterable[Path]) -> bool:
     """Return whether the estimator refuses one of the files for its metadata; a CRFNetError if one cannot be read."""
-    return any(tag_refusal(read_metadata(file).color) for file in files)
+    return any(read_metadata(file).color.transfer for file in files)
 
 
 def is_log_or_linear(color_space: str, encoding: str = "") -> bool:

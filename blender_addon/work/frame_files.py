@@ -18,8 +18,8 @@ from crfnet.plates.frame_files import EncodedFrame, FrameLoader, read_color_tags
 from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence, find_frames, pattern_frames, sample_frames
 from crfnet.plates.primaries import plate_primaries
+from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
-from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Uint8Array
 
 from .errors import AddonError

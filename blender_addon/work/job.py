@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 if TYPE_CHECKING:
     from crfnet.options import EstimateOptions
     from crfnet_core import ResponseEstimate
-    from crfnet_core.photograph.metadata.color_tags import Primaries
+    from crfnet_core.colorimetry import Primaries
     from crfnet_core.types import Uint8Array
 
 #: A file name without suffix, split around its last number, which is the frame number.

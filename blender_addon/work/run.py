@@ -21,10 +21,10 @@ from crfnet.pipeline import (
 from crfnet.plates.frames import FrameSequence
 from crfnet.report import verdict_lines
 from crfnet_core import ResponseEstimate
+from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
 from crfnet_core.library import offered_cameras
 from crfnet_core.photograph.image_io.file_kinds import file_kind
-from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress, show_progress
 

@@ -25,7 +25,7 @@ _BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
 
 #: What messages say of the command's options and of Python's packages, and what there is in Blender instead.
 _IN_BLENDER = {
-    "ignore metadata (--ignore-metadata)": "tick Estimate Anyway under Advanced",
+    "ignore metadata": "tick Estimate Anyway under Advanced",
     "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
     "with --taken-with which": "with Taken With under Advanced which",
     "there is no such file; check the name, or give a sequence such as plate.%04d.png or plate.####.png": "there is no"

@@ -16,7 +16,7 @@ from crfnet.output_files import OutputFiles, plain_stem
 from crfnet.pipeline import all_or_none, export_luts
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.linear import linear_targets, linearize_plates
-from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
+from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.types import Progress
 
 from .encoding_check import is_said_encoded

@@ -10,7 +10,7 @@ import numpy as np
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
+from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, file_origin, with_stated_device
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Levels, refuse_tagged
 from crfnet_core.posterior import Evidence
@@ -121,7 +121,7 @@ def _choose_windows(
         AnalyzedPhotograph,
         name=photo.path.name,
         thumbnail=_thumbnail(photo),
-        levels=Levels.of(photo),
+        levels=Levels.from_pixels(photo),
         make="" if metadata is None else metadata.make,
         origin=_origin(metadata, device),
         is_gray=photo.is_gray,
@@ -136,7 +136,7 @@ def _origin(metadata: FileMetadata | None, device: Device | None) -> FileOrigin 
     if device is None:
         return None if metadata is None else file_origin(metadata)
     try:
-        return as_told(file_origin(metadata or FileMetadata()), device)
+        return with_stated_device(file_origin(metadata or FileMetadata()), device)
     except ValueError:
         names = ", ".join(kind.name for kind in Device)
         raise PhotoError(f"{device!r} is no device; give one of Device: {names}") from None

@@ -1,9 +1,10 @@
 """Photographs: read from files, with their metadata.
 
 image_io      the one reader of image files
-photo         a photograph's code values, of a file or an array
+photo         a photograph's code values, and the integer samples of a file
+arrays        pixels from the arrays of NumPy, Pillow and OpenCV
 yuv           YUV to RGB, for movies and AVIF
 orientation   quarter turns: pictures upright
-metadata      the origin of a file: device, editor, and its primaries
+metadata      the origin of a file: device, editor, encoding, color tags
 recognition   inputs that are not camera photographs: log footage, limited range, tagged encodings
 """

@@ -13,4 +13,8 @@ REMEDIES: Mapping[str, str] = {
     "primaries_differ": "give them with --primaries",
     "primaries_unknown": "give them with --primaries",
     "single_file": "leave --frames out",
+    # photograph
+    "tagged_color_space": "--ignore-metadata does so",
+    "tagged_encoding": "--ignore-metadata does so",
+    "tagged_linear": "--ignore-metadata does so",
 }

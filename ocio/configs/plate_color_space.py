@@ -10,8 +10,8 @@ from pathlib import PurePosixPath, PureWindowsPath
 import numpy as np
 import PyOpenColorIO as OCIO
 
+from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.metadata.color_tags import REC709, Primaries, conversion_matrix
 
 from ..errors import ConfigError
 from .file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules

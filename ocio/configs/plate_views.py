@@ -15,8 +15,8 @@ from collections.abc import Mapping, Sequence
 
 import PyOpenColorIO as OCIO
 
+from crfnet_core.colorimetry import REC709
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.metadata.color_tags import REC709
 
 from ..errors import ConfigError
 from .reference_space import matrix_transform, rec709_to_reference, steps_to_reference

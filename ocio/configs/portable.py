@@ -8,15 +8,7 @@ from importlib.resources import files
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.photograph.metadata.color_tags import (
-    ADOBE_RGB,
-    DISPLAY_P3,
-    PROPHOTO,
-    REC709,
-    REC2020,
-    Primaries,
-    conversion_matrix,
-)
+from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709, REC2020, Primaries, conversion_matrix
 
 from ..errors import ConfigError
 from .plate_color_space import PlateColorSpace, add_plate_color_space

@@ -5,16 +5,7 @@ from __future__ import annotations
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet_core.photograph.metadata.color_tags import (
-    ADOBE_RGB,
-    AP0,
-    AP1,
-    DISPLAY_P3,
-    PROPHOTO,
-    REC709,
-    REC2020,
-    Primaries,
-)
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PROPHOTO, REC709, REC2020, Primaries
 from crfnet_core.types import Float64Array
 
 from ..errors import ConfigError

@@ -6,8 +6,7 @@ from collections.abc import Mapping
 from io import BytesIO
 from typing import TYPE_CHECKING
 
-from crfnet_core.photograph.metadata.cicp import cicp_tags
-from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 
 if TYPE_CHECKING:
     from av import VideoFrame

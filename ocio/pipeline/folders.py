@@ -9,8 +9,8 @@ from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 from typing import Any
 
+from crfnet_core.colorimetry import REC709
 from crfnet_core.files import atomic_write_text, json_text
-from crfnet_core.photograph.metadata.color_tags import REC709
 
 from ..configs.files import loaded_or_empty, write_config
 from ..configs.plate_color_space import PlateColorSpace

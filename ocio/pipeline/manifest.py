@@ -10,10 +10,10 @@ from typing import Any
 
 import numpy as np
 
+from crfnet_core.colorimetry import Primaries
 from crfnet_core.errors import PhotoError
 from crfnet_core.estimate.estimate import ResponseEstimate
 from crfnet_core.files import atomic_write_text, parse_json
-from crfnet_core.photograph.metadata.color_tags import Primaries
 
 from ..errors import PlateError
 from ..plates.light import PlateLight

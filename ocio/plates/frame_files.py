@@ -15,9 +15,13 @@ from numpy.typing import NDArray
 from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
+from crfnet_core.photograph.recognition import refuse_linear
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
+
+#: Names of the one channel of a gray picture; any other is depth, a mask or other data.
+GRAY = ("Y", "R")
 
 #: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
 UNTAGGED = ("", "unknown", "data")
@@ -82,7 +86,7 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
     path : Path
         A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
     is_encoded : bool
-        Whether an OpenEXR file that does not say how its values are encoded holds encoded values.
+        Whether the file holds encoded values, although it is OpenEXR and does not say so, or its tag is linear.
     is_associated : bool or None
         Whether the stored samples are multiplied by alpha, and so are divided by it; by default as the file says.
 
@@ -95,6 +99,8 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
     values = read_codes(path)
+    if not is_encoded:
+        refuse_linear(values.metadata.color, path)
     alpha = None
     if values.alpha is not None:
         alpha = np.divide(values.alpha, np.float32(values.largest), dtype=np.float32)
@@ -119,30 +125,49 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
+        _seek_colors(source)
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
     finally:
         source.close()
 
 
+def _seek_colors(source: Any) -> None:
+    """Go to the first part that holds R, G and B; stay at the first if none does."""
+    part = 0
+    while source.seek_subimage(part, 0):
+        if set(source.spec().channelnames) >= set("RGB"):
+            return
+        part += 1
+    source.seek_subimage(0, 0)
+    oiio_message(source)
+
+
 def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
     """Return the encoded values in an OpenEXR file, divided by its alpha or as stored."""
     with _opened_exr(path, is_encoded=is_encoded) as source:
         header = source.spec()
-        values = source.read_image(0, 0, 0, header.nchannels, "float")
+        gray = next((name for name in GRAY if name in header.channelnames), "")
+        channels = [header.channelindex(name if name in header.channelnames else gray) for name in "RGB"]
+        needed = {*channels, header.alpha_channel} - {-1}
+        planes: dict[int, Any] = {channel: _plane(source, channel) for channel in needed}
         problem = oiio_message(source)
-    if values is None or problem:
+    if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
-    gray = next(index for index, name in enumerate(header.channelnames) if name != "A")
-    channels = [header.channelindex(name) for name in "RGB"]  # -1 where a channel is absent
-    samples = values[..., [gray if index < 0 else index for index in channels]]  # (H, W, 3)
+    samples = np.stack([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
-    alpha = values[..., header.alpha_channel]  # (H, W)
+    alpha = planes[header.alpha_channel]  # (H, W)
     if is_divided:
         covered = alpha[..., None] != 0
         samples = np.divide(samples, alpha[..., None], out=np.zeros_like(samples), where=covered)
     return EncodedFrame(samples, 1, alpha, header, header_color_tags(header, "OpenEXR"))
+
+
+def _plane(source: Any, channel: int) -> Float32Array | None:
+    """Return one channel, shape (H, W); files may hold many others, such as render passes."""
+    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
+    return None if plane is None else np.asarray(plane)[..., 0]
 
 
 def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
@@ -153,7 +178,7 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() > MAX_PIXELS:
         raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
     names = set(header.channelnames)
-    if header.deep or not (names >= set("RGB") or len(names - {"A"}) == 1):
+    if header.deep or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY]):
         raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
     if space in UNTAGGED and not is_encoded:
         raise PlateError("exr_untagged", path=path)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from crfnet_core.photograph.metadata.color_tags import AP0, AP1, REC709, Primaries, conversion_matrix
+from crfnet_core.colorimetry import AP0, AP1, REC709, Primaries, conversion_matrix
 from crfnet_core.types import Float64Array
 
 from ..defaults import OUTPUT_SPACES

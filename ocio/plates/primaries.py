@@ -6,7 +6,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.photograph.metadata.color_tags import PHOTOGRAPHIC, REC709, ColorTags, Primaries
+from crfnet_core.colorimetry import PHOTOGRAPHIC, REC709, Primaries
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 
 from ..defaults import PRIMARIES
 from ..errors import PlateError

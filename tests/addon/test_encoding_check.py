@@ -11,8 +11,8 @@ from blender_addon.work.estimate_record import loaded_estimate
 from blender_addon.work.job import ApplyMode
 from blender_addon.work.run import run
 from blender_addon.work.wording import american
+from crfnet_core.colorimetry import REC2020
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.metadata.color_tags import REC2020
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import read_image, write_image
 

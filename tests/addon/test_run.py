@@ -12,9 +12,9 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet.errors import PlateError
+from crfnet_core.colorimetry import DISPLAY_P3, REC709
 from crfnet_core.errors import CRFNetError, ModelError, PriorError
 from crfnet_core.network import ResponseNetwork
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709
 from crfnet_core.posterior import Verdict
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.footage import limited_range_picture

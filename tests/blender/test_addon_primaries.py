@@ -11,7 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 @pytest.fixture
 def image(addon, tmp_path, codes):
     """The plate, encoded in Display P3, with its estimate."""
-    from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3
+    from crfnet_core.colorimetry import DISPLAY_P3
     from tests.helpers.color_profiles import matrix_profile, write_tagged
 
     image = bpy.data.images.load(str(write_tagged(tmp_path / "p3.png", codes, matrix_profile(DISPLAY_P3))))
@@ -23,7 +23,7 @@ def image(addon, tmp_path, codes):
 def expected(image, codes):
     """Its light in linear Rec.709, white = 1."""
     from blender_addon.scene import stored_estimate
-    from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
+    from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
 
     light = stored_estimate.restored(image).curve.inverse(codes / 255)
     return light @ conversion_matrix(DISPLAY_P3, REC709).T

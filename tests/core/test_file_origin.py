@@ -4,11 +4,11 @@ from dataclasses import asdict
 
 import pytest
 
-from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, as_told, file_origin
+from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, file_origin, with_stated_device
+from crfnet_core.photograph.metadata.color_tags import profile_transfer
 from crfnet_core.photograph.metadata.encodings import Encoding
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.metadata.origin import picture_shape
-from crfnet_core.photograph.metadata.transfer_tags import profile_transfer
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
@@ -217,24 +217,24 @@ def test_words(fields, words):
 
 def test_a_told_device_takes_the_place_of_the_files():
     own = origin(**OWN_CAMERA, software="GIMP 2.8")
-    told = as_told(own, Device.PHONE)
+    told = with_stated_device(own, Device.PHONE)
     assert (told.device, told.camera, told.editor, told.is_told) == (Device.PHONE, own.camera, own.editor, True)
     assert told.words == ("taken with a phone", *own.words[1:])
     assert FileOrigin.from_dict(asdict(told)) == told
-    assert as_told(own, Device.UNKNOWN).words == ("taken with a camera", *own.words[1:])
+    assert with_stated_device(own, Device.UNKNOWN).words == ("taken with a camera", *own.words[1:])
 
 
 def test_a_rendering_stays_one_whatever_is_told():
     rendering = origin(renderer="Blender")
-    assert as_told(rendering, Device.CAMERA) == rendering
+    assert with_stated_device(rendering, Device.CAMERA) == rendering
 
 
 def test_a_copy_of_what_is_known_is_not_refused():
     sent = origin(width=1280, height=960, luma_table=scaled_table(ANNEX_K_LUMA, 75))
     assert sent.is_sent_copy
-    assert not as_told(sent, Device.PHONE).is_sent_copy
+    assert not with_stated_device(sent, Device.PHONE).is_sent_copy
 
 
 def test_what_is_no_device_is_refused():
     with pytest.raises(ValueError, match="other"):
-        as_told(origin(), "other")
+        with_stated_device(origin(), "other")

@@ -1,5 +1,6 @@
 """read_photo: exact code values from every format; what it refuses is in test_refused_photos.py."""
 
+import io
 import struct
 import subprocess
 import sys
@@ -9,9 +10,11 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from PIL import Image, ImageOps
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import read_codes, read_photo
+from crfnet_core.photograph.image_io import read_codes, read_metadata, read_photo
+from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.crafted_files import jpeg, png, png_chunk, tiff
 from tests.helpers.images import read_image, write_image
 
@@ -78,9 +81,26 @@ def test_no_profile_or_gamma_is_applied(tmp_path):
     np.testing.assert_array_equal(read_codes(path).codes, CODES8)
 
 
-def test_orientation_is_ignored(tmp_path):
-    path = write_image(tmp_path / "a.tif", np.concatenate([CODES8, CODES8[:1]]), Orientation=6)
-    np.testing.assert_array_equal(read_codes(path).codes[:2], CODES8)
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg", "a.webp"])
+@pytest.mark.parametrize("orientation", range(1, 9))
+def test_every_orientation_is_turned_upright(tmp_path, name, orientation):
+    """Pillow turns the same file."""
+    ramp = np.indices((24, 16)).transpose(1, 2, 0) * 8
+    codes = np.concatenate([ramp, np.full((24, 16, 1), 9)], axis=2).astype(np.uint8)
+    exif = Image.Exif()
+    exif[0x0112] = orientation
+    options = {"compression": "raw"} if name == "a.tif" else {"lossless": True} if name == "a.webp" else {}
+    Image.fromarray(codes).save(tmp_path / name, exif=exif, **options)
+    with Image.open(tmp_path / name) as image:
+        expected = np.asarray(ImageOps.exif_transpose(image))
+    values = read_codes(tmp_path / name)
+    np.testing.assert_allclose(values.codes, expected, atol=4 if name == "a.jpg" else 0)
+    assert (values.header.height, values.header.width) == values.codes.shape[:2]
+    assert values.header.get_int_attribute("Orientation", 1) == 1
+    metadata = read_metadata(tmp_path / name)
+    assert metadata == values.metadata
+    assert (metadata.height, metadata.width, metadata.is_turned) == (*values.codes.shape[:2], orientation != 1)
+    assert ("turned upright, as the file asks" in file_origin(metadata).words) is (orientation != 1)
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.jpg", "a.dpx"])
@@ -202,10 +222,29 @@ def test_memory_is_the_codes_alone(tmp_path):
     assert int(run.stdout) < 1.3 * needed, "kB"
 
 
-@pytest.mark.parametrize("path", [None, 3, b"a.png", CODES8])
-def test_argument_that_is_no_path(path):
-    with pytest.raises(TypeError):
-        read_photo(path)
+@pytest.mark.parametrize("source", [None, 3, CODES8, io.StringIO("text")])
+def test_other_sources_are_refused(source):
+    with pytest.raises(PhotoError) as caught:
+        read_photo(source)
+    assert caught.value.code == "photograph_source"
+
+
+def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
+    path = write_image(tmp_path / "a.png", CODES16)
+    expected = read_photo(path)
+    with path.open("rb") as file:
+        sources = [path.read_bytes(), io.BytesIO(path.read_bytes()), file]
+        photos = [read_photo(source) for source in sources]
+    for photo in photos:
+        np.testing.assert_array_equal(photo.pixels, expected.pixels)
+        assert photo.metadata == expected.metadata
+    assert [photo.path for photo in photos] == [Path("bytes"), Path("bytes"), path]
+
+
+def test_an_error_of_bytes_names_no_temporary_file():
+    with pytest.raises(PhotoError) as caught:
+        read_photo(b"a.png")
+    assert (caught.value.code, caught.value.facts) == ("not_an_image_file", {"path": Path("bytes")})
 
 
 @pytest.mark.parametrize("is_associated", [False, True])
@@ -231,14 +270,16 @@ def test_a_name_that_is_not_there_is_an_attribute_error(tmp_path):
 
 def test_the_words_for_a_photograph_compute_no_pixels(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.png", CODES8))
-    assert repr(photo).startswith("Photo(bit_depth=8, is_gray=")
+    assert repr(photo).startswith("Photo(")
     assert "pixels" not in vars(photo)
 
 
-def test_photo_is_frozen(tmp_path):
+def test_other_metadata_leave_the_photograph_as_it_was(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.png", CODES8))
-    with pytest.raises(AttributeError):
-        photo.bit_depth = 16
+    other = photo.with_metadata(None)
+    assert other.metadata is None
+    assert photo.metadata is not None
+    np.testing.assert_array_equal(other.pixels, photo.pixels)
 
 
 def test_reading_twice_gives_the_same(tmp_path):

@@ -1,6 +1,5 @@
 """Photo and Photo.from_array: pixels of arrays, of Pillow's and OpenCV's images, and what is refused."""
 
-import dataclasses
 from pathlib import Path
 
 import numpy as np
@@ -17,6 +16,14 @@ from tests.helpers.images import write_image
 CODES = np.array([[[0, 1, 2], [127, 128, 129]], [[253, 254, 255], [10, 20, 30]]], np.uint8)
 ALPHA = np.array([[[255], [255]], [[0], [128]]], np.uint8)
 EXACT = (CODES / 255).astype(np.float32)
+
+
+def code_of(array, **options):
+    """Return the code of the error by which an array is refused; its sentence begins with the name."""
+    with pytest.raises(PhotoError) as caught:
+        Photo.from_array(array, name="shot 7", **options)
+    assert str(caught.value).startswith("shot 7: ")
+    return caught.value.code
 
 
 def with_alpha(codes):
@@ -119,31 +126,26 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
     )
     photo = Photo.from_array(image, bit_depth=16)
     np.testing.assert_array_equal(photo.pixels[..., 1], (codes / 65535).astype(np.float32))
-    with pytest.raises(PhotoError, match="give bit_depth=16"):
-        Photo.from_array(image)
+    assert code_of(image) == "array_without_bit_depth"
 
 
 @pytest.mark.parametrize(
-    ("mode", "said"),
+    ("mode", "code"),
     [
-        ("P", r"palette, from which no response can be estimated; give the photograph that it was made from"),
-        ("1", r"mode '1', which is not taken; give image\.convert\('RGB'\)"),
-        ("CMYK", "hides the camera's response"),
-        ("I", "astype"),
-        ("F", "scaled"),
-        ("RGBa", r"convert\('RGBA'\)"),
+        ("P", "pillow_mode_of_other_colors"),
+        ("1", "pillow_mode_unknown"),
+        ("F", "pillow_mode_of_numbers"),
+        ("RGBa", "pillow_mode_associated"),
     ],
 )
-def test_another_mode_of_pillow_is_refused(mode, said):
+def test_another_mode_of_pillow_is_refused(mode, code):
     image = pytest.importorskip("PIL.Image").new(mode, (4, 4))
-    with pytest.raises(PhotoError, match=said):
-        Photo.from_array(image)
+    assert code_of(image) == code
 
 
 def test_an_order_that_contradicts_pillow_is_refused():
     image = pytest.importorskip("PIL.Image").fromarray(CODES)
-    with pytest.raises(PhotoError, match="leave color_order='BGR' out"):
-        Photo.from_array(image, color_order="BGR")
+    assert code_of(image, color_order="BGR") == "pillow_order_stated"
 
 
 def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
@@ -156,61 +158,62 @@ def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
 
 
 @pytest.mark.parametrize(
-    ("array", "options", "said"),
+    ("array", "options", "code"),
     [
-        (None, {}, "imread returns"),
-        ("plate.jpg", {}, "read_photo reads files"),
-        (Path("plate.jpg"), {}, "read_photo reads files"),
-        (object(), {}, "holds object"),
-        ([[1, 2], [3]], {}, "makes no array of this list"),
-        (CODES.astype(np.int64), {"color_order": "RGB"}, "holds int64; give uint8"),
-        (CODES > 3, {"color_order": "RGB"}, "holds bool"),
-        (CODES, {}, "3 channels and no color_order; give color_order='RGB', 'BGR'"),
-        (CODES, {"color_order": "GBR"}, "give one of L, LA, RGB, RGBA, BGR, BGRA"),
-        (CODES, {"color_order": "RGBA"}, "3 channels, but color_order='RGBA'"),
-        (with_alpha(CODES), {"color_order": "BGR"}, "4 channels, but color_order='BGR'"),
-        (CODES[..., 0], {"color_order": "RGB"}, "1 channels, but"),
-        (np.zeros((3, 20, 30), np.uint8), {"color_order": "RGB"}, r"shape \(3, 20, 30\).*transpose\(1, 2, 0\)"),
-        (np.zeros((2, 20, 30, 3), np.uint8), {"color_order": "RGB"}, r"needs \(H, W\)"),
-        (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, r"shape \(0, 0, 3\)"),
-        (np.zeros(5, np.uint8), {}, r"shape \(5,\)"),
-        (CODES.astype(np.uint16), {"color_order": "RGB"}, "give bit_depth=16 if white is 65535"),
+        (None, {}, "array_is_none"),
+        (Path("plate.jpg"), {}, "array_is_file_name"),
+        (object(), {}, "array_sample_type"),
+        ([[1, 2], [3]], {}, "array_unusable"),
+        (CODES.astype(np.int64), {"color_order": "RGB"}, "array_sample_type"),
+        (CODES, {}, "array_without_order"),
+        (CODES, {"color_order": "GBR"}, "array_unknown_order"),
+        (CODES, {"color_order": "RGBA"}, "array_other_order"),
+        (CODES[..., 0], {"color_order": "RGB"}, "array_other_order"),
+        (np.zeros((3, 20, 30), np.uint8), {"color_order": "RGB"}, "array_channels_first"),
+        (np.zeros((2, 20, 30, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
+        (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
+        (np.zeros(5, np.uint8), {}, "array_shape"),
+        (CODES.astype(np.uint16), {"color_order": "RGB"}, "array_without_bit_depth"),
         (
             CODES.astype(np.uint16) * 5,
             {"color_order": "RGB", "bit_depth": 10},
-            "code 1275, but bit_depth=10 ends at 1023",
+            "array_above_bit_depth",
         ),
-        (CODES, {"color_order": "RGB", "bit_depth": 10}, "uint8 cannot hold a photograph of bit_depth=10"),
-        (CODES, {"color_order": "RGB", "bit_depth": 4}, "give 8 to 8"),
-        (CODES.astype(np.float32), {"color_order": "RGB"}, "from 0 to 255; .*divide code values by the largest"),
-        (EXACT - np.float32(0.1), {"color_order": "RGB"}, "from -0.1 to 0.9.*clip overshoot"),
-        (np.full((2, 2), np.nan), {}, "holds NaN"),
-        (np.full((2, 2), np.inf), {}, "to inf"),
+        (CODES, {"color_order": "RGB", "bit_depth": 10}, "array_bit_depth"),
+        (CODES, {"color_order": "RGB", "bit_depth": 4}, "array_bit_depth"),
+        (CODES.astype(np.float32), {"color_order": "RGB"}, "array_out_of_range"),
+        (EXACT - np.float32(0.1), {"color_order": "RGB"}, "array_out_of_range"),
+        (np.full((2, 2), np.nan), {}, "array_holds_nan"),
+        (np.full((2, 2), np.inf), {}, "array_out_of_range"),
     ],
 )
-def test_what_is_no_photograph_is_refused_in_one_line(array, options, said):
-    with pytest.raises(PhotoError, match=said) as caught:
-        Photo.from_array(array, name="shot 7", **options)
-    assert str(caught.value).startswith("shot 7: ")
-    assert "\n" not in str(caught.value)
+def test_other_arrays_are_refused(array, options, code):
+    assert code_of(array, **options) == code
 
 
 @pytest.mark.parametrize(
-    ("pixels", "said"),
+    ("pixels", "code"),
     [
-        (CODES, "ndarray, uint8, shape .*from_array"),
-        (EXACT.astype(np.float64), "float64"),
-        (EXACT[..., 0], r"shape \(2, 2\)"),
-        (EXACT[:0], r"shape \(0, 2, 3\)"),
-        (EXACT.tolist(), "list"),
-        (255 * EXACT, "from 0 to 255"),
-        (EXACT - 1, "from -1 to 0"),
-        (np.where(EXACT == 1, np.nan, EXACT).astype(np.float32), "NaN"),
+        (CODES, "photo_pixels"),
+        (EXACT.astype(np.float64), "photo_pixels"),
+        (EXACT[..., 0], "photo_pixels"),
+        (EXACT[:0], "photo_pixels"),
+        (EXACT.tolist(), "photo_pixels"),
+        (255 * EXACT, "array_out_of_range"),
+        (EXACT - 1, "array_out_of_range"),
+        (np.where(EXACT == 1, np.nan, EXACT).astype(np.float32), "array_holds_nan"),
     ],
 )
-def test_the_constructor_checks_its_pixels(pixels, said):
-    with pytest.raises(PhotoError, match=said):
+def test_the_constructor_checks_its_pixels(pixels, code):
+    with pytest.raises(PhotoError) as caught:
         Photo(pixels, 8, False, Path("a.png"))
+    assert caught.value.code == code
+
+
+def test_a_mapped_array_is_an_array(tmp_path):
+    mapped = np.memmap(tmp_path / "codes", np.uint8, "w+", shape=CODES.shape)
+    mapped[:] = CODES
+    np.testing.assert_array_equal(Photo.from_array(mapped, color_order="RGB").pixels, EXACT)
 
 
 def test_the_constructor_takes_a_name_for_a_path():
@@ -222,6 +225,4 @@ def test_an_array_gives_the_estimate_of_its_file(plate, fixed_model):
     network = ResponseNetwork.load(fixed_model)
     photo = read_photo(plate)
     array = Photo.from_array(np.rint(photo.pixels * 255).astype(np.uint8), color_order="RGB", name=plate.name)
-    assert estimate_response(array, network=network) == estimate_response(
-        dataclasses.replace(photo, metadata=None), network=network
-    )
+    assert estimate_response(array, network=network) == estimate_response(photo.with_metadata(None), network=network)

@@ -10,7 +10,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from crfnet_core.errors import PhotoError
+from crfnet_core.errors import PhotoError, one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS, read_photo
 from tests.helpers.crafted_files import jpeg, png, tiff, with_jpeg_size
 from tests.helpers.images import write_image
@@ -19,14 +19,14 @@ ROOT = Path(__file__).parents[2]
 
 
 def refusal(path):
-    """Return the message of the refusal of `path`, which must be one line that begins with the name."""
+    """Return the code of the refusal of `path`, whose sentence must be one line that begins with the name."""
     with pytest.raises(PhotoError) as caught:
         read_photo(path)
     message = str(caught.value)
-    assert message.startswith(f"{path}: ")
+    assert message.startswith(one_line(f"{path}: ".rstrip()))
     assert "\n" not in message
     assert not oiio.geterror()
-    return message.removeprefix(f"{path}: ")
+    return caught.value.code
 
 
 def absent(path):
@@ -83,6 +83,16 @@ def cmyk_tiff(path):
 
 def lab_tiff(path):
     path.write_bytes(tiff(2, 2, photometric=8, content=bytes(12)))
+
+
+def log_luv_tiff(path):
+    coding = struct.pack("<HHII", 259, 3, 1, 1), struct.pack("<HHII", 259, 3, 1, 34676)
+    path.write_bytes(tiff(2, 2, photometric=32845, content=bytes(12)).replace(*coding))
+
+
+def deep_jpeg(path):
+    whole = jpeg(path)
+    path.write_bytes(whole.replace(b"\xff\xc0\0\x11\x08", b"\xff\xc0\0\x11\x0c"))
 
 
 def signed_tiff(path):
@@ -153,47 +163,47 @@ FOUR_INKS = _four_inks()
 
 
 @pytest.mark.parametrize(
-    ("make", "name", "found", "advice"),
+    ("make", "name", "code"),
     [
-        (absent, "a.jpg", "no such file", "check the name"),
-        (folder, "a.jpg", "is a folder", "give a photograph in it"),
-        (empty, "a.jpg", "is empty", "copy it again"),
-        (text, "a.jpg", "is no JPEG, HEIC, PNG, TIFF, WebP,", "save the photograph"),
-        (heic, "a.heic", "HEIC file is damaged or cut short", "copy it again"),
-        (wave, "a.webp", "is no JPEG, HEIC, PNG, TIFF, WebP,", "save the photograph"),
-        (exr, "a.exr", "OpenEXR holds scene-linear values", "give the JPEG"),
-        (radiance, "a.hdr", "Radiance HDR holds scene-linear values", "give the JPEG"),
-        (float_tiff, "a.tif", "float samples holds scene-linear values", "give the JPEG"),
-        (half_tiff, "a.tif", "half samples holds scene-linear values", "give the JPEG"),
-        (raw, "a.NEF", "camera raw", "developed from it"),
-        (mosaic, "a.tif", "camera raw", "developed from it"),
-        (cmyk_tiff, "a.tif", "holds CMYK", "give the RGB"),
-        (cmyk_jpeg, "a.jpg", "holds CMYK", "give the RGB"),
-        (lab_tiff, "a.tif", "holds CIE L*a*b*", "give the RGB"),
-        (signed_tiff, "a.tif", "8-bit int8 samples", "convert it"),
-        (exotic_tiff, "a.tif", "has a compression that is not read", "save it with another"),
-        (plain_jpeg, "a.null", "reads no file of the suffix .null", "rename it"),
-        (long_tiff, "a.tif", "32-bit uint samples", "convert it"),
-        (bilevel_tiff, "a.tif", "1-bit uint8 samples", "convert it"),
-        (huge_jpeg, "a.jpg", "claims 50000 x 50000 pixels; at most 250 megapixels", "crop it"),
-        (huge_progressive_jpeg, "a.jpg", "claims 50000 x 50000 pixels; at most 250 megapixels", "crop it"),
-        (huge_png, "a.png", "claims", ""),
-        (huge_tiff, "a.tif", "claims", ""),
-        (zero_png, "a.png", "damaged or cut short", "copy it again"),
-        (lying_png, "a.png", "damaged or cut short", "copy it again"),
+        (absent, "a.jpg", "no_such_photograph"),
+        (folder, "a.jpg", "photograph_is_folder"),
+        (empty, "a.jpg", "photograph_is_empty"),
+        (text, "a.jpg", "not_an_image_file"),
+        (heic, "a.heic", "damaged"),
+        (wave, "a.webp", "not_an_image_file"),
+        (exr, "a.exr", "scene_linear_file"),
+        (radiance, "a.hdr", "scene_linear_file"),
+        (float_tiff, "a.tif", "scene_linear_file"),
+        (half_tiff, "a.tif", "scene_linear_file"),
+        (log_luv_tiff, "a.tif", "scene_linear_file"),
+        (raw, "a.NEF", "camera_raw"),
+        (mosaic, "a.tif", "camera_raw"),
+        (cmyk_tiff, "a.tif", "other_colors"),
+        (cmyk_jpeg, "a.jpg", "other_colors"),
+        (lab_tiff, "a.tif", "other_colors"),
+        (signed_tiff, "a.tif", "sample_type"),
+        (exotic_tiff, "a.tif", "coding_not_read"),
+        (deep_jpeg, "a.jpg", "coding_not_read"),
+        (plain_jpeg, "a.null", "null_suffix"),
+        (long_tiff, "a.tif", "sample_type"),
+        (bilevel_tiff, "a.tif", "sample_type"),
+        (huge_jpeg, "a.jpg", "too_many_pixels"),
+        (huge_progressive_jpeg, "a.jpg", "too_many_pixels"),
+        (huge_png, "a.png", "damaged"),
+        (huge_tiff, "a.tif", "damaged"),
+        (zero_png, "a.png", "damaged"),
+        (lying_png, "a.png", "damaged"),
     ],
 )
-def test_refusal_names_what_was_found_and_what_to_do(tmp_path, make, name, found, advice):
+def test_other_files_are_refused(tmp_path, make, name, code):
     make(tmp_path / name)
-    message = refusal(tmp_path / name)
-    assert found in message
-    assert advice in message
+    assert refusal(tmp_path / name) == code
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
 def test_a_pipe_does_not_block(tmp_path):
     os.mkfifo(tmp_path / "a.jpg")
-    assert "no such file" in refusal(tmp_path / "a.jpg")
+    assert refusal(tmp_path / "a.jpg") == "no_such_photograph"
 
 
 @pytest.mark.parametrize("progressive", [0, 1])
@@ -203,13 +213,13 @@ def test_cut_jpeg_is_refused_wherever_it_is_cut(tmp_path, progressive, fraction)
     whole = jpeg(path, jpeg__progressive=progressive)
     assert read_photo(path).pixels.shape == (120, 160, 3)
     path.write_bytes(whole[: max(4, int(len(whole) * fraction) - 2)])
-    assert "damaged or cut short" in refusal(path)
+    assert refusal(path) == "damaged"
 
 
 def test_jpeg_of_a_failed_download_is_refused(tmp_path):
     whole = jpeg(tmp_path / "a.jpg")
     (tmp_path / "a.jpg").write_bytes(whole[: len(whole) // 2] + bytes(len(whole) // 2))
-    assert "damaged or cut short" in refusal(tmp_path / "a.jpg")
+    assert refusal(tmp_path / "a.jpg") == "damaged"
 
 
 def test_what_follows_a_jpeg_is_ignored(tmp_path):
@@ -226,7 +236,7 @@ def test_other_cut_files_are_refused(tmp_path, name, fraction):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
     whole = write_image(tmp_path / name, noise, Compression="lossless" if name == "a.webp" else "none").read_bytes()
     (tmp_path / name).write_bytes(whole[: int(len(whole) * fraction)])
-    assert "damaged or cut short" in refusal(tmp_path / name)
+    assert refusal(tmp_path / name) == "damaged"
 
 
 def test_sparse_file_above_the_limit(tmp_path):
@@ -234,7 +244,7 @@ def test_sparse_file_above_the_limit(tmp_path):
     header = tiff(50000, 50000, samples=1, photometric=1)
     path.write_bytes(header)
     os.truncate(path, 50000 * 50000 + len(header))
-    assert "claims 50000 x 50000 pixels" in refusal(path)
+    assert refusal(path) == "too_many_pixels"
     assert 200e6 < MAX_PIXELS < 2500e6
 
 
@@ -270,17 +280,18 @@ def test_unreadable_file(tmp_path, monkeypatch):
         raise PermissionError(13, "Permission denied")
 
     monkeypatch.setattr(Path, "open", refused)
-    assert refusal(path) == "cannot be opened (Permission denied); check its name and permissions"
+    assert refusal(path) == "cannot_open_photograph"
 
 
 def test_names_that_no_system_takes(tmp_path):
-    assert "File name too long" in refusal(tmp_path / ("x" * 300))
-    assert "no such file" in refusal(tmp_path / "a\0.jpg")
+    assert refusal(tmp_path / ("x" * 300)) == "cannot_open_photograph"
+    assert refusal(tmp_path / "a\0.jpg") == "no_such_photograph"
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="only Linux stores names as bytes")
 def test_name_that_is_not_utf8(tmp_path):
     path = os.fsencode(tmp_path) + b"/\xff.png"
     Path(os.fsdecode(path)).write_bytes(png(1, 1, bytes(4)))
-    with pytest.raises(PhotoError, match=r"^'.*udcff.png': the name is not UTF-8; rename"):
+    with pytest.raises(PhotoError) as caught:
         read_photo(os.fsdecode(path))
+    assert (caught.value.code, str(caught.value).isprintable()) == ("name_not_utf8", True)

@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from crfnet_core.colorimetry import adaptation, xyz_of
-from crfnet_core.photograph.metadata.color_tags import D50, Primaries
+from crfnet_core.colorimetry import D50, Primaries, adaptation, xyz_of
 from tests.helpers.images import write_image
 
 

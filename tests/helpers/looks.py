@@ -20,7 +20,7 @@ from crfnet.configs.studio.sources import find_config
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet.output_files import OutputFiles
-from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
+from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import rule_names
 from tests.helpers.images import write_image

@@ -15,7 +15,7 @@ from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.files import json_text
 from crfnet_core.network import ModelConfig, ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.photograph.metadata import Device, FileMetadata, as_told, file_origin
+from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.curve import ResponseCurve
@@ -138,12 +138,13 @@ def test_several_photographs_are_told_by_the_first(estimate):
 
 
 def test_who_says_what_took_the_photograph(estimate):
-    told = as_told(file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400)), Device.PHONE)
+    unnamed = file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400))
+    told = with_stated_device(unnamed, Device.PHONE)
     assert report.basis(estimate(origins=(told,))) == (
         "prior: camera; you and the file say: taken with a phone, probably scaled after the camera wrote it: it has"
         " 600 x 400 pixels"
     )
-    bare = as_told(file_origin(FileMetadata()), Device.COMPACT)
+    bare = with_stated_device(file_origin(FileMetadata()), Device.COMPACT)
     assert report.basis(estimate(origins=(bare,))) == "prior: camera; you say: taken with a compact camera"
 
 

@@ -59,7 +59,7 @@ def linear_scene(
     PhotoError
         If the file is absent, damaged, not scene-linear, too small or black, or no panorama although it is called one.
     """
-    is_raw = path.suffix.lower() in RAW_SUFFIXES.split()
+    is_raw = path.suffix.lower() in RAW_SUFFIXES
     samples = read_raw(path) if is_raw else read_hdr(path)
     band = panorama_band(samples, path) if is_panorama else samples
     scale = automatic_scale(*band.shape[:2]) if scale is None else scale

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -162,7 +161,7 @@ def _row(
 def read_real_photo(photograph: RealPhotograph) -> Photo:
     """Return the photograph as the product reads it, with the metadata of its original where the file lost it."""
     photo = read_photo(photograph.photograph)
-    return replace(photo, metadata=photograph.metadata or photo.metadata)
+    return photo.with_metadata(photograph.metadata or photo.metadata)
 
 
 def estimates(
@@ -177,7 +176,7 @@ def estimates(
 def without_exif(photo: Photo) -> Photo:
     """Return the photograph as a web site sends it: its file states only the size of the picture."""
     height, width = photo.pixels.shape[:2]
-    return replace(photo, metadata=FileMetadata(width=width, height=height, file_format="WebP"))
+    return photo.with_metadata(FileMetadata(width=width, height=height, file_format="WebP"))
 
 
 def bank_without_fold(photograph: RealPhotograph, test_set: TestSet) -> ResponseBank:

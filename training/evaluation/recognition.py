@@ -61,7 +61,7 @@ def print_log_footage(data: Path, network: ResponseNetwork, *, is_stretched: boo
             if (recognition := estimate.recognition) is not None and recognition.kind is Kind.LOG_FOOTAGE:
                 named = list(recognition.curves)
                 places.append(named.index(name) if name in named else len(named))
-                off = [light_error(curves[each], curves[name], Levels.of(pixels)) for each in named]
+                off = [light_error(curves[each], curves[name], Levels.from_pixels(pixels)) for each in named]
                 safest = int(np.argmin(recognition.errors))
                 errors.append((off[0], off[safest], recognition.errors[safest]))
     likeliest, safest_errors, expected = np.array(errors).T
@@ -99,7 +99,7 @@ def _compressed(codes: Uint8Array) -> Uint8Array:
 
 def _is_limited(codes: Uint8Array) -> bool:
     """Return whether codes are recognized as limited range."""
-    return is_limited_range(Levels.of(np.divide(codes, np.float32(255), dtype=np.float32)))
+    return is_limited_range(Levels.from_pixels(np.divide(codes, np.float32(255), dtype=np.float32)))
 
 
 def _real(data: Path) -> Iterator[tuple[str, Photo]]:

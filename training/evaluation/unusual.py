@@ -101,7 +101,7 @@ def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list
     """Return the verdicts on a picture, in the order of `ways_of`."""
 
     def verdict(metadata: FileMetadata, device: Device | None = None) -> str:
-        return str(estimate_response(replace(photo, metadata=metadata), network=network, device=device).verdict)
+        return str(estimate_response(photo.with_metadata(metadata), network=network, device=device).verdict)
 
     stripped = verdict(NO_CAMERA)
     written = verdict(WRITTEN[kind]) if kind in WRITTEN else stripped

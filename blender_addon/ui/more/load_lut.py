@@ -16,7 +16,7 @@ from ..operator_base import ChosenPlate, failed
 from ..preferences import absolute
 
 if TYPE_CHECKING:
-    from crfnet_core.photograph.metadata.color_tags import Primaries
+    from crfnet_core.colorimetry import Primaries
 
 
 class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):

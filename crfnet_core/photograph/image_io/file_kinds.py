@@ -1,13 +1,12 @@
-"""Which format a file has, told from its first bytes; what is refused for its format alone."""
+"""Recognize a file's format by its first bytes, and refuse formats that hold no encoded photograph."""
 
 from __future__ import annotations
 
 import struct
 from pathlib import Path
+from typing import Literal
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.camera_raw import is_raw_content, is_raw_name
 
 #: How the files that are read begin.
 SIGNATURES = {
@@ -23,16 +22,27 @@ SIGNATURES = {
 #: How scene-linear files begin: they are refused.
 LINEAR_SIGNATURES = {"OpenEXR": (b"\x76\x2f\x31\x01",), "Radiance HDR": (b"#?RADIANCE", b"#?RGBE")}
 
-#: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures; that of Canon's raw CR3.
+#: Suffixes of camera raw. Some of these files are read as their small preview, which must not pass for the photograph.
+RAW_SUFFIXES = (
+    *(".3fr", ".ari", ".arw", ".cr2", ".cr3", ".crw", ".dcr", ".dng", ".erf", ".fff", ".iiq", ".kdc", ".mef", ".mos"),
+    *(".mrw", ".nef", ".nrw", ".orf", ".pef", ".raf", ".rw2", ".rwl", ".sr2", ".srf", ".srw", ".x3f"),
+)
+
+#: How raw files begin that are not plain TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
+RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
+
+#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType, whose bit 0 marks a reduced picture; SubIFDs; DNGVersion.
+_SUBFILE_TYPE, _SUB_DIRECTORIES, _DNG_VERSION = 254, 330, 50706
+
+#: Directories longer than this are damaged.
+_MOST_ENTRIES = 4096
+
+#: Brands of ISO/IEC 23008-12 (HEIF) and AVIF, of still pictures.
 HEIC_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx")
 AVIF_BRANDS = (b"avif", b"avis")
-_RAW_BRAND = b"crx "
 
 #: Suffixes of Truevision TGA, which has no signature.
 TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
-
-#: What `_targa_kind` calls a file whose samples are numbers of colours.
-_PALETTED_TARGA = "TGA with a palette"
 
 #: Suffixes for which OpenImageIO invents a picture, whatever is in the file.
 _NULL_SUFFIXES = (".null", ".nul")
@@ -46,7 +56,6 @@ PHOTOGRAPH_SUFFIXES = (
     ".tga",
 )
 
-_WANTED = "JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP or TGA"
 _HEAD = 12
 
 
@@ -56,60 +65,88 @@ def file_kind(path: Path) -> str:
     Raises
     ------
     PhotoError
-        If the file is absent, empty, or of a format that is not read; for scene-linear files, camera raw, GIF and TGA
-        with a palette with the reason.
+        If the file is absent, empty, or of a format that is not read; scene-linear files, camera raw, GIF and TGA with
+        a palette have errors of their own.
     OSError
         If it cannot be opened.
     """
     if path.is_dir():
-        raise PhotoError(f"{path}: is a folder; give a photograph in it")
+        raise PhotoError("photograph_is_folder", path=path)
     if not path.is_file():
-        raise PhotoError(f"{path}: there is no such file; check the name")
+        raise PhotoError("no_such_photograph", path=path)
     with path.open("rb") as file:
         head = file.read(_HEAD)
-        brands = head[8:] + file.read(_brands_length(head))
+        brands = _split(head[8:] + file.read(_brands_length(head))) if head[4:8] == b"ftyp" else ()
     if not head:
-        raise PhotoError(f"{path}: the file is empty; copy it again")
+        raise PhotoError("photograph_is_empty", path=path)
     _check_kind(path, head, brands)
     for kind, signatures in SIGNATURES.items():
         if head.startswith(signatures):
             return kind
     kind = _container_kind(head, brands) or _targa_kind(path)
-    if kind == _PALETTED_TARGA:
-        raise problems.paletted(path, "a TGA file with a palette")
     if not kind:
-        raise PhotoError(f"{path}: is no {_WANTED} file, whatever its name says; save the photograph as one of these")
+        raise PhotoError("not_an_image_file", path=path)
     return kind
 
 
-def _check_kind(path: Path, head: bytes, brands: bytes) -> None:
+def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
     """Refuse camera raw, scene-linear files and GIF."""
-    is_raw_movie = head[4:8] == b"ftyp" and _RAW_BRAND in _split(brands)
-    if is_raw_name(path) or is_raw_movie or is_raw_content(path, head):
-        raise problems.camera_raw(path)
+    if path.suffix.lower() in RAW_SUFFIXES or _RAW_BRAND in brands or _is_raw(path, head):
+        raise PhotoError("camera_raw", path=path)
     if path.suffix.lower() in _NULL_SUFFIXES:
-        raise PhotoError(f"{path}: OpenImageIO reads no file of the suffix {path.suffix}; rename it")
+        raise PhotoError("null_suffix", path=path, suffix=path.suffix)
     for kind, signatures in LINEAR_SIGNATURES.items():
         if head.startswith(signatures):
-            raise problems.linear(path, kind)
+            raise PhotoError("scene_linear_file", path=path, kind=kind)
     if head.startswith((b"GIF87a", b"GIF89a")):
-        raise problems.paletted(path, "GIF")
+        raise PhotoError("palette", path=path, kind="GIF")
 
 
-def _container_kind(head: bytes, brands: bytes) -> str:
+def _is_raw(path: Path, head: bytes) -> bool:
+    """Return whether a file is camera raw, whatever its name.
+
+    A TIFF file is if it says so (DNG, Canon's CR2), or if its first picture is a reduced one and larger ones hang below
+    it, as in NEF, ARW and others.
+    """
+    if head.startswith(RAW_SIGNATURES) or (head[8:10] == b"CR" and head.startswith((b"II*\0", b"MM\0*"))):
+        return True
+    if not head.startswith((b"II*\0", b"MM\0*")):
+        return False
+    entries = _first_directory(path, "little" if head.startswith(b"II") else "big")
+    is_reduced = bool(entries.get(_SUBFILE_TYPE, 0) & 1)
+    return _DNG_VERSION in entries or (is_reduced and _SUB_DIRECTORIES in entries)
+
+
+def _first_directory(path: Path, order: Literal["little", "big"]) -> dict[int, int]:
+    """Return tag -> value, or where the values stand, of a TIFF's first directory; empty if it is damaged.
+
+    Pillow's reader loads all values of a directory, each of which may claim the whole file.
+    """
+    with path.open("rb") as file:
+        file.seek(int.from_bytes(file.read(8)[4:], order))
+        content = file.read(12 * min(int.from_bytes(file.read(2), order), _MOST_ENTRIES))
+    entries = (content[at : at + 12] for at in range(0, len(content) - 11, 12))
+    return {int.from_bytes(each[:2], order): _value(each, order) for each in entries}
+
+
+def _value(entry: bytes, order: Literal["little", "big"]) -> int:
+    """Return the number in a directory's entry: two bytes for SHORT, else four."""
+    is_short = int.from_bytes(entry[2:4], order) == 3
+    return int.from_bytes(entry[8 : 10 if is_short else 12], order)
+
+
+def _container_kind(head: bytes, brands: tuple[bytes, ...]) -> str:
     """Return the format of a RIFF or ISO base media file; empty for others, and for movies."""
     if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
         return "WebP"
-    names = _split(brands) if head[4:8] == b"ftyp" else ()
-    if any(name in AVIF_BRANDS for name in names):
+    if any(brand in AVIF_BRANDS for brand in brands):
         return "AVIF"
-    return "HEIC" if any(name in HEIC_BRANDS for name in names) else ""
+    return "HEIC" if any(brand in HEIC_BRANDS for brand in brands) else ""
 
 
 def _brands_length(head: bytes) -> int:
     """Return how many bytes of brands follow the first 12 bytes of an ISO base media file."""
-    size = struct.unpack(">I", head[:4])[0] if head[4:8] == b"ftyp" else 0
-    return int(min(max(size - _HEAD, 0), 1024))
+    return min(max(int.from_bytes(head[:4], "big") - _HEAD, 0), 1024)
 
 
 def _split(brands: bytes) -> tuple[bytes, ...]:
@@ -118,14 +155,14 @@ def _split(brands: bytes) -> tuple[bytes, ...]:
 
 
 def _targa_kind(path: Path) -> str:
-    """Return "TGA", `_PALETTED_TARGA`, or "": TGA (Truevision TGA 2.0) is known by suffix and header."""
+    """Return "TGA" or "": TGA (Truevision TGA 2.0) is known by suffix and header. Refuse one with a palette."""
     if path.suffix.lower() not in TARGA_SUFFIXES:
         return ""
     with path.open("rb") as file:
-        header = file.read(18)
-    if len(header) < 18:
-        return ""
+        header = file.read(18).ljust(18, b"\0")
     has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
     if not (has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)):
         return ""
-    return _PALETTED_TARGA if kind in (1, 9) else "TGA"
+    if kind in (1, 9):
+        raise PhotoError("palette", path=path, kind="a TGA file with a palette")
+    return "TGA"

@@ -1,29 +1,61 @@
-"""JPEG files: their checks before decoding, and the standard image of those with a gain map."""
+"""JPEG files: checks before decoding, harmless warnings, and the standard image of a file with a gain map."""
 
 from __future__ import annotations
 
 import mmap
+import re
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass
 from pathlib import Path
 
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.header_checks import check_size
 from crfnet_core.photograph.metadata.jpeg import JpegHeader, read_jpeg_header
 
-_END_OF_IMAGE = b"\xff\xd9"
+#: A marker with its length, behind bytes that belong to no segment, which decoders skip.
+_SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
+_START_OF_SCAN, _END_OF_IMAGE = 0xDA, b"\xff\xd9"
+_START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 
-def checked_jpeg_header(path: Path) -> JpegHeader:
-    """Refuse a JPEG for what OpenImageIO would not: a huge frame, which opening allocates, and a missing end.
+@dataclass(frozen=True)
+class JpegFile:
+    """A JPEG file whose header is checked.
+
+    Parameters
+    ----------
+    header : JpegHeader
+        The metadata in its segments.
+    warnings : frozenset of str
+        Messages of libjpeg about stray bytes between the segments of the header, which touch no pixel.
+    """
+
+    header: JpegHeader
+    warnings: frozenset[str]
+
+    def damage(self, problem: str) -> str:
+        """Return the messages of a decoder, one a line, without those that touch no pixel."""
+        harmless = (*self.warnings, "unknown JFIF revision")
+        return "\n".join(line for line in problem.split("\n") if not any(each in line for each in harmless))
+
+
+def checked_jpeg(path: Path) -> JpegFile:
+    """Refuse a JPEG that OpenImageIO would accept: a huge frame, which opening allocates, and a missing end.
 
     Where the rest of a file is zeros (a failed download or recovery) the decoder paints gray and does not complain.
     """
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        header = read_jpeg_header(content)
-        for width, height in header.sizes:
-            check_size(path, width, height)
-        if content.rfind(_END_OF_IMAGE, header.scan) < 0:
+    warnings, scan = set(), 0
+    with _mapped(path) as content:
+        for marker, stray, scan, end in _segments(content):
+            if stray:
+                warnings.add(f"Corrupt JPEG data: {stray} extraneous bytes before marker 0x{marker:02x}")
+            if marker in _START_OF_FRAME:
+                _check_frame(path, content[scan:end])
+        if content.rfind(_END_OF_IMAGE, scan) < 0:
             raise problems.damaged(path, "JPEG", "it has no end marker")
-    return header
+        return JpegFile(read_jpeg_header(content), frozenset(warnings))
 
 
 def base_image(path: Path) -> bytes:
@@ -36,8 +68,34 @@ def base_image(path: Path) -> bytes:
     PhotoError
         If the file holds one picture only.
     """
-    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
-        base = content[: content.find(_END_OF_IMAGE, read_jpeg_header(content).scan) + 2]
+    with _mapped(path) as content:
+        scan = max((begin for _, _, begin, _ in _segments(content)), default=0)
+        base = content[: content.find(_END_OF_IMAGE, scan) + 2]
         if len(base) == len(content):
-            raise problems.linear(path, "a JPEG file of half samples")
+            raise PhotoError("scene_linear_file", path=path, kind="a JPEG file of half samples")
     return base
+
+
+@contextmanager
+def _mapped(path: Path) -> Iterator[mmap.mmap]:
+    """Yield the content of a file."""
+    with path.open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as content:
+        yield content
+
+
+def _segments(content: mmap.mmap) -> Iterator[tuple[int, int, int, int]]:
+    """Yield each segment up to the first scan: its marker, the stray bytes in front, where its payload begins, ends."""
+    end = 2
+    while segment := _SEGMENT.search(content, end):
+        begin, stray = segment.end(), segment.start() - end
+        end = segment.start(2) + max(2, int.from_bytes(segment[2], "big"))
+        yield segment[1][0], stray, begin, end
+        if segment[1][0] == _START_OF_SCAN:
+            return
+
+
+def _check_frame(path: Path, frame: bytes) -> None:
+    """Refuse a frame header of other than 8 bits, or of too many pixels."""
+    if frame and frame[0] != 8:
+        raise PhotoError("coding_not_read", path=path, kind="JPEG", problem=f"{frame[0]} bits per sample")
+    check_size(path, int.from_bytes(frame[3:5], "big"), int.from_bytes(frame[1:3], "big"))

@@ -1,69 +1,90 @@
-"""Read a photograph's code values, and nothing else done to them; or its metadata alone."""
+"""Read a photograph's code values, upright and otherwise as stored; or its metadata alone."""
 
 from __future__ import annotations
 
+import os
 import tempfile
 from collections.abc import Iterator
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import file_kind
-from crfnet_core.photograph.image_io.header_checks import check_is_encoded, checked_bit_depth
+from crfnet_core.photograph.image_io.header_checks import (
+    WHITE_IS_ZERO,
+    check_is_encoded,
+    checked_bit_depth,
+    with_plain_texts,
+)
 from crfnet_core.photograph.image_io.heif import read_heif
-from crfnet_core.photograph.image_io.jpeg_files import base_image, checked_jpeg_header
+from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata, metadata_of_header
+from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, Turn, upright
 from crfnet_core.photograph.photo import CodeValues, Photo
 
 #: Rows read at a time.
 _ROWS = 256
 
+#: Pages of a TIFF file that are searched for the first that is not a reduced picture.
+_MOST_PAGES = 64
+
 #: The formats that OpenImageIO does not read.
 HEIF_KINDS = ("HEIC", "AVIF")
 
 
-def read_photo(path: str | Path) -> Photo:
+def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     """Return the photograph in an image file of 8 to 16 bits per sample.
 
-    The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP and TGA. Nothing but the division by
-    the largest code happens to the values: no colour space, profile or gamma is applied, and the rows and columns stay
-    as stored (EXIF orientation is ignored). HEIC and AVIF are turned upright, because there the rotation is a property
-    of the picture. Alpha is dropped, after dividing by it where the file stores associated colour. Gray is replicated.
-    Of several frames or layers the first is read; of an HDR photograph with a gain map (Ultra HDR, HEIC) the base
-    picture: `FileMetadata.has_gain_map` says so.
+    The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP and TGA. The values are divided by
+    the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
+    Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
+    or layers the first is read, of a TIFF file the first that is not a thumbnail; of an HDR photograph with a gain map
+    (Ultra HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
 
     Parameters
     ----------
-    path : str or Path
-        The file; what counts is how it begins, not its suffix (except for those of camera raw and TGA).
+    source : str, path-like, bytes or binary file
+        The file, its content, or an open file that is read to its end. Its beginning decides on the format, not its
+        name (except for camera raw and TGA).
 
     Raises
     ------
     PhotoError
-        If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or no
+        If the file is absent, unreadable, empty, damaged or cut short, of another format, above `MAX_PIXELS`, or not an
         encoded photograph: CMYK, palettes, scene-linear, camera raw.
     """
-    return Photo.from_codes(read_codes(path), Path(path))
+    if isinstance(source, str | os.PathLike):
+        return Photo.from_codes(read_codes(source), Path(source))
+    content = source.read() if hasattr(source, "read") else source
+    if not isinstance(content, bytes | bytearray | memoryview):
+        raise PhotoError("photograph_source", kind=type(source).__name__)
+    name = getattr(source, "name", None)
+    path = Path(name) if isinstance(name, str) and name else Path("bytes")
+    return Photo.from_codes(_codes_of_content(content, path), path)
 
 
-def read_codes(path: str | Path) -> CodeValues:
-    """Return the integer samples of the file; accepts, ignores and raises as `read_photo`, which builds on it."""
+def read_codes(path: str | os.PathLike[str]) -> CodeValues:
+    """Return the integer samples of a file; accepts, ignores and raises as `read_photo`, which builds on it."""
     path = Path(path)
     with _named_errors(path):
         kind = file_kind(path)
-        return read_heif(path, kind) if kind in HEIF_KINDS else _read(path, kind)
+        if kind in HEIF_KINDS:
+            return read_heif(path, kind)
+        with _opened(path, kind) as file:
+            return _base_codes(path) if file.has_gain_map else file.codes()
 
 
-def read_metadata(path: str | Path) -> FileMetadata:
-    """Return what a file says beside its pixels, which are decoded of HEIC and AVIF only.
+def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
+    """Return the metadata of a file; only of HEIC and AVIF the pixels are decoded.
 
     Raises as `read_photo` does, but does not see damage among the pixels.
     """
@@ -72,75 +93,147 @@ def read_metadata(path: str | Path) -> FileMetadata:
         kind = file_kind(path)
         if kind in HEIF_KINDS:
             return read_heif(path, kind).metadata
-        jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
-        with _opened(path, kind) as source:
-            header = _header(source, path, kind)
-            if _has_gain_map(header, kind):
-                return _read_base_image(path).metadata
-            checked_bit_depth(path, header)
-            check_is_encoded(path, header, kind)
-            return metadata_of_header(header, kind, jpeg)
+        with _opened(path, kind) as file:
+            if file.has_gain_map:
+                return _base_codes(path).metadata
+            checked_bit_depth(path, file.header)
+            check_is_encoded(path, file.header, kind)
+            return file.metadata()
+
+
+@dataclass(frozen=True)
+class _OpenFile:
+    """A file that OpenImageIO has opened, at the picture that is read."""
+
+    path: Path
+    kind: str
+    source: Any
+    header: Any
+    jpeg: JpegFile | None
+
+    @property
+    def has_gain_map(self) -> bool:
+        """Whether OpenImageIO would make an HDR picture of an Ultra HDR JPEG."""
+        return self.kind == "JPEG" and str(self.header.format) == "half"
+
+    @property
+    def turn(self) -> Turn:
+        """The turn of the stored picture, by its orientation; the decoder of JPEG XL applies it by itself."""
+        orientation = 1 if self.kind == "JPEG XL" else self.header.get_int_attribute("Orientation", 1)
+        return EXIF_TURNS.get(orientation, UPRIGHT)
+
+    def metadata(self) -> FileMetadata:
+        """Return the metadata of the upright picture."""
+        jpeg = self.jpeg.header if self.jpeg else None
+        metadata = metadata_of_header(self._upright_header(), self.kind, jpeg)
+        return replace(metadata, is_turned=self.turn != UPRIGHT)
+
+    def codes(self) -> CodeValues:
+        """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
+        bit_depth = checked_bit_depth(self.path, self.header)
+        check_is_encoded(self.path, self.header, self.kind)
+        values = self._decoded()
+        if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO and bit_depth > 8:
+            values = ~values  # OpenImageIO inverts such samples of 8 bits only
+        if bit_depth in (10, 12):
+            values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
+        values = upright(values, self.turn)
+        alpha = self.header.alpha_channel
+        has_alpha = 0 < alpha < values.shape[2]
+        return CodeValues(
+            codes=values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2),
+            alpha=values[..., alpha] if has_alpha else None,
+            bit_depth=bit_depth,
+            is_associated=has_alpha and not self.header.get_int_attribute("oiio:UnassociatedAlpha"),
+            header=self._upright_header(),
+            metadata=self.metadata(),
+        )
+
+    def _upright_header(self) -> Any:
+        """Return the header of the upright picture: sides and windows are exchanged where rows become columns."""
+        header, stored = oiio.ImageSpec(self.header), self.header
+        if self.turn[0] == 0:
+            header.width, header.height, header.x, header.y = stored.height, stored.width, stored.y, stored.x
+            header.full_width, header.full_height = stored.full_height, stored.full_width
+            header.full_x, header.full_y = stored.full_y, stored.full_x
+        if self.turn != UPRIGHT:
+            header.attribute("Orientation", 1)
+        return header
+
+    def _decoded(self) -> NDArray[Any]:
+        """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
+        values = _masked_bmp(self.path) if self.kind == "BMP" else None
+        if values is not None:
+            return values
+        values = _samples(self.source, self.header)
+        problem = problems.oiio_message(self.source)
+        problem = self.jpeg.damage(problem) if self.jpeg else problem
+        if values is None or problem:
+            raise problems.damaged(self.path, self.kind, problem)
+        return values
 
 
 @contextmanager
 def _named_errors(path: Path) -> Iterator[None]:
-    """Turn what the system refuses about a file, in the block, into a PhotoError."""
+    """Turn the system's refusals of a file, in the block, into a PhotoError."""
     try:
         str(path).encode()  # OpenImageIO takes names as UTF-8
         yield
     except UnicodeEncodeError as problem:
-        raise PhotoError(f"{str(path)!a}: the name is not UTF-8; rename the file or its folder") from problem
+        raise PhotoError("name_not_utf8", path=ascii(str(path))) from problem
     except OSError as problem:
-        raise PhotoError(f"{path}: cannot be opened ({problem.strerror}); check its name and permissions") from problem
+        raise PhotoError("cannot_open_photograph", path=path, problem=problem.strerror) from problem
 
 
 @contextmanager
-def _opened(path: Path, kind: str) -> Iterator[Any]:
-    """Yield a file of a known format as an OpenImageIO.ImageInput, or refuse it as damaged."""
+def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
+    """Yield an open file of a known format, or refuse it as damaged."""
+    jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
-    hints.attribute("oiio:UnassociatedAlpha", 1)  # colour as stored, not multiplied by alpha
+    hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
     source = oiio.ImageInput.open(str(path), hints)
     problem = problems.oiio_message()
     if source is None:
         raise problems.damaged(path, kind, problem)
     try:
-        yield source
+        if kind == "TIFF":
+            _seek_picture(source)
+        header = with_plain_texts(source.spec())
+        yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()
 
 
-def _header(source: Any, path: Path, kind: str) -> Any:
-    """Return the header of an open file."""
-    return with_color_chunks(source.spec(), path) if kind == "PNG" else source.spec()
+def _seek_picture(source: Any) -> None:
+    """Go to the first page of a TIFF file that is not marked as a reduced picture, if there is one."""
+    for page in range(_MOST_PAGES):
+        if not source.seek_subimage(page, 0):
+            break
+        if not source.spec().get_int_attribute("tiff:subfiletype") & 1:
+            return
+    source.seek_subimage(0, 0)
+    problems.oiio_message(source)
 
 
-def _has_gain_map(header: Any, kind: str) -> bool:
-    """Return whether OpenImageIO would make an HDR picture of an Ultra HDR JPEG."""
-    return kind == "JPEG" and str(header.format) == "half"
-
-
-def _read(path: Path, kind: str) -> CodeValues:
-    """Return the integer samples of a file of a known format."""
-    jpeg = checked_jpeg_header(path) if kind == "JPEG" else None
-    with _opened(path, kind) as source:
-        header = _header(source, path, kind)
-        if _has_gain_map(header, kind):
-            return _read_base_image(path)
-        bit_depth = checked_bit_depth(path, header)
-        check_is_encoded(path, header, kind)
-        values = _samples(source, header)
-        problem = problems.oiio_message(source)
-    if values is None or problem:
-        raise problems.damaged(path, kind, problem)
-    return _code_values(values, bit_depth, header, metadata_of_header(header, kind, jpeg))
+def _masked_bmp(path: Path) -> NDArray[np.uint8] | None:
+    """Return the samples of a BMP file with masks of its channels, which OpenImageIO ignores; None for others."""
+    with path.open("rb") as file:
+        compression = file.read(34)[30:]
+    if compression not in (b"\3\0\0\0", b"\6\0\0\0"):  # BI_BITFIELDS, BI_ALPHABITFIELDS
+        return None
+    try:
+        with Image.open(path, formats=["BMP"]) as image:
+            return np.atleast_3d(np.asarray(image))
+    except (OSError, ValueError) as problem:
+        raise problems.damaged(path, "BMP", str(problem)) from None
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     """Return the samples in an open file, shape (H, W, 1 to 4), or None; whole pictures OpenImageIO holds twice."""
     channels = min(header.nchannels, 4)
-    if header.tile_width:
-        tiles: NDArray[Any] | None = source.read_image(0, 0, 0, channels, header.format)
-        return tiles
+    if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
+        picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)
+        return picture
     values = np.empty((header.height, header.width, channels), str(header.format))
     for top in range(0, header.height, _ROWS):
         bottom = min(top + _ROWS, header.height)
@@ -151,30 +244,18 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     return values
 
 
-def _code_values(values: NDArray[Any], bit_depth: int, header: Any, metadata: FileMetadata) -> CodeValues:
-    """Return OpenImageIO's samples, shape (H, W, 1 to 4), as three channels and alpha on the file's own scale."""
-    if bit_depth in (10, 12):
-        values = values >> (16 - bit_depth)  # OpenImageIO widens the codes to 16 bits and repeats their top bits below
-    has_alpha = 0 < header.alpha_channel < values.shape[2]
-    color = values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2)
-    return CodeValues(
-        codes=color,
-        alpha=values[..., header.alpha_channel] if has_alpha else None,
-        bit_depth=bit_depth,
-        is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),
-        header=header,
-        metadata=metadata,
-    )
-
-
-def _read_base_image(path: Path) -> CodeValues:
+def _base_codes(path: Path) -> CodeValues:
     """Return the standard image of an Ultra HDR JPEG."""
-    base = base_image(path)
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder, "base.jpg")
-        copy.write_bytes(base)
-        try:
-            values = read_codes(copy)
-        except PhotoError as problem:
-            raise PhotoError(str(problem).replace(str(copy), str(path))) from None
+    values = _codes_of_content(base_image(path), path)
     return replace(values, metadata=replace(values.metadata, has_gain_map=True))
+
+
+def _codes_of_content(content: bytes | bytearray | memoryview, path: Path) -> CodeValues:
+    """Return the integer samples of the content of a file; errors name the path, which need not exist."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder, path.name)
+        copy.write_bytes(content)
+        try:
+            return read_codes(copy)
+        except PhotoError as problem:
+            raise PhotoError(problem.code, **{**problem.facts, "path": path}) from None

@@ -1,101 +1,127 @@
-"""What a file says of its colours: the primaries of its RGB, and how its codes were made of light."""
+"""The color tags of files: primaries, code points of ITU-T H.273 (CICP), and encodings by name.
+
+HEIC, AVIF, PNG, ICC profiles and movies hold code points. Names stand for published curves: log of cinema cameras and
+film scans, PQ and HLG.
+"""
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import re
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 
-import numpy as np
+from crfnet_core.colorimetry import DISPLAY_P3, REC709, REC2020, Chromaticity, Primaries
 
-from crfnet_core.colorimetry import Chromaticity, adaptation, rgb_to_xyz
-from crfnet_core.types import Float64Array
+#: CIE illuminant C, and the white of a cinema projector (SMPTE RP 431-2).
+C: Chromaticity = (0.310, 0.316)
+DCI: Chromaticity = (0.314, 0.351)
 
-#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
-D65: Chromaticity = (0.3127, 0.3290)
-D50: Chromaticity = (0.3457, 0.3585)
-D60: Chromaticity = (0.32168, 0.33767)
+_SMPTE_C: tuple[Chromaticity, Chromaticity, Chromaticity] = ((0.63, 0.34), (0.31, 0.595), (0.155, 0.07))
 
+#: ColourPrimaries of ITU-T H.273 (07/2021), Table 2. 2 is "unspecified"; 10, CIE XYZ, is not an RGB of a camera.
+PRIMARIES = {
+    1: REC709,
+    4: Primaries("BT.470 M", (0.67, 0.33), (0.21, 0.71), (0.14, 0.08), C),
+    5: Primaries("Rec.601 (625 lines)", (0.64, 0.33), (0.29, 0.60), (0.15, 0.06)),
+    6: Primaries("Rec.601 (525 lines)", *_SMPTE_C),
+    7: Primaries("SMPTE 240M", *_SMPTE_C),
+    8: Primaries("film", (0.681, 0.319), (0.243, 0.692), (0.145, 0.049), C),
+    9: REC2020,
+    11: Primaries("DCI-P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), DCI),
+    12: DISPLAY_P3,
+    22: Primaries("EBU Tech. 3213-E", (0.63, 0.34), (0.295, 0.605), (0.155, 0.077)),
+}
 
-@dataclass(frozen=True)
-class Primaries:
-    """The chromaticities of an RGB.
+#: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
+TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 
-    Parameters
-    ----------
-    name : str
-        As people know it, for example "Display P3".
-    red, green, blue, white : (float, float)
-        CIE 1931 x and y.
-    interop_id : str
-        The Color Interop Forum's name of the scene-linear space with these primaries; empty if there is none.
-    """
+#: Transfer characteristic in a DPX header (SMPTE ST 268) -> the encoding that follows.
+DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 
-    name: str
-    red: Chromaticity
-    green: Chromaticity
-    blue: Chromaticity
-    white: Chromaticity = D65
-    interop_id: str = ""
+#: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first.
+#: A name may end at an underscore, which does not end a word for `\b`.
+PROFILE_TRANSFERS = (
+    (r"\bs-?log ?3", "Sony S-Log3"),
+    (r"\bs-?log ?2", "Sony S-Log2"),
+    (r"\bs-?log(?![a-z0-9])", "Sony S-Log"),
+    (r"\blog ?c ?4", "ARRI LogC4"),
+    (r"\blog ?c(?: ?3)?(?![a-z0-9])", "ARRI LogC3"),
+    (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
+    (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
+    (r"\b(?:canon|c)-? ?log(?![a-z0-9])", "Canon Log"),
+    (r"\bv-?log", "Panasonic V-Log"),
+    (r"log3g10", "RED Log3G10"),
+    (r"log3g12", "RED Log3G12"),
+    (r"\bd-?log(?![a-z0-9])", "DJI D-Log"),
+    (r"\bapple ?log", "Apple Log"),
+    (r"\bf-?log ?2", "Fujifilm F-Log2"),
+    (r"\bf-?log(?![a-z0-9])", "Fujifilm F-Log"),
+    (r"\bn-?log", "Nikon N-Log"),
+    (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
+    (r"\bcineon|\bprinting density", "Cineon log"),
+    (r"\blogarithmic", "log"),
+    (r"\bpq(?![a-z0-9])|\bst ?2084", "PQ"),
+    (r"\bhlg(?![a-z0-9])|\bhybrid log", "HLG"),
+)
 
-    @property
-    def corners(self) -> Float64Array:
-        """The x and y of red, green, blue and white, shape (4, 2)."""
-        return np.array([self.red, self.green, self.blue, self.white])
-
-    def to_xyz(self) -> Float64Array:
-        """Return the matrix from linear RGB to CIE XYZ under its own white, shape (3, 3) (Eq. 35 of docs/METHOD.md)."""
-        return rgb_to_xyz(self.red, self.green, self.blue, self.white)
-
-
-#: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB).
-REC709 = Primaries("Rec.709", (0.64, 0.33), (0.30, 0.60), (0.15, 0.06), interop_id="lin_rec709_scene")
-
-#: SMPTE EG 432-1 with a D65 white.
-DISPLAY_P3 = Primaries("Display P3", (0.68, 0.32), (0.265, 0.69), (0.15, 0.06), interop_id="lin_p3d65_scene")
-
-#: Adobe RGB (1998) Color Image Encoding, 4.3.1.
-ADOBE_RGB = Primaries("Adobe RGB", (0.64, 0.33), (0.21, 0.71), (0.15, 0.06), interop_id="lin_adobergb_scene")
-
-#: ISO 22028-2 (ROMM RGB).
-PROPHOTO = Primaries("ProPhoto RGB", (0.734699, 0.265301), (0.159597, 0.840403), (0.036598, 0.000105), D50)
-
-#: ITU-R BT.2020-2.
-REC2020 = Primaries("Rec.2020", (0.708, 0.292), (0.17, 0.797), (0.131, 0.046), interop_id="lin_rec2020_scene")
-
-#: SMPTE ST 2065-1 (ACES2065-1), and the Academy's S-2014-004 (ACEScg).
-AP0 = Primaries("ACES AP0", (0.7347, 0.2653), (0.0, 1.0), (0.0001, -0.077), D60, "lin_ap0_scene")
-AP1 = Primaries("ACES AP1", (0.713, 0.293), (0.165, 0.83), (0.128, 0.044), D60, "lin_ap1_scene")
-
-#: The primaries that photographs have, by the names that users give them.
-PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophoto": PROPHOTO, "rec2020": REC2020}
-
-
-def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
-    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
-
-    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
-    configs of OpenColorIO. Colours outside the target's gamut become negative.
-    """
-    if source == target:
-        return np.eye(3)
-    adapted = adaptation(source.white, target.white) @ source.to_xyz()
-    return np.asarray(np.linalg.solve(target.to_xyz(), adapted))
+#: ffmpeg writes this into every DPX, and Blender into every one that it does not write as log, whatever the frame is.
+_MEANINGLESS_DPX_TRANSFER = "Linear"
 
 
 @dataclass(frozen=True)
 class ColorTags:
-    """What a file says of its colours.
+    """The color tags of a file.
 
     Parameters
     ----------
     primaries : Primaries, optional
-        None if the file says nothing, or something that cannot be expressed by primaries: see `source`.
+        None if the file has no tag, or one that cannot be expressed by primaries: see `source`.
     transfer : str
-        The published encoding that a tag names, such as "HLG", "PQ" or "S-Log3"; empty if there is none, or if the
-        tag is that of ordinary pictures (sRGB, BT.709), which says nothing of a camera's response.
+        The published encoding that a tag names, such as "HLG", "PQ", "linear" or "S-Log3"; empty if there is none, or
+        if it is an ordinary one (sRGB, BT.709), which does not show a camera's response.
     source : str
-        Who says so, for example "ICC profile", "CICP" or "EXIF"; empty if the file says nothing.
+        The tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none.
     """
 
     primaries: Primaries | None = None
     transfer: str = ""
     source: str = ""
+
+
+def cicp_tags(codes: Sequence[int]) -> ColorTags:
+    """Return the tags of code points, at least ColourPrimaries and TransferCharacteristics; empty if unspecified."""
+    if len(codes) < 2:
+        return ColorTags()
+    primaries, transfer = PRIMARIES.get(codes[0]), TRANSFERS.get(codes[1], "")
+    return ColorTags(primaries, transfer, "CICP") if primaries or transfer else ColorTags()
+
+
+def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
+    """Return color tags with the encoding that DPX's header or an ICC profile's name states, unless they have one.
+
+    Parameters
+    ----------
+    color : ColorTags
+        The tags by the numbers of ICC profile, CICP and EXIF.
+    dpx : str
+        The transfer characteristic of a DPX file.
+    profile : str
+        Description of the ICC profile.
+    """
+    if color.transfer:
+        return color
+    if dpx in DPX_TRANSFERS:
+        return replace(color, transfer=DPX_TRANSFERS[dpx], source=color.source or f'dpx:Transfer "{dpx}"')
+    name = profile_transfer(profile)
+    return replace(color, transfer=name, source=color.source or "ICC profile") if name else color
+
+
+def profile_transfer(profile: str) -> str:
+    """Return the encoding that an ICC profile's description, or DPX's transfer characteristic, names; empty if none."""
+    text = profile.casefold()
+    return next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")
+
+
+def dpx_transfer(value: str) -> str:
+    """Return the transfer characteristic of a DPX file; empty if it is one that programs write into any file."""
+    return "" if value == _MEANINGLESS_DPX_TRANSFER else value

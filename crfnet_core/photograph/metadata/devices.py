@@ -1,8 +1,8 @@
-"""Phone, compact or camera with interchangeable lenses: told by the maker and the model in EXIF.
+"""Recognize phones, compacts and cameras with interchangeable lenses by the maker and the model in EXIF.
 
-Makers of one kind are told by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
+Makers of one kind are known by name. Sony, Samsung, Panasonic, Canon, Nikon, Fujifilm, Olympus, Leica, Ricoh and others
 make several kinds: there the first pattern that fits the model decides, and the last one often fits everything.
-Drones, action cameras, camcorders and cinema cameras stay unknown: none of the families is theirs.
+Drones, action cameras, camcorders and cinema cameras stay unknown: they have no family of responses.
 """
 
 from __future__ import annotations
@@ -12,7 +12,7 @@ from enum import StrEnum
 
 
 class Device(StrEnum):
-    """What kind of device took the photograph."""
+    """A kind of device that takes photographs."""
 
     PHONE = "phone"
     COMPACT = "compact"
@@ -23,38 +23,26 @@ class Device(StrEnum):
 
 _PHONE, _COMPACT, _CAMERA, _SCANNER, _UNKNOWN = Device
 
-#: Beginnings of the makes, in lower case, of those who make phones (and tablets) only.
+#: Beginnings of the makes, in lower case, of makers of phones (and tablets) only.
 PHONE_MAKERS = (
     *("apple", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus", "oppo", "realme", "vivo", "iqoo"),
-    *(
-        "motorola",
-        "lg",
-        "lge",
-        "htc",
-        "nokia",
-        "hmd",
-        "microsoft",
-        "blackberry",
-        "rim",
-        "research in motion",
-        "zte",
-        "nubia",
-    ),
+    *("motorola", "lg", "lge", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion", "zte"),
+    "nubia",
     *("lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm", "essential"),
     *("fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee", "umidigi"),
     *("blackview", "sharp", "fujitsu", "gionee", "coolpad", "letv", "leeco", "micromax", "amazon"),
 )
 
-#: Beginnings of the makes of those who made compacts only (as far as photographs of them are seen).
+#: Beginnings of the makes of makers of compacts only (as far as photographs of them are seen).
 COMPACT_MAKERS = (
     *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "praktica"),
     *("general imaging", "ge", "toshiba", "sanyo", "traveler", "aiptek", "kyocera"),
 )
 
-#: Beginnings of the makes of those who make digital backs, or cameras with interchangeable lenses only.
+#: Beginnings of the makes of makers of digital backs, or cameras with interchangeable lenses, only.
 CAMERA_MAKERS = ("phase one", "leaf", "mamiya", "pixii", "zenit")
 
-#: Beginnings of the makes of those who make scanners only: the photograph behind is on film or paper.
+#: Beginnings of the makes of makers of scanners only: the photograph behind is on film or paper.
 SCANNER_MAKERS = ("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon")
 
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
@@ -76,7 +64,7 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
     ),
     "samsung": (
         (r"nx|gx-?\d", _CAMERA),
-        (r"(samsung-)?(sm|gt|sgh|sch|sph|shv|shw|sc|scv)-?\w|galaxy", _PHONE),
+        (r"(sm|gt|sgh|sch|sph|shv|shw|sc|scv)-?\w|galaxy", _PHONE),
         (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|digimax|vluu|<|techwin", _COMPACT),
     ),
     "panasonic": (
@@ -121,7 +109,7 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device; UNKNOWN where neither the maker nor the model tells.
+    """Return the kind of device; UNKNOWN where neither the maker nor the model shows it.
 
     Parameters
     ----------
@@ -154,7 +142,7 @@ def camera_name(make: str, model: str) -> str:
 
 def _of_model(maker: str, model: str, patterns: tuple[tuple[str, Device], ...]) -> Device:
     """Return the kind of the first pattern that fits the model, with the maker's name left out in front."""
-    name = re.sub(rf"^(?:{maker}\w*|fujifilm|ricoh)\b[ _]*", "", model.casefold().strip())
+    name = re.sub(rf"^(?:{maker}\w*|fujifilm|ricoh)\b[ _-]*", "", model.casefold().strip())
     return next((device for pattern, device in patterns if re.match(pattern, name)), _UNKNOWN)
 
 

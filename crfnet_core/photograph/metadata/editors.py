@@ -1,4 +1,4 @@
-"""Programs that edit or develop photographs, by what they write as EXIF Software and into the XMP history."""
+"""Programs that edit or develop photographs, by the names that they write as EXIF Software and into the XMP history."""
 
 from __future__ import annotations
 
@@ -24,18 +24,8 @@ EDITORS = (
     *("gimp", "affinity", "pixelmator", "paint shop", "paintshop", "paint.net", "photoimpact", "photoscape", "corel"),
     "filmpack",
     *("luminar", "on1", "topaz", "skylum", "exposure x", "zoner", "acdsee", "krita", "imagemagick", "graphicsmagick"),
-    *(
-        "irfanview",
-        "xnview",
-        "faststone",
-        "picasa",
-        "iphoto",
-        "photos ",
-        "digikam",
-        "shotwell",
-        "gthumb",
-        "microsoft ice",
-    ),
+    *("irfanview", "xnview", "faststone", "picasa", "iphoto", "photos ", "digikam", "shotwell", "gthumb"),
+    "microsoft ice",
     *("windows photo", "windows live photo", "microsoft windows photo", "photodirector", "movavi", "ashampoo", "magix"),
     *("perfectly clear", "nik collection", "color efex", "silver efex", "fotoxx", "photoline", "nuke", "davinci"),
     # HDR merging and panoramas
@@ -46,10 +36,11 @@ EDITORS = (
     *("camera360", "facetune", "afterlight", "prisma", "canva", "retrica", "faceapp", "remini", "touchretouch"),
 )
 
-#: Programs that only turn or label photographs, though their names look like those of editors.
-NO_EDITORS = ("windows photo viewer", "adobe bridge")
+#: Programs that only turn, label or wrap photographs, though their names look like names of editors. The pictures in
+#: the files of DNG Converter have the tones of the camera.
+NO_EDITORS = ("windows photo viewer", "adobe bridge", "dng converter")
 
-#: What `Software` is exactly after a change in Google Photos or Picasa Web.
+#: `Software`, in full, after a change in Google Photos or Picasa Web.
 EXACT = ("google", "google photos")
 
 
@@ -67,7 +58,7 @@ def editor_name(software: str, history: Sequence[str] = ()) -> str:
     Parameters
     ----------
     software : str
-        EXIF Software; in many files that of the camera's firmware.
+        EXIF Software; in many files the camera's firmware.
     history : sequence of str
         Programs in the XMP history; the last counts, where `software` names none.
     """
@@ -83,5 +74,5 @@ def is_editor(software: str) -> bool:
 
 
 def is_developer(software: str) -> bool:
-    """Return whether a program is mostly used to develop raw files, to tones that are not the camera's."""
+    """Return whether a program is mostly used to develop raw files, to tones other than the camera's."""
     return bool(_DEVELOPER.search(software.casefold()))

@@ -1,14 +1,14 @@
-"""What the header of an image file says of the photograph, beside its pixels."""
+"""The metadata of an image file, from its header."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 from typing import Any
 
-from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.errors import one_line
+from crfnet_core.photograph.metadata.color_tags import ColorTags, dpx_transfer, with_named_transfer
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
 from crfnet_core.photograph.metadata.jpeg import JpegHeader, Table
-from crfnet_core.photograph.metadata.transfer_tags import dpx_transfer, with_named_transfer
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
@@ -20,14 +20,14 @@ RENDERERS = {"RenderTime": "Blender", "Blender:RenderTime": "Blender"}
 
 @dataclass(frozen=True)
 class FileMetadata:
-    """The metadata of an image file; every field is empty or None where the file does not say.
+    """The metadata of an image file; a field is empty or None where the file does not state it.
 
-    Texts hold printable characters only, so that they can be shown, and no spaces at their ends.
+    Texts hold printable characters only, and no spaces at their ends.
 
     Parameters
     ----------
     width, height : int
-        The picture in pixels, as stored; 0 if unknown.
+        The upright picture in pixels; 0 if unknown.
     make, model : str
         The camera, as it writes itself: EXIF Make and Model.
     software : str
@@ -37,17 +37,17 @@ class FileMetadata:
     raw_file : str
         The file that a program of Adobe developed: Camera Raw's crs:RawFileName in XMP. It may be an ordinary picture.
     renderer : str
-        The program that rendered the picture, which no camera took.
+        The program that rendered the picture, so that no camera took it.
     iso : int, optional
         EXIF PhotographicSensitivity.
     exif_size : (int, int), optional
-        EXIF PixelXDimension and PixelYDimension: the size that the camera, or an editor, says that it wrote.
+        EXIF PixelXDimension and PixelYDimension: the size that the camera, or an editor, wrote.
     luma_table, chroma_table : tuple of int
-        Quantization tables of a JPEG file, 64 divisors each in the order of the file.
+        Quantization tables of a JPEG file, 64 divisors each, row by row.
     subsampling : str
         Chroma subsampling of a JPEG file, such as "4:2:0".
     has_jfif, has_adobe : bool
-        Whether a JPEG file has a JFIF segment, and one of Adobe: see `JpegHeader`.
+        Whether a JPEG file has a JFIF segment, and an Adobe segment: see `JpegHeader`.
     profile : str
         Description of the ICC profile; of DPX its transfer characteristic.
     file_format : str
@@ -55,9 +55,11 @@ class FileMetadata:
     has_gain_map : bool
         Whether the file holds a gain map, so that its picture is the base of an HDR picture.
     alpha : str
-        "straight" or "multiplied": whether the colours of a file with alpha are stored multiplied by it; else empty.
+        "straight" or "multiplied": whether the colors of a file with alpha are stored multiplied by it; else empty.
     color : ColorTags
-        What the file says of its primaries and of its encoding.
+        The tags of its primaries and of its encoding.
+    is_turned : bool
+        Whether the file stores the picture in another orientation, and the reader has turned it upright.
     """
 
     width: int = 0
@@ -80,6 +82,7 @@ class FileMetadata:
     has_gain_map: bool = False
     alpha: str = ""
     color: ColorTags = field(default_factory=ColorTags)
+    is_turned: bool = False
 
     @property
     def has_camera(self) -> bool:
@@ -129,13 +132,13 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
 
 
 def _text(header: Any, name: str, *, longest: int = LONGEST_TEXT) -> str:
-    """Return the printable characters of a text in the header."""
+    """Return a text in the header on one line of printable characters."""
     value = header_attribute(header, name)
-    return "".join(filter(str.isprintable, value[:longest])).strip() if isinstance(value, str) else ""
+    return one_line(value.rstrip("\0")[:longest]) if isinstance(value, str) else ""
 
 
 def _alpha(header: Any) -> str:
-    """Return how colours are stored beside alpha, of a file that was opened to be read as it is stored."""
+    """Return how colors are stored with alpha, in a file that was opened to be read as it is stored."""
     if header.alpha_channel < 0:
         return ""
     return "straight" if header.get_int_attribute("oiio:UnassociatedAlpha") else "multiplied"

@@ -1,4 +1,4 @@
-"""The colour tags in an image file's header: ICC profile, CICP, PNG's, EXIF and OpenEXR's, the most telling first."""
+"""Color tags in an image file's header: of the ICC profile, CICP, PNG, EXIF and OpenEXR, in order of precedence."""
 
 from __future__ import annotations
 
@@ -7,18 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.photograph.metadata import cicp
-from crfnet_core.photograph.metadata.color_tags import (
-    ADOBE_RGB,
-    AP0,
-    AP1,
-    DISPLAY_P3,
-    PHOTOGRAPHIC,
-    REC709,
-    REC2020,
-    ColorTags,
-    Primaries,
-)
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Primaries
+from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.icc import read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
@@ -37,22 +27,22 @@ INTEROP_PRIMARIES = {
     "ap1": AP1,
 }
 
-#: Largest difference by which chromaticities are still those of named primaries: they are written with four digits.
+#: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
 SAME_CHROMATICITIES = 2e-4
 
-#: Least area of the triangle of primaries in x and y, doubled; that of Rec.709 has 0.22.
+#: Least area of the triangle of primaries in x and y, doubled; Rec.709 has 0.22.
 LEAST_AREA = 0.01
 
-#: What is said of an ICC profile that gives no primaries.
+#: The source of tags from an ICC profile without primaries.
 TABLES = "ICC profile of tables"
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
-    """Return what an open file says of its colours; the first of these that says something is believed.
+    """Return the color tags of an open file; the first source that has any is believed.
 
     The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
     Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
-    gives no primaries, and then nothing else is asked for them.
+    gives no primaries, and no other source does then.
 
     Parameters
     ----------
@@ -64,17 +54,17 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     interop_index : str
         EXIF InteroperabilityIndex, which OpenImageIO does not read.
     """
-    icc, codes = _icc_tags(header), cicp.cicp_tags(_sequence(header, "CICP"))
+    icc, codes = _icc_tags(header), cicp_tags(_sequence(header, "CICP"))
     first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
     others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
-    found = [each for each in (*first, *others) if each.source]
-    telling = next((each for each in found if each.primaries or each.source == TABLES), (*found, ColorTags())[0])
-    transfer = next((each.transfer for each in found if each.transfer), "")
+    tags = [each for each in (*first, *others) if each.source]
+    telling = next((each for each in tags if each.primaries or each.source == TABLES), (*tags, ColorTags())[0])
+    transfer = next((each.transfer for each in tags if each.transfer), "")
     return ColorTags(telling.primaries, transfer, telling.source)
 
 
 def header_attribute(header: Any, name: str) -> Any:
-    """Return a value in the header; None where it is absent or no value of Python's."""
+    """Return a value in the header; None where it is absent or not a value of Python's."""
     try:
         return header.getattribute(name)
     except (RuntimeError, TypeError, ValueError):
@@ -82,17 +72,18 @@ def header_attribute(header: Any, name: str) -> Any:
 
 
 def _icc_tags(header: Any) -> ColorTags:
-    """Return what the ICC profile says."""
+    """Return the tags of the ICC profile; one of gray has no primaries."""
     profile = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
-    if profile is None or not profile.is_rgb:
+    if profile is None or not (profile.is_rgb or profile.is_linear):
         return ColorTags()
-    codes = cicp.cicp_tags(profile.cicp)
+    codes = cicp_tags(profile.cicp)
     primaries = profile.primaries or codes.primaries
-    return ColorTags(primaries, codes.transfer, "ICC profile" if primaries else TABLES)
+    transfer = codes.transfer or ("linear" if profile.is_linear else "")
+    return ColorTags(primaries, transfer, "ICC profile" if primaries or not profile.is_rgb else TABLES)
 
 
 def _png_tags(header: Any) -> tuple[ColorTags, ...]:
-    """Return what PNG's chunks say beside CICP and the profile: a gamma of 1 is linear."""
+    """Return the tags of PNG's other chunks: a gamma of 1 is linear."""
     is_srgb, is_linear = header_attribute(header, "png:sRGB") is not None, header_attribute(header, "png:gamma") == 1
     srgb = ColorTags(REC709, source="sRGB chunk") if is_srgb else ColorTags()
     gamma = ColorTags(transfer="linear", source="gAMA chunk") if is_linear else ColorTags()
@@ -100,14 +91,14 @@ def _png_tags(header: Any) -> tuple[ColorTags, ...]:
 
 
 def _exif_tags(header: Any, interop_index: str) -> ColorTags:
-    """Return what EXIF says; that of an uncalibrated picture says nothing."""
+    """Return the tags of EXIF; an uncalibrated picture has none."""
     space = header_attribute(header, "Exif:ColorSpace")
     primaries = EXIF_PRIMARIES.get(space if isinstance(space, int) else 0) or DCF_PRIMARIES.get(interop_index)
     return ColorTags(primaries, source="EXIF") if primaries else ColorTags()
 
 
 def _interop_tags(header: Any) -> ColorTags:
-    """Return what the Color Interop Forum's name of the encoding says: "lin_ap1_scene" is linear."""
+    """Return the tags of the Color Interop Forum's name of the encoding: "lin_ap1_scene" is linear."""
     name = header_attribute(header, "colorInteropID")
     parts = name.split("_") if isinstance(name, str) else []
     primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
@@ -116,17 +107,17 @@ def _interop_tags(header: Any) -> ColorTags:
 
 
 def _chromaticity_tags(header: Any, source: str) -> ColorTags:
-    """Return what the chromaticities of OpenEXR and PNG say; nothing if they make no colours of three kinds."""
+    """Return the tags of chromaticities in OpenEXR and PNG; none if the primaries lie on a line."""
     numbers = np.ravel(_sequence(header, "chromaticities"))
     if numbers.size != 8 or not np.isfinite(numbers).all() or (corners := numbers.reshape(4, 2))[3].min() <= 0:
         return ColorTags()
-    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *cicp.PRIMARIES.values()):
+    for named in (*PHOTOGRAPHIC.values(), AP0, AP1, *PRIMARIES.values()):
         if np.abs(named.corners - corners).max() < SAME_CHROMATICITIES:
             return ColorTags(named, source=source)
     red, green, blue, white = ((float(x), float(y)) for x, y in corners)
-    own = Primaries("primaries of its own", red, green, blue, white)
+    unnamed = Primaries("primaries of its own", red, green, blue, white)
     is_sound = abs(np.linalg.det(np.column_stack([corners[:3], np.ones(3)]))) > LEAST_AREA
-    return ColorTags(own, source=source) if is_sound else ColorTags()
+    return ColorTags(unnamed, source=source) if is_sound else ColorTags()
 
 
 def _sequence(header: Any, name: str) -> Sequence[Any]:

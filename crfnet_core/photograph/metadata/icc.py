@@ -1,114 +1,132 @@
-"""ICC profiles: the primaries of those that are a matrix and curves.
+"""ICC profiles: the primaries of a matrix profile, and whether the curve of any profile is linear.
 
-Source: ISO 15076-1:2010 (ICC.1:2010, version 4.3), and ICC.1:2022 for the tag `cicp`.
+Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, version 4.3), and ICC.1:2022 for the tag
+`cicp`.
 """
 
 from __future__ import annotations
 
-import struct
+import io
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
+from PIL import Image, ImageCms
 
-from crfnet_core.colorimetry import adaptation, chromaticity_of
-from crfnet_core.photograph.metadata.color_tags import D50, PHOTOGRAPHIC, Primaries
+from crfnet_core.colorimetry import D50, PHOTOGRAPHIC, Primaries, adaptation, chromaticity_of
 from crfnet_core.types import Float64Array
 
 #: XYZ of the profile connection space's white, D50 (7.2.16 of the specification).
 PCS_WHITE = np.array([0.9642, 1.0, 0.8249])
 
-#: Largest difference in XYZ by which a profile's colourants are still those of named primaries. Those at hand
-#: differ by up to 0.0002 (rounding to four digits, other values of D65); two of the named spaces by 0.06 or more.
+#: Largest difference in XYZ from named primaries by which a profile's colorants count as theirs. Known profiles differ
+#: by up to 0.0002 (rounding to four digits, other values of D65); two of the named spaces by 0.06 or more.
 SAME_COLORANTS = 0.002
 
-#: Largest difference in XYZ between PCS_WHITE and the sum of the colourants of a profile that is not damaged.
+#: Largest difference in XYZ between PCS_WHITE and the sum of the colorants of a profile that is not damaged.
 SAME_WHITE = 0.02
 
-_SIGNATURE, _TAG_COUNT, _TAG_TABLE, _MAX_TAGS = slice(36, 40), 128, 132, 200
-_FIXED = 65536.0  # s15Fixed16Number
+#: Largest difference in L* between the gray ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
+SAME_LIGHTNESS = 1.5
+
+#: The codes of the ramp.
+_RAMP = np.arange(8, 256, 8, dtype=np.uint8)
+
+#: Color space of a profile -> Pillow's mode of its pictures.
+_MODES = {"RGB": "RGB", "GRAY": "L"}
+
+_TAG_TABLE, _MAX_TAGS = 132, 200
 
 
 @dataclass(frozen=True)
 class IccProfile:
-    """What a profile says of RGB.
+    """The parts of a profile that are read.
 
     Parameters
     ----------
     is_rgb : bool
-        Whether it is a profile of RGB; one of gray says nothing of primaries.
+        Whether it is a profile of RGB; one of gray has no primaries.
     primaries : Primaries, optional
         None if it works by tables, or is damaged.
+    is_linear : bool
+        Whether equal codes of its channels are proportional to light.
     cicp : tuple of int
         Primaries, transfer, matrix and range as codes of ITU-T H.273, from the tag `cicp`; empty if it has none.
     """
 
     is_rgb: bool
     primaries: Primaries | None
+    is_linear: bool
     cicp: tuple[int, ...]
 
 
 def read_icc(profile: bytes) -> IccProfile | None:
-    """Return what an ICC profile says; None if these bytes are none. What is damaged counts as absent.
+    """Return the parts of an ICC profile; None if it cannot be read.
 
-    Primaries are recognised by their matrix, not by the profile's description: that is free text. Of a matrix that is
-    none of the named ones the adaptation to D50 is undone, by the tag `chad`, or in version 2 from the media white.
+    Primaries are recognized by their matrix, not by the profile's description, which is free text. Of an unnamed matrix
+    the adaptation to D50 is undone, by the tag `chad`, or in version 2 from the media white.
     """
-    if len(profile) < _TAG_TABLE or profile[_SIGNATURE] != b"acsp":
+    try:
+        opened = ImageCms.ImageCmsProfile(io.BytesIO(profile))
+    except (OSError, ImageCms.PyCMSError):
         return None
-    tags = _tags(profile)
-    cicp = tags.get("cicp", b"")
-    is_rgb, is_table = profile[16:20] == b"RGB ", "A2B0" in tags or profile[20:24] != b"XYZ "
+    facts: Any = opened.profile
+    space = facts.xcolor_space.strip()
+    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in _tags(profile)
     return IccProfile(
-        is_rgb=is_rgb,
-        primaries=_primaries(tags, version=profile[8]) if is_rgb and not is_table else None,
-        cicp=tuple(cicp[8:12]) if len(cicp) >= 12 else (),
+        is_rgb=space == "RGB",
+        primaries=_primaries(facts) if space == "RGB" and is_matrix else None,
+        is_linear=space in _MODES and _is_linear(opened, _MODES[space]),
+        cicp=tuple(_tags(profile).get(b"cicp", b"")[8:12]),
     )
 
 
-def _tags(profile: bytes) -> dict[str, bytes]:
-    """Return the tagged elements by signature; those outside the profile are left out."""
-    (count,) = struct.unpack_from(">I", profile, _TAG_COUNT)
-    tags = {}
-    for index in range(min(count, _MAX_TAGS, (len(profile) - _TAG_TABLE) // 12)):
-        name, offset, size = struct.unpack_from(">4sII", profile, _TAG_TABLE + 12 * index)
-        tags[name.decode("latin-1")] = profile[offset : offset + size]
-    return tags
+def _tags(profile: bytes) -> dict[bytes, bytes]:
+    """Return the tagged elements by signature: Pillow hands out neither `cicp` nor the list of tags."""
+    count = min(int.from_bytes(profile[_TAG_TABLE - 4 : _TAG_TABLE], "big"), _MAX_TAGS)
+    entries = [profile[at : at + 12] for at in range(_TAG_TABLE, _TAG_TABLE + 12 * count, 12)]
+    places = {entry[:4]: (int.from_bytes(entry[4:8], "big"), int.from_bytes(entry[8:], "big")) for entry in entries}
+    return {name: profile[offset : offset + size] for name, (offset, size) in places.items()}
 
 
-def _numbers(tags: dict[str, bytes], name: str, count: int) -> Float64Array | None:
-    """Return the first numbers of an element of fixed-point numbers, shape (count,); None if it is absent or short."""
-    element = tags.get(name, b"")
-    if len(element) < 8 + 4 * count:
+def _is_linear(profile: ImageCms.ImageCmsProfile, mode: str) -> bool:
+    """Return whether a gray ramp has the lightness of linear light (CIE 15:2018, 8.2.1), whatever the tags are."""
+    ramp = Image.fromarray(np.repeat(_RAMP[None, :, None], len(mode), axis=2).squeeze(axis=2 if mode == "L" else ()))
+    intent = ImageCms.Intent.RELATIVE_COLORIMETRIC
+    try:
+        to_lab = ImageCms.buildTransform(profile, ImageCms.createProfile("LAB"), mode, "LAB", intent)
+        lightness = np.asarray(ImageCms.applyTransform(ramp, to_lab))[0, :, 0] / 2.55
+    except (ImageCms.PyCMSError, ValueError):
+        return False
+    expected = 116 * np.cbrt(_RAMP / 255) - 16
+    return bool(np.abs(lightness - expected).max() < SAME_LIGHTNESS)
+
+
+def _primaries(facts: Any) -> Primaries | None:
+    """Return the primaries of the colorants; None if they are damaged."""
+    columns = [facts.red_colorant, facts.green_colorant, facts.blue_colorant]
+    if None in columns:
         return None
-    return np.array(struct.unpack_from(f">{count}i", element, 8)) / _FIXED
-
-
-def _primaries(tags: dict[str, bytes], *, version: int) -> Primaries | None:
-    """Return the primaries of the colourants."""
-    columns = [_numbers(tags, name, 3) for name in ("rXYZ", "gXYZ", "bXYZ")]
-    if any(column is None for column in columns):
-        return None
-    colorants = np.stack([column for column in columns if column is not None], axis=1)  # (3, 3), XYZ under D50
+    colorants = np.stack([column[0] for column in columns], axis=1)  # (3, 3), XYZ under D50
     if np.abs(colorants.sum(axis=1) - PCS_WHITE).max() > SAME_WHITE:
         return None
     for named in PHOTOGRAPHIC.values():
         if np.abs(colorants - adaptation(named.white, D50) @ named.to_xyz()).max() < SAME_COLORANTS:
             return named
     try:
-        return _unnamed(np.asarray(np.linalg.solve(_to_pcs(tags, version=version), colorants), np.float64))
+        return _unnamed(np.asarray(np.linalg.solve(_to_pcs(facts), colorants), np.float64))
     except np.linalg.LinAlgError:
         return None
 
 
-def _to_pcs(tags: dict[str, bytes], *, version: int) -> Float64Array:
-    """Return the matrix by which the profile's maker adapted the colourants to D50, shape (3, 3)."""
-    stated = _numbers(tags, "chad", 9)
-    if stated is not None:
-        return stated.reshape(3, 3)
-    white = _numbers(tags, "wtpt", 3)
-    if version >= 4 or white is None or not (white > 0.1).all():
+def _to_pcs(facts: Any) -> Float64Array:
+    """Return the matrix by which the profile's maker adapted the colorants to D50, shape (3, 3)."""
+    if facts.chromatic_adaptation is not None:
+        return np.array(facts.chromatic_adaptation[0])
+    white = facts.media_white_point
+    if facts.version >= 4 or white is None or min(white[0]) <= 0.1:
         return np.eye(3)
-    return adaptation(chromaticity_of(white), D50)
+    return adaptation(chromaticity_of(white[0]), D50)
 
 
 def _unnamed(matrix: Float64Array) -> Primaries | None:

@@ -1,4 +1,4 @@
-"""What became of a photograph before it was read: which device took it, and which programs changed the file."""
+"""The history of a photograph before it was read: which device took it, and which programs changed the file."""
 
 from __future__ import annotations
 
@@ -12,10 +12,10 @@ from crfnet_core.photograph.metadata.encodings import FOOTAGE, Encoding, encodin
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ijg_quality
 
-#: The editor of a file that has a segment of Adobe, or names a raw file, but no program.
+#: The editor of a file that has a segment of Adobe, or names a raw file, but does not name a program.
 ADOBE = "a program of Adobe"
 
-#: Ends of the names of files that are no raw files, in lower case.
+#: Ends, in lower case, of the names of files that are not raw.
 ORDINARY_FILES = (".jpg", ".jpeg", ".tif", ".tiff", ".png", ".psd", ".heic", ".heif", ".webp", ".avif", ".jxl")
 
 #: Shapes of a picture -> ratio of its longer side to the shorter, and how far from it a picture may be, in ratio.
@@ -25,20 +25,20 @@ SHAPES = {"3:2": (1.5, 0.012), "4:3": (4 / 3, 0.012), "16:9": (16 / 9, 0.015), "
 #: A picture and the size in EXIF have one shape if their ratios differ by less than this: scaled sides are rounded.
 SAME_SHAPE = 0.02
 
-#: Longest side in pixels below which a picture is taken to have been scaled, unless the camera says that it wrote it:
-#: the smallest size of cameras of the last fifteen years has 1600 pixels, the sizes of web pages end at 1280.
+#: Longest side in pixels below which a picture counts as scaled, unless EXIF has the same size and both sides are whole
+#: blocks: the smallest size of cameras of the last fifteen years has 1600 pixels, the sizes of web pages end at 1280.
 SCALED_BELOW = 1600
 
 #: Longest sides in pixels to which messengers and photograph sites scale.
 WEB_SIDES = (1600, 1920, 2048)
 
-#: The longer and the shorter side of what a sensor writes are multiples of these; since 2004 it has this many pixels.
+#: The longer and the shorter side of a camera's picture are multiples of these; since 2004 it has this many pixels.
 NATIVE_MULTIPLES, NATIVE_PIXELS = (16, 8), 5_000_000
 
-#: From this quality on the tables of the IJG library are nearly all ones, as those of many cameras are.
+#: From this quality on the tables of the IJG library are nearly all ones, as in many cameras.
 INDISTINCT_QUALITY = 98
 
-#: Highest JPEG quality of the copies that messengers and web sites send, as far as they are told from others: pages of
+#: Highest JPEG quality of the copies that messengers and web sites send, as far as they can be distinguished: pages of
 #: photographers have 90 and more.
 SENT_QUALITY = 85
 
@@ -52,12 +52,12 @@ _DEVICES = {
 
 @dataclass(frozen=True)
 class FileOrigin:
-    """What metadata says of how a file was made.
+    """How a file was made, by its metadata.
 
     Parameters
     ----------
     device : Device
-        What kind of device took the photograph.
+        The kind of device that took the photograph.
     camera : str
         Maker and model; empty if the file names none.
     editor : str
@@ -67,19 +67,19 @@ class FileOrigin:
     is_resaved : bool, optional
         Whether a program encoded the file; False if just as the camera wrote it, None if unknown.
     jpeg_quality : int, optional
-        The quality at which the IJG library writes the file's quantization tables; None for others' tables.
+        The quality at which the IJG library writes the file's quantization tables; None for other tables.
     picture_shape : str
         Ratio of the sides: "3:2", "4:3", "16:9", "2:1" or "other".
     encoding : Encoding
-        What the file says of its code values.
+        The encoding of code values that the file states.
     words : tuple of str
-        The same in plain words, one sentence part each, for people.
+        The same in plain words, one part of a sentence each.
     renderer : str
-        The program that rendered the picture, which no camera took; empty if none is known.
+        The program that rendered the picture, so that no camera took it; empty if none is known.
     is_developed : bool
         Whether a program developed the photograph from a raw file: XMP names the file, or the editor is such a program.
     is_told : bool
-        Whether a person has told what took the photograph: see `as_told`.
+        Whether a person has stated the device: see `with_stated_device`.
     """
 
     device: Device
@@ -97,13 +97,13 @@ class FileOrigin:
 
     @property
     def is_sent_copy(self) -> bool:
-        """Whether messengers and web sites send such files: no camera known, scaled, and strongly compressed."""
+        """Whether messengers and web sites send such files: without a camera, scaled, and strongly compressed."""
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
         return is_compressed and self.is_scaled is True and not self.camera and not self.is_told
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
-        """Return what `dataclasses.asdict` made of an origin, also after JSON; other entries are left out."""
+        """Return the origin that `dataclasses.asdict` made an entry of, also after JSON; other entries are left out."""
         quality = entry["jpeg_quality"]
         return cls(
             device=Device(entry["device"]),
@@ -122,12 +122,12 @@ class FileOrigin:
 
 
 def _known(entry: object) -> bool | None:
-    """Return whether something holds; None if that is not known."""
+    """Return an entry as True or False; None if unknown."""
     return None if entry is None else bool(entry)
 
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
-    """Return what the metadata says of how the file was made; see the fields of `FileOrigin`."""
+    """Return how a file was made, by its metadata."""
     device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
     is_adobes = metadata.has_adobe or bool(metadata.raw_file)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
@@ -150,6 +150,7 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
             f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
             *_saved_words(editor, is_developed, is_scaled, is_resaved, quality),
             *_scaled_words(metadata, is_scaled),
+            *(["turned upright, as the file asks"] if metadata.is_turned else []),
             *encoding_words(metadata, encoding),
         ),
         renderer=metadata.renderer,
@@ -157,15 +158,15 @@ def file_origin(metadata: FileMetadata) -> FileOrigin:
     )
 
 
-def as_told(origin: FileOrigin, device: Device) -> FileOrigin:
-    """Return the origin of a file of which a person knows what took it, whatever camera the file names.
+def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
+    """Return `origin` with the device that the user states; it overrides the file's.
 
-    UNKNOWN stands for a camera of another kind, or of one that nobody knows. A rendering stays one.
+    UNKNOWN stands for a camera of another or an unknown kind. A rendering stays one.
 
     Raises
     ------
     ValueError
-        If it is no device.
+        If it is not a device.
     """
     if origin.renderer:
         return origin
@@ -184,17 +185,20 @@ def picture_shape(width: int, height: int) -> str:
 
 
 def _is_developed(metadata: FileMetadata, editor: str) -> bool:
-    """Return whether a program developed the photograph from a raw file; Adobe's also name files that are not raw."""
-    if metadata.raw_file:
+    """Return whether a program developed the photograph from a raw file; Adobe's also name files that are not raw.
+
+    DNG Converter names the raw file, too, but keeps the camera's own picture of it.
+    """
+    if metadata.raw_file and "dng converter" not in metadata.software.casefold():
         return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
     return is_developer(editor)
 
 
 def _encoded_by_program(metadata: FileMetadata, device: Device, quality: int | None) -> bool | None:
-    """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not tell.
+    """Return whether a program encoded a JPEG file, by its segments and tables alone; None if they do not show it.
 
     Cameras begin the file with EXIF, as its standard asks, and most have tables of their own. Libraries begin it with
-    JFIF, and most use the IJG library's tables. Phones may do either.
+    JFIF, and most use the IJG library's tables. Phones may do both.
     """
     if metadata.file_format != "JPEG" or not metadata.luma_table:
         return None
@@ -218,7 +222,8 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     if exif_size and exif_size != size:
         ratios = size[0] / exif_size[0], size[1] / exif_size[1]
         return True if size[1] > exif_size[1] or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
-    if exif_size and metadata.has_camera and not is_changed:
+    is_whole = size[1] >= SCALED_BELOW or _is_in_blocks(*size)
+    if exif_size and metadata.has_camera and not is_changed and is_whole:  # programs that scale may rewrite the size
         return False
     if metadata.file_format in FOOTAGE:
         return None
@@ -229,12 +234,17 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
 
 def _is_native(shorter: int, longer: int) -> bool:
     """Return whether sensors have such a size: whole blocks, one of their shapes, enough pixels."""
-    blocks = longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
-    return blocks and shorter * longer >= NATIVE_PIXELS and picture_shape(longer, shorter) != "other"
+    is_large = shorter * longer >= NATIVE_PIXELS
+    return is_large and _is_in_blocks(shorter, longer) and picture_shape(longer, shorter) != "other"
+
+
+def _is_in_blocks(shorter: int, longer: int) -> bool:
+    """Return whether the sides are multiples of a camera's blocks."""
+    return longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
 
 
 def _taken_words(camera: str, device: Device) -> str:
-    """Return which camera took the photograph."""
+    """Return the words for the camera that took the photograph."""
     if not camera:
         return "the file names no camera"
     return f"taken by {camera}, {_DEVICES[device]}" if device else f"taken by {camera}"
@@ -243,7 +253,7 @@ def _taken_words(camera: str, device: Device) -> str:
 def _saved_words(
     editor: str, is_developed: bool, is_scaled: bool | None, is_resaved: bool | None, quality: int | None
 ) -> list[str]:
-    """Return who saved the file, if that is known."""
+    """Return the words for the program that saved the file, if it is known."""
     if is_developed:
         return [f"developed from a raw file by {editor}"]
     if editor:

@@ -1,4 +1,4 @@
-"""The levels of a picture: where its darkest, its middle and its brightest samples lie."""
+"""The levels of a picture: the brightness of its darkest, its middle and its brightest samples."""
 
 from __future__ import annotations
 
@@ -20,11 +20,14 @@ LUMA = np.array([0.299, 0.587, 0.114], np.float32)
 #: Bins of the histograms: the codes of 10 bits.
 BINS = 1024
 
-#: Rows and columns are skipped until no more samples than these are left; nothing is averaged.
+#: Rows and columns are skipped until at most so many samples remain; nothing is averaged.
 MOST_SAMPLES = 3_000_000
 
 #: Rows of samples counted at a time.
 ROWS = 64
+
+#: Range of luma below which a picture is flat, such as black frames and gray cards without noise: four codes of 255.
+FLAT_RANGE = 4 / 255
 
 
 @dataclass(frozen=True, eq=False)
@@ -43,8 +46,8 @@ class Levels:
     luma: Float64Array
 
     @classmethod
-    def of(cls, pixels: Pixels) -> Levels:
-        """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, those of every n-th pixel."""
+    def from_pixels(cls, pixels: Pixels) -> Levels:
+        """Return the levels of a picture, float32 (H, W, 3) in [0, 1]; of a large one, only every n-th pixel counts."""
         step = max(1, math.ceil(math.sqrt(math.prod(pixels.shape) / MOST_SAMPLES)))
         counts, luma, rows = np.zeros(BINS), np.zeros(BINS), ROWS * step
         for top in range(0, pixels.shape[0], rows):
@@ -73,6 +76,11 @@ class Levels:
         """Return the fraction of the samples from one brightness to another, both included."""
         first, last = round(low * (BINS - 1)), round(high * (BINS - 1))
         return float(self.histogram[max(first, 0) : last + 1].sum() / self.histogram.sum())
+
+    @property
+    def is_flat(self) -> bool:
+        """Whether luma has no range to speak of, so that no response shows."""
+        return self.luma_quantile(1 - BLACK) - self.luma_quantile(BLACK) < FLAT_RANGE
 
     @property
     def black(self) -> float:

@@ -7,7 +7,7 @@ from crfnet_core.photograph.recognition.levels import Levels
 #: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness.
 LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255
 
-#: How far around them samples count as theirs: three codes.
+#: How far around them samples count as black or white: three codes.
 MARGIN = 3 / 255
 
 #: The largest fraction of samples outside, and the least fraction at either end.
@@ -15,6 +15,9 @@ MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 
 #: The fraction of pixels with a luma beyond black and white, and between which codes these two lie after compression.
 BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
+
+#: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
+MOST_ABOVE = 0.01
 
 _BAND = 2 * MARGIN + 1 / 255
 
@@ -32,7 +35,8 @@ def is_limited_range(levels: Levels) -> bool:
 def _has_ends(levels: Levels) -> bool:
     """Return whether black and white lie near 16 and 235. JPEG compression blurs piles, and least of all in luma."""
     black, white = levels.luma_quantile(BEYOND), levels.luma_quantile(1 - BEYOND)
-    return BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
+    has_ends = BLACKS[0] <= black <= BLACKS[1] and WHITES[0] <= white <= WHITES[1]
+    return has_ends and levels.fraction(LIMITED_WHITE + _BAND, 1) <= MOST_ABOVE
 
 
 def _has_piles(levels: Levels) -> bool:

@@ -19,7 +19,7 @@ LogCurve = Callable[[ArrayLike], Float64Array]
 #: Reflectances between which a curve is inverted: above the brightest light that any of them holds.
 LEAST_REFLECTANCE, MOST_REFLECTANCE = 1e-5, 1000.0
 
-#: Curve -> colour space of OpenColorIO's ACES studio config, with the maker's usual primaries; S-Log3 and Canon's have
+#: Curve -> color space of OpenColorIO's ACES studio config, with the maker's usual primaries; S-Log3 and Canon's have
 #: more than one.
 COLOR_SPACES = {
     "ARRI LogC3": "ARRI LogC3 (EI800)",

@@ -11,11 +11,11 @@ from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, MOS
 from crfnet_core.types import Float64Array
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below
-#: this brightness, so 2 of 94 may (rule of succession), and all log footage that is stored as its maker says.
+#: this brightness, so 2 of 94 may (rule of succession), and all log footage that is stored as its maker specifies.
 LIFTED_BLACK, BLACK_FACTOR = 0.078, 94 / 2
 
-#: Highest black, and smallest distance from it to white, that log footage has: all of 180 simulated frames have a lower
-#: and a larger one. What lies higher is haze or sky, what spans less a wall or a gray card.
+#: Highest black, and smallest distance from it to white, of log footage: all of 180 simulated frames have a lower and a
+#: larger one. Haze and sky lie higher; a wall or a gray card spans less.
 HIGHEST_BLACK, LEAST_SPAN = 0.28, 0.4
 
 #: A sensor is full before its log curve ends: 89 % of simulated log footage has its white below this brightness, and
@@ -27,7 +27,7 @@ LOW_WHITE, LOW_WHITE_FACTOR, HIGH_WHITE_FACTOR = 0.97, 0.89 / 0.2, 0.11 / 0.8
 MIDDLE_REFLECTANCE, MIDDLE_STOPS = 0.17, 1.1
 DARKEST_REFLECTANCE, DARKEST_STOPS = 0.003, 1.4
 
-#: How far below a curve's black noise may take the darkest samples, and what lies lower yet counts this little.
+#: How far below a curve's black noise may take the darkest samples, and the deviation of samples lower yet.
 NOISE, NOISE_DEVIATION = 0.004, 0.003
 
 #: Curves that are named.
@@ -46,7 +46,7 @@ class NearCurve:
     name : str
         As in `log_curves`.
     probability : float
-        That it is the right one, by the levels alone.
+        The probability of this curve, by the levels alone.
     expected_error : float
         How far its light is expected to be off, in stops, over all curves that it may be: see `light_error`.
     """
@@ -80,17 +80,17 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
     levels : Levels
         Of log footage.
     makes : tuple of str
-        The makers that the files name: where some are known, only their curves are asked.
+        The makers that the files name: where some are known, only their curves are tried.
     """
     curves = log_curves()
-    asked = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves
-    scores = np.array([_log_likelihood(curve, levels) for curve in asked.values()])
+    tried = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves
+    scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])
     weights = np.exp(scores - scores.max())
     probabilities = weights / weights.sum()
     near = []
     for position in np.argsort(-scores)[:MOST_NAMED]:
-        name = [*asked][position]
-        errors = [light_error(asked[name], true, levels) for true in asked.values()]
+        name = [*tried][position]
+        errors = [light_error(tried[name], true, levels) for true in tried.values()]
         near.append(NearCurve(name, float(probabilities[position]), float(probabilities @ errors)))
     return tuple(near)
 
@@ -118,5 +118,5 @@ def _reflectance(curve: LogCurve, codes: Float64Array) -> Float64Array:
 
 
 def _is_of(name: str, make: str) -> bool:
-    """Return whether a curve, such as "Sony S-Log3", is one of a maker, such as "SONY"."""
+    """Return whether a curve, such as "Sony S-Log3", belongs to a maker, such as "SONY"."""
     return bool(make) and name.split()[0].casefold() in make.casefold()

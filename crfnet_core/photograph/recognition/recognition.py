@@ -1,4 +1,7 @@
-"""What a picture is if it is no photograph as a camera renders it: its kind, in words, with what to do."""
+"""Detect inputs that are not camera photographs, and advise what to use instead.
+
+They are log footage, limited range, renderings, recompressed copies and flat frames.
+"""
 
 from __future__ import annotations
 
@@ -7,6 +10,7 @@ from dataclasses import dataclass
 from enum import StrEnum
 from typing import Any
 
+from crfnet_core.errors import Notice
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition.levels import Levels
 from crfnet_core.photograph.recognition.limited_range import is_limited_range
@@ -18,34 +22,35 @@ RECOGNIZED = 0.5
 
 
 class Kind(StrEnum):
-    """What is recognized."""
+    """A kind of input that is not a camera photograph."""
 
     LOG_FOOTAGE = "log footage"
     LIMITED_RANGE = "limited range"
     RENDERING = "rendering"
     SENT_COPY = "sent copy"
+    FLAT = "flat frame"
 
 
 @dataclass(frozen=True)
 class Recognition:
-    """What a picture is, by its pixels or its metadata.
+    """An input that is not a camera photograph, by its pixels or its metadata.
 
     Parameters
     ----------
     kind : Kind
-        What it is.
+        The detected kind.
     reason : str
-        What was measured, in words.
+        The measurement, in words.
     advice : str
-        What to do.
+        A better input, in words.
     curves : tuple of str
-        Of log footage up to four published curves whose levels fit, the likeliest first.
+        For log footage up to four published curves whose levels fit, the likeliest first.
     probabilities : tuple of float
-        Of each, by the levels alone.
+        The probability of each, by the levels alone.
     errors : tuple of float
-        How far the light of each is expected to be off, in stops.
+        The expected error of the light of each, in stops.
     color_space : str
-        The name in ACES configs of the one whose light is expected to be off least; empty if it has none.
+        The color space in ACES configs of the curve with the least expected error; empty if it has none.
     """
 
     kind: Kind
@@ -58,7 +63,7 @@ class Recognition:
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
-        """Return what `dataclasses.asdict` made of a recognition, also after JSON; None for an ordinary picture."""
+        """Return the recognition that `dataclasses.asdict` made an entry of, also after JSON; None for None."""
         if entry is None:
             return None
         several = {name: tuple(entry.get(name, ())) for name in ("curves", "probabilities", "errors")}
@@ -72,7 +77,7 @@ def recognize(
     makes: tuple[str, ...] = (),
     origins: Sequence[FileOrigin] = (),
 ) -> Recognition | None:
-    """Return what the pictures of an estimate are, if they are no photographs as a camera renders them; else None.
+    """Return the detected kind, or None for ordinary camera photographs.
 
     Parameters
     ----------
@@ -83,58 +88,51 @@ def recognize(
     makes : tuple of str
         The makers that the files name.
     origins : sequence of FileOrigin
-        What the metadata says of each picture.
+        The origin of each picture.
     """
+    if levels.is_flat:
+        return _recognition(Kind.FLAT, Notice("flat_frame"), Notice("flat_frame_advice"))
     if is_limited_range(levels):
-        return _LIMITED_RANGE
+        return _recognition(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
 
 
+def _recognition(kind: Kind, reason: Notice, advice: Notice) -> Recognition:
+    """Return a recognition without curves."""
+    return Recognition(kind, str(reason), str(advice))
+
+
 def _by_origin(origin: FileOrigin) -> Recognition | None:
-    """Return what the metadata says that a picture is, if it is a rendering or a sent copy."""
+    """Return the recognition of a rendering or a sent copy by its metadata."""
     if origin.renderer:
-        return Recognition(
-            kind=Kind.RENDERING,
-            reason=f"a rendering by {origin.renderer}, as its metadata says: no camera made it",
-            advice="render a linear EXR, or undo the view transform with the renderer's OpenColorIO config",
-        )
+        reason = Notice("rendering", {"renderer": origin.renderer})
+        return _recognition(Kind.RENDERING, reason, Notice("rendering_advice"))
     if origin.is_sent_copy:
-        return Recognition(
-            kind=Kind.SENT_COPY,
-            reason="a copy as messengers and web sites send it: no camera named, scaled, and compressed as JPEG of"
-            f" quality {origin.jpeg_quality}; both change what the estimate reads",
-            advice="ask for the file that the camera wrote",
-        )
+        reason = Notice("sent_copy", {"quality": origin.jpeg_quality})
+        return _recognition(Kind.SENT_COPY, reason, Notice("sent_copy_advice"))
     return None
 
 
 def _log_footage(levels: Levels, makes: tuple[str, ...]) -> Recognition:
-    """Return that a picture is log footage, with the curves that fit."""
+    """Return the recognition of log footage, with the curves that fit."""
     near = nearest_curves(levels, makes)
     least = min(near, key=lambda each: each.expected_error)
     spaces = " or ".join(f'"{COLOR_SPACES[each.name]}"' for each in near if each.name in COLOR_SPACES)
-    fit, guess = f"its maker's curve is {least.name}", ""
+    likely = ", ".join(f"{each.name} ({100 * each.probability:.0f} %)" for each in near)
+    code = round(255 * levels.black)
+    reason = Notice("log_footage_of_maker", {"code": code, "curve": least.name})
+    advice = [Notice("log_footage_spaces", {"spaces": spaces}) if spaces else Notice("log_footage_advice")]
     if len(near) > 1:
-        likely = ", ".join(f"{each.name} ({100 * each.probability:.0f} %)" for each in near)
-        fit = f"by its levels the curve may be {likely}"
-        guess = f"; if nothing says, {least.name} is safest: its light may be off by {least.expected_error:.1f} stop"
+        reason = Notice("log_footage", {"code": code, "curves": likely})
+        advice += [Notice("log_footage_safest", {"curve": least.name, "stops": f"{least.expected_error:.1f}"})]
     return Recognition(
         kind=Kind.LOG_FOOTAGE,
-        reason=f"log footage: black lies at code {255 * levels.black:.0f} of 255; {fit}",
-        advice="give it the colour space of the log curve that the camera was set to, which its menu or the clip's"
-        " metadata say" + (f", in ACES configs {spaces}" if spaces else "") + guess,
+        reason=str(reason),
+        advice="; ".join(map(str, advice)),
         curves=tuple(each.name for each in near),
         probabilities=tuple(each.probability for each in near),
         errors=tuple(each.expected_error for each in near),
         color_space=COLOR_SPACES.get(least.name, ""),
     )
-
-
-_LIMITED_RANGE = Recognition(
-    kind=Kind.LIMITED_RANGE,
-    reason="limited range stored as full: the codes end at 16 and 235 of 255, which are black and white of video",
-    advice="expand the range first, when frames are extracted with ffmpeg -i MOVIE -vf"
-    " scale=in_range=limited:out_range=full FRAME.%04d.png",
-)

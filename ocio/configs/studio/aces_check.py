@@ -9,8 +9,8 @@ from pathlib import Path
 import numpy as np
 import PyOpenColorIO as OCIO
 
+from crfnet_core.colorimetry import REC709, conversion_matrix
 from crfnet_core.errors import one_line
-from crfnet_core.photograph.metadata.color_tags import REC709, conversion_matrix
 
 from ...errors import ConfigError
 from ..files import plate_exposure

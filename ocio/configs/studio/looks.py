@@ -9,10 +9,10 @@ from typing import Any
 import OpenImageIO as oiio
 import PyOpenColorIO as OCIO
 
+from crfnet_core.colorimetry import PHOTOGRAPHIC, REC709, Primaries
 from crfnet_core.errors import CRFNetError
 from crfnet_core.files import read_json
 from crfnet_core.photograph.image_io import oiio_message
-from crfnet_core.photograph.metadata.color_tags import PHOTOGRAPHIC, REC709, Primaries
 
 from ...defaults import ESTIMATES
 from ...errors import ConfigError, LutError

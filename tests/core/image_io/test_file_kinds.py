@@ -13,6 +13,14 @@ from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 from tests.helpers.images import write_image
 
 
+def code_of(path, read=read_photo):
+    """Return the code of the error by which a file is refused."""
+    with pytest.raises(PhotoError) as caught:
+        read(path)
+    assert str(caught.value).startswith(f"{path}: ")
+    return caught.value.code
+
+
 def widened(codes, bits):
     """Return codes of `bits` bits as OpenImageIO takes them: on the scale of 16 bits."""
     return np.round(codes * (65535 / (2**bits - 1))).astype(np.uint16)
@@ -57,8 +65,7 @@ def test_tga_with_alpha_keeps_its_codes(tmp_path):
 @pytest.mark.parametrize("content", [b"hello" * 20, bytes(64), b"\0\0\x02" + bytes(20)])
 def test_a_tga_suffix_alone_makes_no_tga(tmp_path, content):
     (tmp_path / "a.tga").write_bytes(content)
-    with pytest.raises(PhotoError, match=r"is no JPEG, HEIC, PNG, .* or TGA file"):
-        read_photo(tmp_path / "a.tga")
+    assert code_of(tmp_path / "a.tga") == "not_an_image_file"
 
 
 @pytest.mark.parametrize("name", ["a.jxl", "a.jp2", "a.bmp", "a.tga"])
@@ -67,31 +74,25 @@ def test_cut_files_are_refused(tmp_path, name, fraction):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
     whole = write_image(tmp_path / name, noise, compression="jpegxl:100").read_bytes()
     (tmp_path / name).write_bytes(whole[: int(len(whole) * fraction)])
-    with pytest.raises(PhotoError, match="damaged or cut short") as caught:
-        read_photo(tmp_path / name)
-    assert "\n" not in str(caught.value)
+    assert code_of(tmp_path / name) == "damaged"
 
 
 def test_gif_is_refused_for_its_palette(tmp_path):
     path = write_image(tmp_path / "a.gif", colored_ramp(8))
-    with pytest.raises(PhotoError, match=r"GIF holds at most 256 colours.*give the photograph that it was made from"):
-        read_photo(path)
+    assert code_of(path) == "palette"
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp", "a.tga"])
 @pytest.mark.parametrize("colors", [16, 256])
 def test_other_palettes_are_refused_alike(tmp_path, name, colors):
     Image.fromarray(colored_ramp(8).astype(np.uint8)).quantize(colors).save(tmp_path / name)
-    for read in (read_photo, read_metadata):
-        with pytest.raises(PhotoError, match=r"a [A-Z]+ file with a palette holds at most 256 colours.*give the photo"):
-            read(tmp_path / name)
+    assert code_of(tmp_path / name) == code_of(tmp_path / name, read_metadata) == "palette"
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif"])
 def test_black_and_white_is_refused(tmp_path, name):
     Image.fromarray(colored_ramp(8)[..., 0] > 127).save(tmp_path / name)
-    with pytest.raises(PhotoError, match="holds 1-bit uint8 samples; needs 8 to 16 bits"):
-        read_photo(tmp_path / name)
+    assert code_of(tmp_path / name) == "sample_type"
 
 
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp", "a.tga"])
@@ -125,10 +126,9 @@ def canon_cr3(path):
 
 
 @pytest.mark.parametrize("make", [canon_raw, digital_negative, preview_before_raw, fujifilm, canon_cr3])
-def test_camera_raw_is_told_by_its_content_and_says_what_to_give(tmp_path, make):
+def test_camera_raw_is_known_by_its_content(tmp_path, make):
     make(tmp_path / "a.tif")
-    with pytest.raises(PhotoError, match="camera raw holds no encoded picture; give the JPEG, HEIC or TIFF developed"):
-        read_photo(tmp_path / "a.tif")
+    assert code_of(tmp_path / "a.tif") == "camera_raw"
 
 
 @pytest.mark.parametrize("extra", [((254, 4, 0), (330, 4, 8)), ((254, 4, 2),), ()])
@@ -140,8 +140,7 @@ def test_other_tiff_files_are_no_raw(tmp_path, extra):
 @pytest.mark.parametrize("start", [0, 10**9])
 def test_a_tiff_without_a_directory_is_damaged(tmp_path, start):
     (tmp_path / "a.tif").write_bytes(b"II*\0" + struct.pack("<I", start) + bytes(8))
-    with pytest.raises(PhotoError, match="TIFF file is damaged"):
-        read_photo(tmp_path / "a.tif")
+    assert code_of(tmp_path / "a.tif") == "damaged"
 
 
 @pytest.mark.parametrize(

@@ -6,9 +6,9 @@ import sys
 import numpy as np
 import pytest
 
+from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_photo
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3
 from tests.helpers.colored_ramp import colored_ramp
 
 #: The largest difference in codes: lossless RGB is exact; a matrix rounds twice, and limited range has fewer codes.

@@ -7,19 +7,10 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
+from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PHOTOGRAPHIC, PROPHOTO, REC709, REC2020, Primaries
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
-from crfnet_core.photograph.metadata import cicp
-from crfnet_core.photograph.metadata.color_tags import (
-    ADOBE_RGB,
-    DISPLAY_P3,
-    PHOTOGRAPHIC,
-    PROPHOTO,
-    REC709,
-    REC2020,
-    ColorTags,
-    Primaries,
-)
+from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
 from tests.helpers.color_profiles import matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
 
@@ -41,7 +32,7 @@ def chrm(primaries):
     return struct.pack(">8I", *white_last[6:], *white_last[:6])
 
 
-@pytest.mark.parametrize("primaries", [*PHOTOGRAPHIC.values(), cicp.PRIMARIES[11]])
+@pytest.mark.parametrize("primaries", [*PHOTOGRAPHIC.values(), PRIMARIES[11]])
 def test_named_chromaticities_are_known(tmp_path, primaries):
     assert tags(tmp_path / "a.png", cHRM=chrm(primaries)) == ColorTags(primaries, "", "cHRM chunk")
 

@@ -2,7 +2,7 @@
 
 import pytest
 
-from crfnet_core.photograph.metadata import Device, FileMetadata, as_told, file_origin
+from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
 from crfnet_core.posterior import Family
 from crfnet_core.posterior.factors import FACTORS, LEAST_FACTOR, family_factors
 
@@ -86,11 +86,11 @@ def test_a_stated_device_is_neutral_about_log_and_linear_pictures(device):
 
 def test_a_stated_device_overrules_the_file():
     assert largest(**OWN_CAMERA) == "camera"
-    factors = family_factors(as_told(origin(**OWN_CAMERA), Device.PHONE))
+    factors = family_factors(with_stated_device(origin(**OWN_CAMERA), Device.PHONE))
     assert factors["phone"] > 10 * factors["camera"]
 
 
 def test_a_scan_is_the_same_whoever_states_the_scanner():
     assert FACTORS["stated scanner"] == FACTORS[Device.SCANNER]
-    factors = family_factors(as_told(origin(), Device.SCANNER))
+    factors = family_factors(with_stated_device(origin(), Device.SCANNER))
     assert max(factors, key=factors.__getitem__) == "film"

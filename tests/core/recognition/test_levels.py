@@ -13,7 +13,7 @@ def flat(*shares, size=1000):
 
 
 def test_black_middle_and_white_are_quantiles():
-    levels = Levels.of(flat((0.2, 0.4), (0.5, 0.59), (0.8, 0.01)))
+    levels = Levels.from_pixels(flat((0.2, 0.4), (0.5, 0.59), (0.8, 0.01)))
     assert (levels.black, levels.middle, levels.white) == pytest.approx((0.2, 0.5, 0.8), abs=1 / 1023)
 
 
@@ -21,19 +21,20 @@ def test_dead_pixels_and_reflections_do_not_count():
     pixels = flat((0.3, 0.5), (0.6, 0.5))
     pixels[:2, :4] = 0  # 8 of a million
     pixels[-1, :900] = 1
-    levels = Levels.of(pixels)
+    levels = Levels.from_pixels(pixels)
     assert (levels.black, levels.white) == pytest.approx((0.3, 0.6), abs=1 / 1023)
 
 
 def test_the_picture_is_not_changed_and_a_large_one_is_thinned():
     pixels = flat((0.25, 0.5), (0.75, 0.5), size=2000)
     before = pixels.copy()
-    assert Levels.of(pixels).histogram.sum() <= 3_000_000
+    assert Levels.from_pixels(pixels).histogram.sum() <= 3_000_000
     np.testing.assert_array_equal(pixels, before)
 
 
 def test_several_pictures_count_the_same_whatever_their_size():
-    joint = Levels.joint([Levels.of(flat((0.25, 1.0), size=100)), Levels.of(flat((0.75, 1.0), size=500))])
+    pictures = flat((0.25, 1.0), size=100), flat((0.75, 1.0), size=500)
+    joint = Levels.joint([Levels.from_pixels(picture) for picture in pictures])
     assert joint.fraction(0, 0.5) == pytest.approx(0.5)
     assert (joint.black, joint.white) == pytest.approx((0.25, 0.75), abs=1 / 1023)
 
@@ -41,4 +42,4 @@ def test_several_pictures_count_the_same_whatever_their_size():
 def test_all_8_and_10_bit_codes_have_bins_of_their_own():
     for largest in (255, 1023):
         pixels = np.repeat((np.arange(largest + 1) / largest).astype(np.float32)[None, :, None], 3, axis=2)
-        assert (Levels.of(pixels).histogram > 0).sum() == largest + 1
+        assert (Levels.from_pixels(pixels).histogram > 0).sum() == largest + 1

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 from crfnet.movies.tags import LOG_TAGS
-from crfnet_core.photograph.metadata import cicp
+from crfnet_core.photograph.metadata.color_tags import TRANSFERS
 from crfnet_core.photograph.recognition import COLOR_SPACES, log_curves
 from crfnet_core.photograph.recognition.tagged import TAGGED_SPACES
 
@@ -82,7 +82,7 @@ def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
     names = set(ocio.Config.CreateFromFile("ocio://studio-config-latest").getColorSpaceNames())
     assert set(TAGGED_SPACES.values()) <= names
     curves = {curve for marks in LOG_TAGS.values() for curve in marks.values()}
-    assert set(TAGGED_SPACES) <= {*log_curves(), *cicp.TRANSFERS.values(), *curves}
+    assert set(TAGGED_SPACES) <= {*log_curves(), *TRANSFERS.values(), *curves}
     assert curves <= {*log_curves(), *TAGGED_SPACES}
 
 

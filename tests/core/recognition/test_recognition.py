@@ -6,10 +6,13 @@ import json
 import numpy as np
 import pytest
 
+from crfnet_core.colorimetry import REC709
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
+from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import (
     COLOR_SPACES,
     Kind,
@@ -21,7 +24,7 @@ from crfnet_core.photograph.recognition import (
     log_factor,
     nearest_curves,
     recognize,
-    tag_refusal,
+    refuse_tagged,
 )
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
@@ -33,7 +36,7 @@ from tests.helpers.footage import limited_range_picture, log_picture, ordinary_p
 from tests.helpers.images import write_image
 
 #: Levels that nothing is recognized by.
-BLACK_LEVELS = Levels.of(np.zeros((4, 4, 3), np.float32))
+PLAIN_LEVELS = Levels.from_pixels(ordinary_picture())
 
 #: What the metadata of a messenger's copy says.
 SENT = {
@@ -48,30 +51,30 @@ SENT = {
 
 @pytest.mark.parametrize("name", log_curves())
 def test_the_levels_of_log_footage_speak_for_log(name):
-    assert log_factor(Levels.of(log_picture(name))) == pytest.approx(BLACK_FACTOR * LOW_WHITE_FACTOR)
+    assert log_factor(Levels.from_pixels(log_picture(name))) == pytest.approx(BLACK_FACTOR * LOW_WHITE_FACTOR)
 
 
 def test_the_levels_of_an_ordinary_picture_say_nothing():
-    assert log_factor(Levels.of(ordinary_picture())) == 1
+    assert log_factor(Levels.from_pixels(ordinary_picture())) == 1
 
 
 def test_a_lifted_black_with_a_clipped_white_says_less():
     faded = quantized(0.1 + 0.9 * ordinary_picture().astype(float))
-    assert log_factor(Levels.of(faded)) == pytest.approx(BLACK_FACTOR * HIGH_WHITE_FACTOR)
+    assert log_factor(Levels.from_pixels(faded)) == pytest.approx(BLACK_FACTOR * HIGH_WHITE_FACTOR)
 
 
 @pytest.mark.parametrize(("darkest", "brightest"), [(0.18, 0.18), (0.18, 0.4), (0.31, 0.9), (0.5, 0.95)])
 def test_walls_gray_cards_and_skies_are_no_log_footage(darkest, brightest):
     """Their black is lifted, but their range is short, or their black higher than any log curve puts it."""
     picture = quantized(darkest + (brightest - darkest) * ordinary_picture().astype(float))
-    assert Levels.of(picture).black > LIFTED_BLACK
-    assert log_factor(Levels.of(picture)) == 1
+    assert Levels.from_pixels(picture).black > LIFTED_BLACK
+    assert log_factor(Levels.from_pixels(picture)) == 1
 
 
 @pytest.mark.parametrize("name", log_curves())
 def test_a_maker_in_the_file_names_its_own_curves(name):
     maker = name.split()[0]
-    named = nearest_curves(Levels.of(log_picture(name)), (f"{maker.upper()} CORPORATION",))
+    named = nearest_curves(Levels.from_pixels(log_picture(name)), (f"{maker.upper()} CORPORATION",))
     assert name in [each.name for each in named]
     assert all(each.name.startswith(maker) for each in named)
     assert sum(each.probability for each in named) == pytest.approx(1)
@@ -79,24 +82,24 @@ def test_a_maker_in_the_file_names_its_own_curves(name):
 
 def test_the_nearest_curve_has_black_and_gray_where_the_picture_has():
     for name in ("Apple Log", "ARRI LogC4", "Sony S-Log2"):
-        levels = Levels.of(log_picture(name))
+        levels = Levels.from_pixels(log_picture(name))
         best = log_curves()[nearest_curves(levels)[0].name]
         assert len(nearest_curves(levels)) == 4
         assert abs(float(best(0.0)) - float(log_curves()[name](0.0))) < 0.035
 
 
 def test_log_footage_is_recognized_with_its_remedy():
-    found = recognize(Levels.of(log_picture("Panasonic V-Log")), log_probability=0.9, makes=("Panasonic",))
+    found = recognize(Levels.from_pixels(log_picture("Panasonic V-Log")), log_probability=0.9, makes=("Panasonic",))
     assert (found.kind, found.curves, found.color_space) == (Kind.LOG_FOOTAGE, ("Panasonic V-Log",), "V-Log V-Gamut")
     assert found.reason.startswith("log footage: black lies at code ")
     assert found.reason.endswith("; its maker's curve is Panasonic V-Log")
     assert found.advice.endswith(', in ACES configs "V-Log V-Gamut"')
     assert (found.probabilities, found.errors) == ((1.0,), (0.0,))
-    assert recognize(Levels.of(log_picture("Panasonic V-Log")), log_probability=0.4) is None
+    assert recognize(Levels.from_pixels(log_picture("Panasonic V-Log")), log_probability=0.4) is None
 
 
 def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_error():
-    found = recognize(Levels.of(log_picture("ARRI LogC3")), log_probability=0.9)
+    found = recognize(Levels.from_pixels(log_picture("ARRI LogC3")), log_probability=0.9)
     safest, error = min(zip(found.curves, found.errors, strict=True), key=lambda pair: pair[1])
     assert f"the curve may be {found.curves[0]} ({100 * found.probabilities[0]:.0f} %), " in found.reason
     assert found.advice.endswith(f"; if nothing says, {safest} is safest: its light may be off by {error:.1f} stop")
@@ -107,7 +110,7 @@ def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_error(
 
 
 def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
-    levels, curves = Levels.of(log_picture("Canon Log 2")), log_curves()
+    levels, curves = Levels.from_pixels(log_picture("Canon Log 2")), log_curves()
     names = [name for name in curves if name.startswith("Canon")]
     near = {each.name: each for each in nearest_curves(levels, ("Canon",))}
     assert set(near) == set(names)
@@ -117,7 +120,7 @@ def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
 
 
 def test_an_error_of_light_is_that_of_the_shape():
-    levels = Levels.of(log_picture("ARRI LogC3"))
+    levels = Levels.from_pixels(log_picture("ARRI LogC3"))
     curve = log_curves()["ARRI LogC3"]
     assert light_error(curve, curve, levels) == 0
     assert light_error(lambda light: curve(2 * np.asarray(light)), curve, levels) < 0.01
@@ -127,40 +130,40 @@ def test_an_error_of_light_is_that_of_the_shape():
 def test_limited_range_is_recognized_and_the_full_range_is_not(seed):
     full = ordinary_picture(seed=seed)
     limited = quantized((16 + 219 * full.astype(float)) / 255)
-    assert is_limited_range(Levels.of(limited))
-    assert not is_limited_range(Levels.of(full))
-    found = recognize(Levels.of(limited), log_probability=0.0)
+    assert is_limited_range(Levels.from_pixels(limited))
+    assert not is_limited_range(Levels.from_pixels(full))
+    found = recognize(Levels.from_pixels(limited), log_probability=0.0)
     assert found.kind is Kind.LIMITED_RANGE
     assert found.advice.startswith("expand the range first")
 
 
 def test_limited_range_of_10_bits():
     limited = quantized((64 + 876 * ordinary_picture().astype(float)) / 1023, bits=10)
-    assert is_limited_range(Levels.of(limited))
+    assert is_limited_range(Levels.from_pixels(limited))
 
 
 @pytest.mark.parametrize("name", log_curves())
 def test_log_footage_is_no_limited_range(name):
-    assert not is_limited_range(Levels.of(log_picture(name)))
+    assert not is_limited_range(Levels.from_pixels(log_picture(name)))
 
 
 @pytest.mark.parametrize(("low", "high"), [(0, 235), (16, 255), (30, 220)])
 def test_one_end_or_other_ends_are_no_limited_range(low, high):
     picture = quantized((low + (high - low) * ordinary_picture().astype(float)) / 255)
-    assert not is_limited_range(Levels.of(picture))
+    assert not is_limited_range(Levels.from_pixels(picture))
 
 
 @pytest.mark.parametrize(("low", "high", "found"), [(15, 236, True), (25, 236, False), (15, 225, False)])
 def test_without_a_pile_both_ends_have_to_lie_at_those_of_limited_range(low, high, found):
     codes = np.random.default_rng(0).normal(125, 45, 200_000)
     inside = codes[(codes > low) & (codes < high)][:160_000].reshape(400, 400, 1)
-    assert is_limited_range(Levels.of(quantized(np.repeat(inside, 3, axis=2) / 255))) is found
+    assert is_limited_range(Levels.from_pixels(quantized(np.repeat(inside, 3, axis=2) / 255))) is found
 
 
 @pytest.mark.parametrize("quality", [85, 95])
 def test_limited_range_is_recognized_after_compression(tmp_path, quality):
     compressed = write_image(tmp_path / "a.jpg", limited_range_picture(), Compression=f"jpeg:{quality}")
-    assert is_limited_range(Levels.of(read_photo(compressed).pixels))
+    assert is_limited_range(Levels.from_pixels(read_photo(compressed).pixels))
 
 
 def origin_of(**fields):
@@ -169,7 +172,7 @@ def origin_of(**fields):
 
 
 def test_a_rendering_is_recognized_by_its_metadata():
-    found = recognize(BLACK_LEVELS, log_probability=0.0, origins=[origin_of(renderer="Blender")])
+    found = recognize(PLAIN_LEVELS, log_probability=0.0, origins=[origin_of(renderer="Blender")])
     assert found.kind is Kind.RENDERING
     assert "Blender" in found.reason
 
@@ -186,7 +189,7 @@ def test_a_rendering_is_recognized_by_its_metadata():
     ],
 )
 def test_a_messengers_copy_is_recognized_by_its_metadata(fields, found):
-    recognition = recognize(BLACK_LEVELS, log_probability=0.0, origins=[origin_of(**fields)])
+    recognition = recognize(PLAIN_LEVELS, log_probability=0.0, origins=[origin_of(**fields)])
     assert (recognition is not None and recognition.kind is Kind.SENT_COPY) is found
     if found:
         assert "quality 75" in recognition.reason
@@ -194,18 +197,31 @@ def test_a_messengers_copy_is_recognized_by_its_metadata(fields, found):
 
 
 @pytest.mark.parametrize(
-    ("tags", "found"),
+    ("transfer", "code", "space"),
     [
-        (ColorTags(transfer="Sony S-Log3", source="ICC profile"), '"S-Log3 S-Gamut3.Cine"'),
-        (ColorTags(transfer="PQ", source="CICP"), "is encoded as PQ: so says its metadata (CICP)"),
-        (ColorTags(transfer="Cineon log", source="dpx"), "That curve is published"),
-        (ColorTags(transfer="linear", source="CICP"), "is linear already: so says its metadata (CICP)"),
+        ("Sony S-Log3", "tagged_color_space", "S-Log3 S-Gamut3.Cine"),
+        ("PQ", "tagged_color_space", "Rec.2100-PQ - Display"),
+        ("Cineon log", "tagged_encoding", None),
+        ("linear", "tagged_linear", None),
     ],
 )
-def test_a_tag_is_answered_with_the_color_space_to_choose(tags, found):
-    assert found in tag_refusal(tags)
-    assert "--ignore-metadata" in tag_refusal(tags)
+def test_a_tag_is_refused_with_the_color_space_to_choose(transfer, code, space):
+    with pytest.raises(PhotoError) as caught:
+        refuse_tagged(tagged(ColorTags(transfer=transfer, source="CICP")))
+    assert (caught.value.code, caught.value.facts.get("space")) == (code, space)
 
 
-def test_no_tag_is_no_refusal():
-    assert tag_refusal(ColorTags()) == ""
+def test_photographs_without_such_a_tag_are_not_refused():
+    refuse_tagged(tagged(ColorTags(REC709, source="EXIF")))
+    refuse_tagged(tagged(ColorTags()).with_metadata(None))
+
+
+def tagged(color):
+    return Photo.from_array(np.zeros((4, 4), np.uint8), metadata=FileMetadata(color=color))
+
+
+@pytest.mark.parametrize("codes", [(0, 0, 0), (255, 255, 255), (200, 30, 60), (128, 129, 127)])
+def test_a_flat_frame_is_recognized(codes):
+    noise = np.random.default_rng(0).integers(0, 2, (64, 64, 1))
+    levels = Levels.from_pixels(quantized((np.array(codes) + noise) / 256))
+    assert recognize(levels, log_probability=0.9).kind is Kind.FLAT

@@ -9,8 +9,8 @@ import pytest
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709
 from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.photograph.metadata.color_tags import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.color_profiles import matrix_profile, profile, write_tagged
 from tests.helpers.configs import converted, loaded

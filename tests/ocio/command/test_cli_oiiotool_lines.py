@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from crfnet_core.photograph.metadata.color_tags import Primaries
+from crfnet_core.colorimetry import Primaries
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import read_image, write_image
 

@@ -10,15 +10,7 @@ from crfnet.configs.portable import portable_config
 from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError
 from crfnet.luts.files import write_lut
-from crfnet_core.photograph.metadata.color_tags import (
-    ADOBE_RGB,
-    AP0,
-    AP1,
-    DISPLAY_P3,
-    REC709,
-    REC2020,
-    conversion_matrix,
-)
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, conversion_matrix
 from tests.helpers.configs import LUT, REC709_TO_AP1, SPACE, converted, loaded, rule_names
 
 BUILT_IN = ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v2.1.0_aces-v1.3_ocio-v2.3")

@@ -20,7 +20,7 @@ from crfnet.configs.plate_views import (
 from crfnet.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
 from crfnet.errors import ConfigError
 from crfnet.luts.files import write_lut
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, conversion_matrix
+from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
 from tests.helpers.configs import loaded
 from tests.helpers.looks import LUT
 

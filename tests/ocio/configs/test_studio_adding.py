@@ -12,7 +12,7 @@ from crfnet.configs.studio import additions
 from crfnet.configs.studio.aces_check import check_in_ap0
 from crfnet.configs.studio.plates import plates_in_config
 from crfnet.errors import ConfigError
-from crfnet_core.photograph.metadata.color_tags import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
 from tests.helpers.configs import converted, disk_is_full, loaded
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look

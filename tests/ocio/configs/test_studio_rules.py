@@ -13,7 +13,7 @@ from crfnet.errors import ConfigError, LutError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.luts.rgb_lut import RgbLut1D
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, REC709, Primaries
+from crfnet_core.colorimetry import DISPLAY_P3, REC709, Primaries
 from tests.helpers.configs import loaded, rule_names
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, space_of, write_look
 

@@ -1,13 +1,17 @@
 """Read one frame: encoded EXR files, and everything else as a photograph."""
 
+import struct
+
 import numpy as np
 import OpenImageIO as oiio
 import pytest
 
 from crfnet.errors import PlateError
 from crfnet.plates.frame_files import read_color_tags, read_frame
+from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.metadata.color_tags import DISPLAY_P3, ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.images import write_image
 
 
@@ -81,8 +85,38 @@ def test_a_cut_exr_is_refused(tmp_path):
 
 def test_other_files_are_read_as_photographs(tmp_path):
     (tmp_path / "a.png").write_text("no picture")
-    with pytest.raises(PhotoError):
+    with pytest.raises(PhotoError) as caught:
         read_frame(tmp_path / "a.png")
+    assert caught.value.code == "not_an_image_file"
+
+
+def test_a_file_tagged_linear_is_refused(tmp_path):
+    path = tmp_path / "a.png"
+    path.write_bytes(png(1, 1, bytes(4), chunks=png_chunk(b"gAMA", struct.pack(">I", 100_000))))
+    with pytest.raises(PhotoError) as caught:
+        read_frame(path)
+    assert caught.value.code == "tagged_linear"
+    assert read_frame(path, is_encoded=True).largest == 255
+
+
+def test_the_part_with_colors_is_read_and_no_other_channel(tmp_path):
+    depth, color = oiio.ImageSpec(4, 4, 1, "float"), oiio.ImageSpec(4, 4, 4, "half")
+    depth.channelnames, color.channelnames = ("Z",), ("id", "B", "G", "R")
+    output = oiio.ImageOutput.create("a.exr")
+    assert output.open(str(tmp_path / "a.exr"), (depth, color))
+    output.write_image(np.full((4, 4, 1), 9, np.float32))
+    output.open(str(tmp_path / "a.exr"), color, "AppendSubimage")
+    output.write_image(np.broadcast_to(np.float32([7, 0.25, 0.5, 0.75]), (4, 4, 4)).copy())
+    output.close()
+    frame = read_frame(tmp_path / "a.exr", is_encoded=True)
+    assert frame.samples[0, 0].tolist() == [0.75, 0.5, 0.25]
+
+
+@pytest.mark.parametrize("channel", ["Z", "id", "mask.R"])
+def test_a_channel_of_another_name_is_not_gray(tmp_path, channel):
+    path = write_exr(tmp_path / "a.exr", np.ones((4, 4, 1)), (channel,))
+    with pytest.raises(PlateError):
+        read_frame(path, is_encoded=True)
 
 
 def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):

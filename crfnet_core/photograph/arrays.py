@@ -1,4 +1,4 @@
-"""Pixels from arrays: what they must hold, and how they become encoded brightness in [0, 1].
+"""Pixels from arrays: check their type, shape and range, and turn them into encoded brightness in [0, 1].
 
 Neither Pillow nor OpenCV is imported: their images are known by NumPy's array interface, Pillow's also by `mode`.
 """
@@ -14,7 +14,7 @@ from numpy.typing import ArrayLike, NDArray
 from crfnet_core.errors import PhotoError
 from crfnet_core.types import Float32Array
 
-#: The channels of an array, in their order; "A" is alpha. OpenCV's order is BGR, that of nearly all others RGB.
+#: The channels of an array, in their order; "A" is alpha. OpenCV's order is BGR, nearly all others use RGB.
 ColorOrder = Literal["L", "LA", "RGB", "RGBA", "BGR", "BGRA"]
 
 #: Least bits per sample: fewer show no response.
@@ -29,27 +29,23 @@ PILLOW_MODES: dict[str, ColorOrder] = {
     **dict.fromkeys(("I;16", "I;16L", "I;16B", "I;16N"), "L"),
 }
 
-#: What to do about images of other modes; where nothing is said, Pillow's conversion to RGB is harmless.
-_NO_RGB = "which hides the camera's response; give the RGB photograph that it came from"
+#: The refusals of other modes; of any that is not listed, Pillow's conversion to RGB is harmless.
 _OTHER_MODES = {
-    "P": "a palette, from which no response can be estimated; give the photograph that it was made from",
-    "CMYK": _NO_RGB,
-    "LAB": _NO_RGB,
-    "RGBa": "associated alpha; give image.convert('RGBA')",
-    "I": "32 bits; give numpy.asarray(image).astype('uint16') with its bit_depth",
-    "F": "floating point; give numpy.asarray(image), scaled to [0, 1]",
+    **dict.fromkeys(("P", "CMYK", "LAB"), "pillow_mode_of_other_colors"),
+    **dict.fromkeys(("I", "F"), "pillow_mode_of_numbers"),
+    "RGBa": "pillow_mode_associated",
 }
 
 
 class HasArrayInterface(Protocol):
-    """What NumPy makes an array of, such as an image of Pillow."""
+    """An object that NumPy makes an array of, such as an image of Pillow."""
 
     @property
     def __array_interface__(self) -> dict[str, Any]:
         """NumPy's description of the memory."""
 
 
-def pixels_of_array(
+def pixels_from_array(
     array: ArrayLike | HasArrayInterface,
     *,
     color_order: ColorOrder | None,
@@ -62,7 +58,7 @@ def pixels_of_array(
     Raises
     ------
     PhotoError
-        If the array is none of those that `Photo.from_array` takes.
+        If `Photo.from_array` does not take such an array.
     """
     order = _stated_order(array, color_order, name)
     values = _samples(array, name)
@@ -83,14 +79,10 @@ def pixels_of_array(
 def check_range(pixels: NDArray[np.floating], name: str) -> None:
     """Refuse floating-point pixels that are not encoded brightness in [0, 1]."""
     low, high = float(pixels.min()), float(pixels.max())
-    if low >= 0 and high <= 1:
-        return
     if np.isnan(low):
-        raise PhotoError(f"{name}: holds NaN; replace it, or leave these rows and columns out")
-    raise PhotoError(
-        f"{name}: holds values from {low:g} to {high:g}; encoded brightness lies in [0, 1]: divide code values by the"
-        " largest (255 of 8 bits), or clip overshoot; a scene-linear picture holds no camera response"
-    )
+        raise PhotoError("array_holds_nan", path=name)
+    if low < 0 or high > 1:
+        raise PhotoError("array_out_of_range", path=name, low=low, high=high)
 
 
 def has_equal_channels(pixels: NDArray[Any]) -> bool:
@@ -101,80 +93,72 @@ def has_equal_channels(pixels: NDArray[Any]) -> bool:
 
 
 def _stated_order(array: object, color_order: ColorOrder | None, name: str) -> ColorOrder | None:
-    """Return the order that is given, or that of a Pillow image; refuse an image of another mode."""
-    if color_order is not None and color_order not in get_args(ColorOrder):
-        raise PhotoError(f"{name}: color_order is {color_order!r}; give one of {', '.join(get_args(ColorOrder))}")
-    mode = getattr(array, "mode", None)
+    """Return the stated order, or the order of a Pillow image; refuse an image of another mode."""
+    orders = get_args(ColorOrder)
+    if color_order is not None and color_order not in orders:
+        raise PhotoError("array_unknown_order", path=name, order=repr(color_order), orders=", ".join(orders))
+    mode = None if isinstance(array, np.ndarray) else getattr(array, "mode", None)  # np.memmap has a mode, too
     if not isinstance(mode, str):
         return color_order
     order = PILLOW_MODES.get(mode)
     if order is None:
-        advice = _OTHER_MODES.get(mode, "which is not taken; give image.convert('RGB')")
-        raise PhotoError(f"{name}: is a Pillow image of mode {mode!r}, {advice}")
+        raise PhotoError(_OTHER_MODES.get(mode, "pillow_mode_unknown"), path=name, mode=mode)
     if color_order not in (None, order):
-        raise PhotoError(f"{name}: is a Pillow image of mode {mode!r}, so leave color_order={color_order!r} out")
+        raise PhotoError("pillow_order_stated", path=name, mode=mode, order=color_order)
     return order
 
 
 def _samples(array: Any, name: str) -> NDArray[Any]:
     """Return an array of 8- or 16-bit codes or of floating-point numbers; refuse any other."""
     if array is None:
-        raise PhotoError(f"{name}: is None, which OpenCV's imread returns for a file it cannot read; check its name")
+        raise PhotoError("array_is_none", path=name)
     if isinstance(array, str | Path):
-        raise PhotoError(f"{name}: {str(array)!r} is the name of a file; read_photo reads files")
+        raise PhotoError("array_is_file_name", path=name, file=array)
     try:
         values = np.asarray(array)
     except (TypeError, ValueError) as problem:
-        raise PhotoError(f"{name}: NumPy makes no array of this {type(array).__name__} ({problem})") from None
+        raise PhotoError("array_unusable", path=name, kind=type(array).__name__, problem=problem) from None
     if values.dtype.kind == "f" or (values.dtype.kind == "u" and values.dtype.itemsize <= 2):
         return values
-    raise PhotoError(
-        f"{name}: holds {values.dtype}; give uint8, uint16 with its bit_depth, or floating point in [0, 1]"
-        " (array.astype converts)"
-    )
+    raise PhotoError("array_sample_type", path=name, kind=values.dtype)
 
 
 def _checked_order(values: NDArray[Any], order: ColorOrder | None, name: str) -> ColorOrder:
-    """Return the order of the channels, which the shape must have; that of one channel need not be given."""
+    """Return the order of the channels, which must fit the shape; one channel needs no order."""
     shape = values.shape
     if values.ndim not in (2, 3) or not values.size or not 1 <= np.atleast_3d(values).shape[2] <= 4:
-        first = (
-            "; of channels that come first, give array.transpose(1, 2, 0)" if shape[:1] in ((1,), (3,), (4,)) else ""
-        )
-        raise PhotoError(f"{name}: has shape {shape}; needs (H, W), or (H, W, C) with 1 to 4 channels{first}")
+        are_first = values.ndim == 3 and shape[0] in (1, 3, 4)
+        raise PhotoError("array_channels_first" if are_first else "array_shape", path=name, shape=shape)
     channels = 1 if values.ndim == 2 else shape[2]
     if order is None and channels > 1:
-        raise PhotoError(
-            f"{name}: has {channels} channels and no color_order; give color_order='RGB', 'BGR' (OpenCV's order),"
-            " 'RGBA', 'BGRA' or 'LA'"
-        )
+        raise PhotoError("array_without_order", path=name, channels=channels)
     order = order or "L"
     if len(order) != channels:
-        raise PhotoError(f"{name}: has {channels} channels, but color_order={order!r}; give the order of all channels")
+        raise PhotoError("array_other_order", path=name, channels=channels, order=order)
     return order
 
 
 def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int:
-    """Return the bits per sample: those stated, else those of the type, which must be stated of uint16."""
+    """Return the bits per sample: as stated, else those of the type; uint16 needs a statement."""
     bits = 8 * values.dtype.itemsize
     if bit_depth is None and values.dtype.kind == "u" and bits == 16:
-        raise PhotoError(f"{name}: uint16 may hold 10, 12 or 16 bits; give bit_depth=16 if white is 65535")
+        raise PhotoError("array_without_bit_depth", path=name)
     bit_depth = bits if bit_depth is None else bit_depth
     if not LEAST_BITS <= bit_depth <= bits:
-        raise PhotoError(f"{name}: {values.dtype} cannot hold a photograph of bit_depth={bit_depth}; give 8 to {bits}")
+        raise PhotoError("array_bit_depth", path=name, kind=values.dtype, bit_depth=bit_depth, most=bits)
     return bit_depth
 
 
 def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:
     """Return code / largest code, rounded to float32."""
-    largest, found = 2**bits - 1, int(codes.max())
-    if found > largest:
-        raise PhotoError(f"{name}: holds code {found}, but bit_depth={bits} ends at {largest}; give its own bit_depth")
+    largest, highest = 2**bits - 1, int(codes.max())
+    if highest > largest:
+        raise PhotoError("array_above_bit_depth", path=name, code=highest, bit_depth=bits, largest=largest)
     return np.asarray(np.divide(codes, np.float32(largest), dtype=np.float32))
 
 
 def _divided(color: Float32Array, alpha: Float32Array) -> Float32Array:
-    """Return associated colour, shape (H, W, 3), divided by alpha, shape (H, W); 0 where nothing is covered."""
+    """Return associated color, shape (H, W, 3), divided by alpha, shape (H, W); 0 where nothing is covered."""
     coverage = np.where(alpha > 0, alpha, np.float32(np.inf))[..., None]
     divided: Float32Array = np.minimum(color / coverage, 1)
     return divided

@@ -2,39 +2,40 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from copy import copy
+from dataclasses import dataclass, replace
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.metadata.file_metadata import FileMetadata
-from crfnet_core.photograph.photo.arrays import (
+from crfnet_core.photograph.arrays import (
     ColorOrder,
     HasArrayInterface,
     check_range,
     has_equal_channels,
-    pixels_of_array,
+    pixels_from_array,
 )
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.types import Float32Array
 
 CodeArray = NDArray[np.uint8] | NDArray[np.uint16]
 
 
-@dataclass(frozen=True, eq=False)
 class Photo:
     """A photograph in the encoding of its file.
 
     `crfnet_core.read_photo` reads one, and `from_array` takes an array; the constructor only checks. Photographs
-    compare by identity. That of a file holds its codes, which need a quarter of the memory: `photo[::8, ::8]` are
-    `photo.pixels[::8, ::8]`, and no more than these are computed. The first use of `pixels` computes and keeps all.
+    compare by identity. One that was read from a file holds its codes, which need a quarter of the memory:
+    `photo[::8, ::8]` computes `photo.pixels[::8, ::8]` and no more. The first use of `pixels` computes and keeps all.
 
     Parameters
     ----------
-    pixels : ndarray, float32, shape (H, W, 3)
-        Code values divided by the largest code, in [0, 1]; rows and columns as stored, whatever the EXIF orientation.
+    pixels : ndarray, float32, shape (H, W, 3), or CodeValues
+        Code values divided by the largest code, in [0, 1]; upright, as EXIF asks. Or the codes of a file.
     bit_depth : int
         Bits per sample of the file: 8, 10, 12 or 16; of an array of floating-point numbers, those of its type.
     is_gray : bool
@@ -42,7 +43,7 @@ class Photo:
     path : Path
         The file; of an array its name.
     metadata : FileMetadata, optional
-        What the file says beside the pixels; None for photographs that were not read from a file of their own.
+        The metadata of the file; None for photographs that were not read from a file of their own.
 
     Raises
     ------
@@ -50,29 +51,24 @@ class Photo:
         If the pixels are of another type or shape, or not all in [0, 1].
     """
 
-    pixels: Float32Array = field(repr=False)
-    bit_depth: int
-    is_gray: bool
-    path: Path
-    metadata: FileMetadata | None = None
-
-    def __post_init__(self) -> None:
-        object.__setattr__(self, "path", Path(self.path))
-        pixels = np.asarray(self.pixels)
-        if pixels is not self.pixels or pixels.dtype != np.float32 or pixels.shape[2:] != (3,) or not pixels.size:
-            raise PhotoError(
-                f"{self.path}: the pixels are {type(self.pixels).__name__}, {pixels.dtype}, shape {pixels.shape}; a"
-                " Photo holds float32 of shape (H, W, 3): Photo.from_array converts"
-            )
-        check_range(self.pixels, str(self.path))
+    def __init__(
+        self,
+        pixels: Float32Array | CodeValues,
+        bit_depth: int,
+        is_gray: bool,
+        path: str | Path,
+        metadata: FileMetadata | None = None,
+    ) -> None:
+        self.bit_depth, self.is_gray, self.path, self.metadata = bit_depth, is_gray, Path(path), metadata
+        if not isinstance(pixels, CodeValues):
+            _check_pixels(pixels, self.path)
+        self._samples = pixels
 
     @classmethod
     def from_codes(cls, values: CodeValues, path: Path) -> Photo:
         """Return the photograph with the samples of a file."""
-        photo = cls.__new__(cls)
-        facts = {"bit_depth": values.bit_depth, "is_gray": values.is_gray, "path": path, "metadata": values.metadata}
-        vars(photo).update(facts, _values=replace(values, header=None))  # a header cannot go to another process
-        return photo
+        samples = replace(values, header=None)  # a header cannot go to another process
+        return cls(samples, values.bit_depth, values.is_gray, path, values.metadata)
 
     @classmethod
     def from_array(
@@ -87,23 +83,23 @@ class Photo:
     ) -> Photo:
         """Return the photograph in an array of NumPy, OpenCV, or whatever NumPy makes an array of, or a Pillow image.
 
-        The array holds what the camera wrote: neither linearised nor converted to another colour space, and at its
-        full size. It is copied.
+        The array holds the codes that the camera wrote: neither linearized nor converted to another color space, and
+        at its full size. It is copied.
 
         Parameters
         ----------
         array : array_like, shape (H, W) or (H, W, C), C from 1 to 4; or a Pillow image of mode L, LA, RGB, RGBA or I;16
             uint8 from 0 to 255; uint16 from 0 to 2 ** bit_depth - 1; or floating point in [0, 1].
         color_order : "RGB", "BGR", "RGBA", "BGRA", "L" or "LA", optional
-            The channels; must be given of arrays with more than one. OpenCV reads and writes BGR. Alpha is dropped.
+            The channels; needed for arrays with more than one. OpenCV reads and writes BGR. Alpha is dropped.
         bit_depth : int, optional
-            Bits per sample, 8 to 16; must be given of uint16.
+            Bits per sample, 8 to 16; needed for uint16.
         is_associated : bool
-            Whether the colour was multiplied by alpha, so that it must be divided by it.
+            Whether the color was multiplied by alpha, so that it must be divided by it.
         name : str
-            What reports and errors call the photograph.
+            The name of the photograph in reports and errors.
         metadata : FileMetadata, optional
-            What is known of the camera and of programs that changed the photograph; an array has none by itself.
+            The camera and the programs that changed the photograph, if known; an array has no metadata by itself.
 
         Raises
         ------
@@ -111,30 +107,44 @@ class Photo:
             If the array is of another type or shape, its values are out of range, or the order of its channels or the
             bit depth is not known.
         """
-        pixels, bits = pixels_of_array(
+        pixels, bits = pixels_from_array(
             array, color_order=color_order, bit_depth=bit_depth, is_associated=is_associated, name=name
         )
-        return cls(pixels, bits, has_equal_channels(pixels), Path(name), metadata)
+        return cls(pixels, bits, has_equal_channels(pixels), name, metadata)
 
-    if not TYPE_CHECKING:  # mypy knows the field
+    def with_metadata(self, metadata: FileMetadata | None) -> Photo:
+        """Return the same photograph with other metadata; the samples are shared."""
+        other = copy(self)
+        other.metadata = metadata
+        return other
 
-        def __getattr__(self, name: str) -> Float32Array:
-            """Compute the pixels of a file when they are first asked for."""
-            if name != "pixels":
-                raise AttributeError(name, name=name, obj=self)
-            vars(self)["pixels"] = self._values.pixels()
-            return self.pixels
+    @cached_property
+    def pixels(self) -> Float32Array:
+        """The pixels, float32, shape (H, W, 3), in [0, 1]."""
+        return self[()]
 
     def __getitem__(self, index: Any) -> Float32Array:
         """Return some of the pixels: `pixels[index]`, for an index of rows and columns."""
-        values: CodeValues | None = vars(self).get("_values")
-        return self.pixels[index] if values is None else values.pixels(index)
+        return self._samples.pixels(index) if isinstance(self._samples, CodeValues) else self._samples[index]
 
     @property
     def shape(self) -> tuple[int, ...]:
         """The shape of `pixels`, (H, W, 3)."""
-        values: CodeValues | None = vars(self).get("_values")
-        return (self.pixels if values is None else values.codes).shape
+        return (self._samples.codes if isinstance(self._samples, CodeValues) else self._samples).shape
+
+    def __repr__(self) -> str:
+        """Return the facts of the photograph, without its pixels."""
+        return f"Photo({str(self.path)!r}, shape={self.shape}, bit_depth={self.bit_depth}, is_gray={self.is_gray})"
+
+
+def _check_pixels(pixels: object, path: Path) -> None:
+    """Refuse pixels that are not float32 of shape (H, W, 3) in [0, 1]."""
+    is_sound = isinstance(pixels, np.ndarray) and pixels.dtype == np.float32 and pixels.shape[2:] == (3,)
+    if not isinstance(pixels, np.ndarray) or not is_sound or not pixels.size:
+        shape = np.shape(pixels) if isinstance(pixels, np.ndarray) else ()
+        kind = f"{type(pixels).__name__} {getattr(pixels, 'dtype', '')}"
+        raise PhotoError("photo_pixels", path=path, kind=kind, shape=shape)
+    check_range(pixels, str(path))
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,7 +164,7 @@ class CodeValues:
     header : OpenImageIO.ImageSpec
         The header, with all that OpenImageIO read.
     metadata : FileMetadata
-        What the file says beside the pixels.
+        The metadata of the file.
     """
 
     codes: CodeArray
