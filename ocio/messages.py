@@ -26,6 +26,7 @@ SENTENCES: Mapping[str, str] = {
     "folder_without_look": "{path}: holds no estimate; give the folder, the JSON or a LUT of one",
     "lut_name_is_variable": "{name}: OpenColorIO takes $ and % in {lut_file!r} for variables; rename it",
     "lut_outside_config_folder": "{name}: {lut_file!r} is not a name within the config's folder; put the LUT there",
+    "lut_without_inverse_response": "{path}: {reason}",
     "nameless_color_space": "a color space needs a name, found an empty one",
     "not_a_look": "{path}: is not the document of an estimate; give its folder, its JSON or a LUT",
     "output_exists": "{path}: exists already; choose another folder or ask to overwrite it",

@@ -87,7 +87,7 @@ def write_derived_config(
     check_config_folder(folder)
     if target.resolve() == base.path:
         raise ConfigError("base_would_be_replaced", path=target)
-    config, luts, check = _elsewhere(base), dict(others or {}), dict[str, Lut1D]()
+    config, luts, check = _relocated(base), dict(others or {}), dict[str, Lut1D]()
     spaces, common = list[PlateColorSpace](), list[str]()
     for look in looks:
         space = _free_space(base, look, check, luts)
@@ -112,26 +112,26 @@ def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_file
     """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
     file, taken = Path(look.space.lut_file), {name.casefold() for name in names}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
-    lut_file = next(name for name in stems if name not in lut_files and not _finds(base, name))
+    lut_file = next(name for name in stems if name not in lut_files and not _has_file(base, name))
     free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
     name = next(name for name in free if base.config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file)
 
 
-def _elsewhere(base: ConfigSource) -> OCIO.Config:
+def _relocated(base: ConfigSource) -> OCIO.Config:
     """Return a copy of a config that finds the files of its base, and then those of its new folder."""
     config = copy.deepcopy(base.config)
     folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
     config.clearSearchPaths()
     if base.path is not None:
         for folder in folders:
-            for path in _in_full(folder, base.path.parent):
+            for path in _absolute_paths(folder, base.path.parent):
                 config.addSearchPath(path)
     config.addSearchPath(".")
     return config
 
 
-def _in_full(folder: str, home: Path) -> list[str]:
+def _absolute_paths(folder: str, home: Path) -> list[str]:
     """Return the absolute search paths for one of a config in `home`; the value of a variable may be absolute, too."""
     if "$" in str(home) or str(home).count("%") > 1:
         raise ConfigError("base_folder_is_variable", path=home)
@@ -140,7 +140,7 @@ def _in_full(folder: str, home: Path) -> list[str]:
     return [str(home / folder)]
 
 
-def _finds(base: ConfigSource, name: str) -> bool:
+def _has_file(base: ConfigSource, name: str) -> bool:
     """Return whether a config finds a file of this name on its search path."""
     if base.path is None:
         return False

@@ -27,7 +27,7 @@ MAX_CONFIG_SIZE = 8 * 2**20
 MOST_ALIASES = 8
 
 #: An alias where YAML allows a value.
-_ALIAS = re.compile(rb"(?:^|[\s\[{,])\*[^\s\[\]{},]", re.MULTILINE)
+_ALIAS = re.compile(rb"(?:^|[\s\[{,:])\*[^\s\[\]{},]", re.MULTILINE)
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
 TOLERANCE = 1e-5

@@ -102,7 +102,7 @@ def _inverse_response(path: Path) -> Lut1D:
     try:
         response_of_lut(lut)
     except CRFNetError as problem:
-        raise LutError(f"{path}: {problem}") from problem
+        raise LutError("lut_without_inverse_response", path=path, reason=problem) from problem
     assert isinstance(lut, Lut1D)  # others have no response
     return lut
 
