@@ -29,7 +29,6 @@ def unregister() -> None:
 def _registered() -> tuple[ModuleType, ...]:
     """Return the modules with something to register, in order: the settings use the preferences."""
     from .ui import (
-        config_operators,
         estimate_box,
         handlers,
         operators,
@@ -41,5 +40,5 @@ def _registered() -> tuple[ModuleType, ...]:
     from .ui.image_editor import analyzed_windows, image_tools
     from .ui.more import add_look, load_lut, other_plates
 
-    tools = (operators, image_tools, analyzed_windows, photographs, config_operators, add_look, load_lut, other_plates)
+    tools = (operators, image_tools, analyzed_windows, photographs, add_look, load_lut, other_plates)
     return (preferences, plate_settings, *tools, estimate_box, panel, handlers)

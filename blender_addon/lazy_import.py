@@ -27,7 +27,7 @@ def load(module: str) -> ModuleType:
     Parameters
     ----------
     module : str
-        As for `importlib.import_module`: ``".work.run"`` is the add-on's own, ``"crfnet.configs.installed"`` is not.
+        As for `importlib.import_module`: ``".work.run"`` is the add-on's own, ``"crfnet.configs.files"`` is not.
 
     Raises
     ------

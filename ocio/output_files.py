@@ -12,8 +12,6 @@ from pathlib import Path
 
 from crfnet_core.files import cut_to_bytes
 
-from .configs.file_rules import linear_patterns, plate_pattern
-from .configs.plate_color_space import PlateColorSpace
 from .defaults import CONFIG_NAME
 from .errors import PlateError
 from .luts.files import WRITERS
@@ -103,36 +101,6 @@ class OutputFiles:
             forward=tuple(folder / path.name for path in self.forward),
         )
 
-    def plate_color_space(
-        self, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
-    ) -> PlateColorSpace:
-        """Return the colour space of a photograph, for a config beside the LUTs.
-
-        Parameters
-        ----------
-        photo : Path
-            The photograph.
-        exposure : float
-            Stops added after the response.
-        file_pattern : str or None
-            The file names for the file rule, with `*`, `?` and `#`; by default the photograph's own name, where a frame
-            number at the end (shot.0001.jpg) stands for any number.
-
-        Raises
-        ------
-        ConfigError
-            If no colour space can have the name.
-        """
-        return PlateColorSpace(
-            name=self.color_space,
-            lut_file=self.lut.name,
-            aliases=_aliases(self.color_space),
-            description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
-            file_pattern=file_pattern or plate_pattern(photo.name),
-            exposure=exposure,
-            linear_patterns=linear_patterns(self.lut.stem, [path.name for path in self.linear]),
-        )
-
 
 def plain_stem(photo: Path) -> str:
     """Return a file's name without its suffix, with `_` for what configs, patterns or other systems interpret.
@@ -145,11 +113,6 @@ def plain_stem(photo: Path) -> str:
 def _plain(name: str) -> str:
     """Return a name with `_` for what configs, patterns or other systems interpret."""
     return re.sub(r"[$%#*?\\:]", "_", name)
-
-
-def _aliases(color_space: str) -> tuple[str, ...]:
-    """Return the alias of a colour space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
-    return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
 
 
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:

@@ -22,7 +22,7 @@ for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
 print(*sys.modules)
 """
 
-PIPELINE = "import sys, crfnet.pipeline, crfnet.configs.installed; print(*sys.modules)"
+PIPELINE = "import sys, crfnet.pipeline, crfnet.configs.derived; print(*sys.modules)"
 
 START = "import sys, crfnet.cli.main; crfnet.cli.main.build_parser(); print(*sys.modules)"
 

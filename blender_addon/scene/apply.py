@@ -7,13 +7,11 @@ from pathlib import Path
 
 import bpy
 
-from crfnet.configs.installed import Installed
-
 from ..work.errors import AddonError
 from ..work.job import Job
 from ..work.run import CompletedJob
 from ..work.writers import Baked, Exported
-from . import color_management, compositor, look_group, node_group, stored_estimate
+from . import compositor, look_group, node_group, stored_estimate
 from .code_values import code_values
 from .plates import Datablock, alpha_mode, datablock_of_plate
 
@@ -24,7 +22,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     Raises
     ------
     AddonError, CRFNetError
-        If the plate was removed, the compositor is linked from another file, or the config lacks a colour space that
+        If the plate was removed, the compositor is linked from another file, or the config lacks a color space that
         the nodes need; nothing is changed then.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
@@ -46,12 +44,10 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     match completed.files:
         case None:
             return _insert_nodes(context, datablock, completed)
-        case Installed() as installed:
-            return _set_color_space(datablock, installed, job)
         case Baked() as baked:
             return _show_baked(context, datablock, baked, completed.frames)
         case Exported() as exported:
-            return f"{len(exported.files)} files are in {exported.folder}"
+            return f"{len(exported.files)} files are in {exported.folder}; start Blender with OCIO={exported.config}"
 
 
 def remember_settings(datablock: Datablock, job: Job) -> None:
@@ -89,34 +85,6 @@ def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: C
     compositor.apply_group(shown_tree(context), wanted)
     hint = "; the compositor is switched off: tick Use Nodes" if compositor.is_switched_off(context.scene) else ""
     return f'node group "{group.name}" linearizes it in the compositor; elsewhere it looks as before{hint}'
-
-
-def _set_color_space(datablock: Datablock, installed: Installed, job: Job) -> str:
-    """Set the colour space if this session has it; else remember it until Blender has been restarted."""
-    name, config = installed.color_space, installed.config
-    kept = _keep_nodes_right(datablock, job.plate.name)
-    is_available = name in color_management.color_spaces()
-    if is_available:
-        datablock.colorspace_settings.name = name
-    else:
-        stored_estimate.set_entry(datablock, stored_estimate.PENDING_COLOR_SPACE, name)
-    if is_available and not installed.is_changed:
-        return f'its color space is "{name}"{kept}'
-    if job.config.is_demanded or config.parent != color_management.user_folder():
-        return f'restart Blender once with the environment variable OCIO set to {config} for "{name}"{kept}'
-    return f'restart due for "{name}": press Save and Restart{kept}'
-
-
-def _keep_nodes_right(datablock: Datablock, name: str) -> str:
-    """Give the code values to nodes that have the node group, so that nothing is linearised twice; return it in words.
-
-    Nodes of this version have the code values already; those of earlier versions, and those that the user has changed,
-    show the plate itself.
-    """
-    if not compositor.linearized_nodes(datablock, name):
-        return ""
-    compositor.show_code_values(datablock, name, code_values(datablock))
-    return "; in the compositor its node group still linearizes it, once"
 
 
 def _show_baked(context: bpy.types.Context, datablock: Datablock, baked: Baked, frames: tuple[int, ...]) -> str:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The OpenColorIO config that this Blender runs on, and its colour spaces."""
+"""The OpenColorIO config that this Blender runs on, and its color spaces."""
 
 from __future__ import annotations
 
@@ -17,12 +17,12 @@ CONFIG_NAME = "config.ocio"
 
 
 def color_spaces() -> list[str]:
-    """Return the names that the colour space of an image or clip can have in this session."""
+    """Return the names that the color space of an image or clip can have in this session."""
     return bpy.types.ColorManagedInputColorspaceSettings.bl_rna.properties["name"].enum_items.keys()
 
 
 def data_space() -> str:
-    """Return the name of the colour space that leaves pixels as they are; in Blender's own config, "Non-Color".
+    """Return the name of the color space that leaves pixels as they are; in Blender's own config, "Non-Color".
 
     Raises
     ------
@@ -34,32 +34,13 @@ def data_space() -> str:
     return lazy_import.load("crfnet.configs.files").role_name(running_config(), "data")
 
 
-def environment_config() -> str:
-    """Return the config that the environment demands instead of the user's or Blender's own; empty if none.
+def running_config() -> str:
+    """Return the config that this Blender was started with: the environment's, the user's or Blender's own.
 
-    Blender 5.2 itself sets the variable OCIO to the config that it has found, which demands nothing.
+    Blender 5.2 itself sets the variable OCIO to the config that it has found.
     """
     names = CONFIG_VARIABLES[::-1] if bpy.app.version >= (5, 0, 0) else CONFIG_VARIABLES[:1]
+    user = Path(bpy.utils.user_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)
+    own = Path(bpy.utils.system_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)
     demanded = next((os.environ[name] for name in names if os.environ.get(name)), "")
-    is_usual = demanded and Path(demanded).resolve() in (own_config().resolve(), _user_config().resolve())
-    return "" if is_usual else demanded
-
-
-def user_folder() -> Path:
-    """Return the folder in which Blender looks for the user's config when it starts; it may not exist."""
-    return Path(bpy.utils.user_resource("DATAFILES", path="colormanagement"))
-
-
-def running_config() -> str:
-    """Return the config that this Blender was started with: the environment's, the user's or Blender's own."""
-    return environment_config() or str(_user_config() if _user_config().is_file() else own_config())
-
-
-def _user_config() -> Path:
-    """Return the file of the user's config, which may not exist."""
-    return user_folder() / CONFIG_NAME
-
-
-def own_config() -> Path:
-    """Return the config that comes with Blender."""
-    return Path(bpy.utils.system_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)
+    return demanded or str(user if user.is_file() else own)

@@ -11,7 +11,7 @@ import bpy
 
 from .node_building import GAP, WIDTH
 from .node_links import is_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
-from .plates import Datablock, datablock_of_node, shown_by_node
+from .plates import Datablock, datablock_of_node
 
 #: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -148,17 +148,6 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
         for node in _groups_behind(source, wanted.plate, wanted.name):
             node.node_tree = wanted.group
             node.inputs["Exposure"].default_value = wanted.exposure
-
-
-def show_code_values(plate: Datablock, name: str, codes: Datablock) -> int:
-    """Show the code values of a plate in all nodes of the file with its node group behind; return their number.
-
-    So the plate can have a colour space of its own without being linearised twice.
-    """
-    sources = [node for node in linearized_nodes(plate, name) if shown_by_node(node) != codes]
-    for source in sources:
-        _show(source, codes)
-    return len(sources)
 
 
 def linearized_nodes(plate: Datablock, name: str) -> list[bpy.types.Node]:

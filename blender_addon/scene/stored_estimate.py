@@ -30,9 +30,8 @@ KEY = "camera_response"
 #: The version of its entries, and those that are read.
 LAYOUT, READABLE_LAYOUTS = 2, (1, 2)
 
-#: Entries that are set later: the exposure that was applied, in stops, and the colour space that the plate gets once
-#: Blender has been started with the new config.
-EXPOSURE, PENDING_COLOR_SPACE = "exposure", "pending_color_space"
+#: The entry with the exposure that was applied, in stops; it is set later.
+EXPOSURE = "exposure"
 
 #: The entry that says where a response comes from, in words, if it was not estimated from its plate.
 ORIGIN = "origin"
@@ -53,7 +52,7 @@ DO_NOT_TRUST = "do not trust"
 
 
 def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[str]) -> None:
-    """Store an estimate on its image or clip, which still gets the colour space that it waits for.
+    """Store an estimate on its image or clip.
 
     What is known of the file that was analysed stays, and of its camera: the estimate may be the stored one again.
 
@@ -67,7 +66,7 @@ def store(datablock: Datablock, estimate: ResponseEstimate, *, lines: Iterable[s
         What the panel says of the estimate.
     """
     entries = lazy_import.load(".work.estimate_record").entries_of(estimate)
-    names = (PENDING_COLOR_SPACE, FILE_STATE, OFFERS)
+    names = (FILE_STATE, OFFERS)
     kept = {name: datablock[KEY].get(name) for name in names if is_stored(datablock)}
     datablock[KEY] = {"layout": LAYOUT, "lines": "\n".join(lines), **entries}
     for name, value in kept.items():
@@ -225,20 +224,6 @@ def primaries(datablock: Datablock) -> Primaries | None:
 def set_primaries(datablock: Datablock, found: Primaries) -> None:
     """Keep the primaries of a plate with an estimate."""
     set_entry(datablock, PRIMARIES, json.dumps(dataclasses.asdict(found)))
-
-
-def pending_color_space(datablock: Datablock | None) -> str:
-    """Return the colour space that a plate waits for; an empty text if it waits for none."""
-    return datablock[KEY].get(PENDING_COLOR_SPACE, "") if datablock is not None and is_stored(datablock) else ""
-
-
-def pop_pending_color_space(datablock: Datablock, available: Iterable[str]) -> str:
-    """Return the colour space that a plate waits for, and end the wait, if it is available; else an empty text."""
-    name = datablock[KEY].get(PENDING_COLOR_SPACE) if is_stored(datablock) else None
-    if name is None or name not in available:
-        return ""
-    datablock[KEY].pop(PENDING_COLOR_SPACE, None)
-    return name
 
 
 def fingerprint(datablock: Datablock) -> str:

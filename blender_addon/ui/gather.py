@@ -12,9 +12,9 @@ import bpy
 from crfnet.options import EstimateOptions
 from crfnet_core.colorimetry import Primaries
 
-from ..scene import color_management, node_group, packed_images, plates, stored_estimate
+from ..scene import color_management, node_group, plates, stored_estimate
 from ..work.errors import AddonError
-from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
+from ..work.job import WITHOUT_FILES, Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate
 from .plate_settings import CHOICES
 from .preferences import absolute, preferences
 
@@ -45,7 +45,7 @@ def gather_job(
         If no response can be estimated from the plate or a further photograph, a file is not found, no file of the
         prior is chosen, or an estimate is to be applied and Apply As says to estimate only.
     ConfigError
-        If the config lacks a colour space that the nodes need.
+        If the config lacks a color space that the nodes need.
     """
     settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
@@ -74,23 +74,16 @@ def gather_job(
         ),
         exposure=Exposure(anchor=Anchor(chosen["anchor"]), gray=chosen["gray"], stops=chosen["exposure"]),
         output=_output(plate, chosen, despite_verdict=despite_verdict),
-        config=RunningConfig(
-            path=color_management.running_config(), is_demanded=bool(color_management.environment_config())
-        ),
+        config=color_management.running_config(),
     )
 
 
 def _check_mode(datablock: plates.Datablock, mode: ApplyMode) -> None:
-    """Raise an AddonError if Blender would have to show a plate that it cannot read, or would lose what was painted."""
-    if mode in (ApplyMode.NODES, ApplyMode.COLORSPACE) and not plates.is_shown(datablock):
+    """Raise an AddonError if Blender would have to show a plate that it cannot read."""
+    if mode is ApplyMode.NODES and not plates.is_shown(datablock):
         raise AddonError(
             f"{datablock.name}: Blender cannot show this format; choose Bake, which writes an EXR file, or save the"
             " photograph as JPEG or PNG"
-        )
-    if mode is ApplyMode.COLORSPACE and packed_images.is_painted(datablock):
-        raise AddonError(
-            f"{datablock.name}: pack or save it first in the Image menu, as Blender drops what was painted when the"
-            " color space changes"
         )
 
 
@@ -138,10 +131,8 @@ def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -
 def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
     """Return the folder for files if none was chosen for the plate.
 
-    It is Blender's for a colour space; else that of the preferences, the plate or the .blend file, the first there is.
+    It is that of the preferences, the plate or the .blend file, the first there is.
     """
     if mode in WITHOUT_FILES:
         return None
-    if mode is ApplyMode.COLORSPACE:
-        return color_management.user_folder()
     return absolute(preferences().folder) or plate.folder or absolute("//" if bpy.data.filepath else "")

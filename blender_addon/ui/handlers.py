@@ -1,9 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """What happens when a .blend file is opened or saved, and at undo.
 
-When a file is opened, plates get the colour space for which Blender had to be restarted. Before a file is saved and
-around undo, editors that show a linear plate for comparison go back to the plate, so that it is never saved. The code
-values of plates that were packed are packed, too.
+Before a file is saved and around undo, editors that show a linear plate for comparison go back to the plate, so that it
+is never saved. The code values of plates that were packed are packed, too.
 """
 
 from __future__ import annotations
@@ -13,17 +12,8 @@ from typing import Any
 
 import bpy
 
-from ..scene import code_values, color_management, stored_estimate
+from ..scene import code_values
 from .image_editor import analyzed_windows, comparison
-
-
-@bpy.app.handlers.persistent
-def set_pending_color_spaces(_path: str = "") -> None:
-    """Set the colour space of every plate that waits for one that this session has."""
-    available = color_management.color_spaces()
-    for datablock in (*bpy.data.images, *bpy.data.movieclips):
-        if name := stored_estimate.pop_pending_color_space(datablock, available):
-            datablock.colorspace_settings.name = name
 
 
 @bpy.app.handlers.persistent
@@ -52,7 +42,6 @@ def end_analyzed_windows(_path: str = "") -> None:
 
 #: The handlers: Blender's name of the occasion, and the function.
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
-    ("load_post", set_pending_color_spaces),
     ("load_post", end_comparisons),
     ("load_post", end_analyzed_windows),
     ("load_post", note_files_as_read),

@@ -10,7 +10,6 @@ import bpy
 from ..scene import code_values, node_links, plates, stored_estimate
 from ..work.job import WITHOUT_FILES
 from . import running
-from .config_operators import draw_restart
 from .estimate_box import draw_estimate, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
@@ -42,7 +41,6 @@ class ResponsePanel:
     def draw(self, context: bpy.types.Context) -> None:
         """Draw the button or the progress, the estimate of the plate, and the settings by which it is applied."""
         layout, datablock = self.layout, plates.active_datablock(context)
-        draw_restart(layout, letters_of(context), stored_estimate.pending_color_space(datablock))
         if run := running.current():
             _draw_progress(layout, run)
         elif obstacle := plates.obstacle_in(context):
@@ -134,9 +132,7 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in WITHOUT_FILES:
-        usual = "Blender's own" if settings.apply == "COLORSPACE" else "Beside the plate"
-        column.prop(settings, "folder", placeholder=usual)
-    if settings.apply in ("BAKE", "EXPORT"):
+        column.prop(settings, "folder", placeholder="Beside the plate")
         column.prop(settings, "overwrite")
     if stored_estimate.is_stored(datablock):
         _draw_apply(layout, context, datablock)

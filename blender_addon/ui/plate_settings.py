@@ -47,11 +47,13 @@ MAX_EXPOSURE = 15
 _NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
 _MODES = {number: name for name, number in _NUMBERS.items()}
 
-#: How the colour spaces of plates are named: `crfnet.output_files`, repeated for the same reason.
-COLOR_SPACE_PREFIX = "CRF "
-
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
+
+
+def _number(name: str) -> int:
+    """Return the number of a way to apply a response; files of earlier versions may name one that is gone."""
+    return _NUMBERS.get(name, _NUMBERS["ESTIMATE"])
 
 
 def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
@@ -91,7 +93,7 @@ class PlateChoices:
     folder: bpy.props.StringProperty(
         name="Folder",
         description="Folder for new files. Empty: that of the preferences, else that of the plate, else that of the"
-        " .blend file; for Color Space, Blender's own",
+        " .blend file",
         subtype="DIR_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
@@ -150,7 +152,7 @@ class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
-        get=lambda self: _NUMBERS[self.chosen or preferences().apply],
+        get=lambda self: _number(self.chosen or preferences().apply),
         set=lambda self, number: setattr(self, "chosen", _MODES[number]),
     )
 
@@ -163,17 +165,12 @@ def remember_applied(datablock: bpy.types.ID) -> None:
 def is_applied(datablock: bpy.types.ID) -> bool:
     """Return whether the estimate of a plate has been applied with its present settings.
 
-    Its nodes must still be there, or its colour space, which it may wait for.
+    Its nodes must still be there.
     """
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    match datablock.camera_response_settings.apply:
-        case "NODES":
-            return bool(compositor.linearized_nodes(datablock, datablock.name))
-        case "COLORSPACE":
-            space = stored_estimate.pending_color_space(datablock) or datablock.colorspace_settings.name
-            return space.startswith(COLOR_SPACE_PREFIX)
-    return True
+    is_by_nodes = datablock.camera_response_settings.apply == "NODES"
+    return not is_by_nodes or bool(compositor.linearized_nodes(datablock, datablock.name))
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:

@@ -14,7 +14,8 @@ ADDON = __package__.rpartition(".")[0]
 #: add-on has to start without it.
 LUT_LENGTH = 4081
 
-#: What becomes of a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files.
+#: What becomes of a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files;
+#: 1 was that of an earlier way.
 APPLY_MODES = (
     ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 4),
     (
@@ -24,16 +25,14 @@ APPLY_MODES = (
         "NODETREE",
         0,
     ),
-    (
-        "COLORSPACE",
-        "Color Space",
-        "After a restart: a color space in Blender's list. It is written into your own OpenColorIO config and stays"
-        " there if the add-on is removed; the add-on's preferences list it and remove it",
-        "COLOR",
-        1,
-    ),
     ("BAKE", "Bake", "Write linear EXR files beside the plate, and load them", "FILE_IMAGE", 2),
-    ("EXPORT", "Export", "Write LUT files and an OpenColorIO config for other programs", "EXPORT", 3),
+    (
+        "EXPORT",
+        "Export",
+        "Write LUT files, and a copy of the OpenColorIO config that Blender runs on with a color space for the plate",
+        "EXPORT",
+        3,
+    ),
 )
 
 
@@ -72,9 +71,7 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
     )
 
     def draw(self, _context: bpy.types.Context) -> None:
-        """Draw the choices, and what the add-on has put into the OpenColorIO config, with the buttons to remove it."""
-        from .config_operators import draw_installed
-
+        """Draw the choices."""
         layout = self.layout
         layout.use_property_split = True
         layout.use_property_decorate = False
@@ -83,7 +80,6 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         layout.prop(self, "model", placeholder="The add-on's own model")
         layout.prop(self, "threads", text="Threads (0: All)")
         layout.prop(self, "lut_length")
-        draw_installed(layout)
 
 
 def preferences() -> CRF_AddonPreferences:

@@ -50,7 +50,7 @@ def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
 
 def is_said_encoded(job: Job) -> bool:
     """Return whether the user has said that the plate of a job holds encoded values; see `holds_encoded_values`."""
-    return holds_encoded_values(job.plate, job.config.path, is_forced=job.estimation.is_forced)
+    return holds_encoded_values(job.plate, job.config, is_forced=job.estimation.is_forced)
 
 
 def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:

@@ -23,11 +23,10 @@ _FRAME_NUMBER = re.compile(r"(.*?)(\d+)(\D*)")
 
 
 class ApplyMode(StrEnum):
-    """What becomes of a response: nothing yet, or nodes, a color space, linear EXR files, files to hand on."""
+    """The uses of a response: none yet, nodes, linear EXR files, or LUT files and a config."""
 
     ESTIMATE = "ESTIMATE"
     NODES = "NODES"
-    COLORSPACE = "COLORSPACE"
     BAKE = "BAKE"
     EXPORT = "EXPORT"
 
@@ -229,27 +228,11 @@ class Output:
 
 
 @dataclass(frozen=True, kw_only=True)
-class RunningConfig:
-    """The OpenColorIO config that this Blender was started with.
-
-    Parameters
-    ----------
-    path : str
-        Its file.
-    is_demanded : bool
-        Whether the environment names it, so that Blender looks for a config nowhere else.
-    """
-
-    path: str
-    is_demanded: bool
-
-
-@dataclass(frozen=True, kw_only=True)
 class Job:
-    """A plate, and what is to be done with it."""
+    """A plate, and what is to be done with it; `config` is the OpenColorIO config that Blender was started with."""
 
     plate: Plate
     estimation: Estimation
     exposure: Exposure
     output: Output
-    config: RunningConfig
+    config: str

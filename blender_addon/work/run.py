@@ -57,7 +57,7 @@ class CompletedJob:
         The stops to add after the inverse response.
     frames : tuple of int
         The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
-    files : Baked, Exported, Installed or None
+    files : Baked, Exported or None
         What was written; None for nodes, which need no file, and if the response is not applied.
     primaries : Primaries
         Those that the plate is encoded in.
@@ -120,7 +120,7 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
     if job.estimation.stored is not None and not job.estimation.is_forced:
-        check_is_encoded(job.plate, job.plate.file, job.config.path)
+        check_is_encoded(job.plate, job.plate.file, job.config)
     estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
     primaries, offers = _primaries(job, sequence), _offers(job, estimate)
     estimated = CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, offers=offers)
@@ -203,7 +203,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
     with sampled_files(list(zip(plates, sequences, strict=True))) as files:
         if not job.estimation.is_forced:
             for plate, frames in zip(plates, files, strict=True):
-                _check_is_encoded(plate, frames.paths[0], job.config.path)
+                _check_is_encoded(plate, frames.paths[0], job.config)
         paths = [path for frames in files for path in frames.paths]
         prior, network = load_prior(options), _load_network(options)
         has_metadata = options.use_metadata and all(plate.has_metadata for plate in plates)

@@ -6,8 +6,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from crfnet.configs.files import load_config
-from crfnet.defaults import CONFIG_NAME
 from crfnet.output_files import check_folder
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.linear import linear_targets
@@ -32,7 +30,7 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
     AddonError
         If the job has no folder, or a file exists and may not be replaced.
     CRFNetError
-        If the folder cannot be written to, or holds a config that OpenColorIO refuses.
+        If the folder cannot be written to.
     """
     if job.output.mode in WITHOUT_FILES:
         return
@@ -45,10 +43,7 @@ def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
             f"{job.plate.name}: has no folder of its own; choose one under Folder, or save the .blend file"
         )
     check_folder(job.output.folder)
-    if job.output.mode is ApplyMode.COLORSPACE:
-        config = job.output.folder / CONFIG_NAME
-        load_config(config if config.exists() else job.config.path)
-    elif not job.output.overwrite:
+    if not job.output.overwrite:
         _check_absent(_targets(job, job.output.folder, sequence))
 
 

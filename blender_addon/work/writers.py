@@ -3,17 +3,18 @@
 
 from __future__ import annotations
 
-import hashlib
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
-from crfnet.configs.installed import Installed, install
+from crfnet.configs.derived import write_derived_config
+from crfnet.configs.looks import Look
 from crfnet.configs.plate_color_space import PlateColorSpace
+from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
 from crfnet.output_files import OutputFiles, plain_stem
-from crfnet.pipeline import all_or_none, export_luts
+from crfnet.pipeline import all_or_none
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.linear import linear_targets, linearize_plates
 from crfnet_core.colorimetry import REC709, Primaries
@@ -43,13 +44,14 @@ class Baked:
 
 @dataclass(frozen=True)
 class Exported:
-    """LUT files and a config, and the folder that they are in."""
+    """LUT files and a config, the folder that they are in, and the config."""
 
     folder: Path
     files: tuple[Path, ...]
+    config: Path
 
 
-Written = Baked | Exported | Installed
+Written = Baked | Exported
 
 
 def write(
@@ -66,7 +68,7 @@ def write(
     Parameters
     ----------
     job : Job
-        In any mode but NODES, which need no file.
+        In the mode BAKE or EXPORT; the others need no file.
     lut : Lut1D
         The inverse response.
     stops : float
@@ -86,9 +88,7 @@ def write(
     """
     if job.output.mode is ApplyMode.BAKE:
         return bake(job, lut, stops, sequence(), progress)
-    if job.output.mode is ApplyMode.EXPORT:
-        return export(job, lut, stops, primaries)
-    return install_color_space(job, lut, stops, primaries)
+    return export(job, lut, stops, primaries)
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
@@ -116,27 +116,16 @@ def _linearize(
 
 
 def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:
-    """Write the LUT in three formats, and a portable config with the plate's colour space."""
+    """Write the LUT in three formats, and the config that Blender runs on with the plate's color space added."""
     folder = _folder(job)
     files = output_files(job.plate, folder)
-    space = color_space(job.plate, files, stops, primaries)
-    return Exported(folder, export_luts(files, space, lut, overwrite=job.output.overwrite))
-
-
-def install_color_space(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Installed:
-    """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
-    folder = _folder(job)
-    space = color_space(job.plate, output_files(job.plate, folder), stops, primaries)
     hint = job.plate.folder.name if job.plate.folder else ""
-    return install(folder, job.config.path, space, lut, plate=identity(job.plate), hint=hint)
-
-
-def identity(plate: Plate) -> str:
-    """Return what a plate is known by in the config: its full path; without a file of its own, what it contains."""
-    if plate.content is None or plate.frame_count:
-        return str(plate.file.resolve())
-    content = plate.content if isinstance(plate.content, bytes) else plate.content.tobytes()
-    return f"sha256 {hashlib.sha256(content).hexdigest()}"
+    look = Look(color_space(job.plate, files, stops, primaries), lut, hint)
+    others = {path.name: lut for path in files.luts if path != files.lut}
+    derived = write_derived_config(
+        find_config(job.config), folder, [look], others=others, overwrite=job.output.overwrite
+    )
+    return Exported(folder, derived.files, derived.path)
 
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
@@ -145,8 +134,8 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:
-    """Return the plate's colour space, with a file rule for all its files, which an installed config leaves out."""
-    space = files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
+    """Return the plate's color space, with a file rule for all its files."""
+    space = PlateColorSpace.from_outputs(files, _photo(plate), exposure=stops, file_pattern=plate.pattern)
     return replace(space, primaries=primaries)
 
 

@@ -1,12 +1,13 @@
-"""OpenColorIO configs that know a plate's colour space.
+"""OpenColorIO configs that know a plate's color space.
 
-reference_space      from linear Rec.709 to the scene reference space of any config
-file_rules           which files are a plate's, by their names
-plate_color_space    the colour space, as data and as a part of any config
-plate_views          views that show a scene through the plate's camera
-portable             a small config of profile 2.0 for every host, built on portable.ocio
-files                load a config, and write one after checking it against its LUTs
-installation_record  what was done to a config, written down beside it, and its backup
-installed            a plate's colour space in the config that a program reads at its start, and the way back
-studio               plates in anybody's config: put in, listed, taken out, or as an overlay
+reference_space    from linear Rec.709 to the scene reference space of any config
+file_rules         the files of a plate, by their names
+plate_color_space  the color space of a plate, as data and as a part of any config
+plate_views        views that show a scene through the plate's camera
+portable           a small config of profile 2.0 for every host, built on portable.ocio
+files              load a config of bounded size; write one after checking it against its LUTs
+sources            the config that a user names: a file, a built-in name, $OCIO, an installed Blender
+plates             the plates of a config
+looks              the files that an estimate wrote for a plate, read back
+derived            a new config: another one with plates added
 """

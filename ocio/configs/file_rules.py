@@ -1,4 +1,4 @@
-"""File rules of a config: which files are a plate's, by their full names in upper or lower case."""
+"""File rules of a config: the files of a plate, by their full names in upper or lower case."""
 
 from __future__ import annotations
 
@@ -7,12 +7,15 @@ from collections.abc import Iterable, Sequence
 
 import PyOpenColorIO as OCIO
 
-#: What a rule for linear plates is called after the plate's colour space.
+#: The family of every plate's color space, which sets its rules apart from others.
+FAMILY = "Camera Response"
+
+#: Ends the name of the rule for linear plates, after the name of the plate's color space.
 LINEAR_SUFFIX = " linear"
 
 #: File names, without suffix, that cameras and programs give again and again, in lower case: four characters and a
 #: number of four digits or five (JEITA CP-3461, "Design rule for Camera File system", and its followers), a number
-#: alone, and what programs call a picture that nobody has named.
+#: alone, and the usual names of pictures that nobody has named.
 COUNTER_NAMES = (
     r"[a-z0-9_]{3,4}_?\d{4,5}",
     r"img_e?\d{4,5}",
@@ -29,7 +32,7 @@ FRAME_NUMBER = re.compile(r"\.\d{2,}$")
 
 
 def plate_pattern(name: str) -> str:
-    """Return the pattern of a plate's file: its own name, where a frame number at the end stands for any number.
+    """Return the pattern of a plate's file: its full name, where a frame number at the end stands for any number.
 
     Parameters
     ----------
@@ -41,28 +44,23 @@ def plate_pattern(name: str) -> str:
     return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
 
 
-def linear_pattern(name: str) -> str:
-    """Return the pattern of a linear plate such as "shot.0001_linear.exr": its own name, with any frame number."""
-    return re.sub(r"\.\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
-
-
 def linear_patterns(stem: str, names: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
     Parameters
     ----------
     stem : str
-        What files of the plate are named after, for example "clip" or "shot.0001".
+        The stem of the plate's files, for example "clip" or "shot.0001".
     names : sequence of str
-        The names of its linear files without folder: see `linear_pattern`. For more than `MOST_PATTERNS` of them, one
-        pattern stands for all.
+        The names of its linear files without folder. For more than `MOST_PATTERNS` of them, one pattern stands for all.
     """
-    named = map(linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
+    named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
     return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr"]))
 
 
 def is_counter_name(name: str) -> bool:
-    """Return whether many files of other people are likely to have a name such as "IMG_0001.JPG" or "0001.png"."""
+    """Return whether many files of other people are likely to have a name, or pattern, such as "IMG_0001.JPG"."""
+    name = re.sub(r"[*#]", "0001", name)
     stem = FRAME_NUMBER.sub("", name.rpartition(".")[0] or name).lower()
     return any(re.fullmatch(counter, stem) for counter in COUNTER_NAMES)
 
@@ -74,63 +72,92 @@ def rule_regex(patterns: Iterable[str]) -> str:
     ----------
     patterns : iterable of str
         Names with `*` (any characters), `?` (any character) and `#` (a number of any length); none of them matches a
-        separator of folders. A pattern holds for full names, in any folder, in upper and lower case (ASCII); with
-        folders in it ("shot010/plates/*.jpg"), for the end of a path.
+        separator of folders. A pattern holds for full names, in any folder, in upper and lower case (ASCII).
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
 
-def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Iterable[str]) -> None:
-    """Put a file rule before all others of a config; a rule of the same name is replaced.
+def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
+    """Put the file rule of a plate before all others of a config, in place, and return whether it is there.
+
+    Where a rule of another plate leads one of the files to another space, the name does not say whose file it is, and
+    neither plate gets it: the other rule then leads to the space that the file has without both, and stays, so that a
+    third plate of the name finds it.
 
     Parameters
     ----------
     config : PyOpenColorIO.Config
-        The config; it is changed. Without patterns, the rule is only removed. Profile version 1 has no rules.
+        The config, of profile 2.
     name : str
-        The rule's name.
+        The name of the plate's color space, perhaps with `LINEAR_SUFFIX`.
     space : str
-        The colour space, or role, of the files.
-    patterns : iterable of str
-        See `rule_regex`.
+        The color space of the files.
+    patterns : sequence of str
+        See `rule_regex`; at least one.
     """
-    remove_file_rules(config, [name])
-    patterns = tuple(patterns)
-    if not patterns or config.getMajorVersion() < 2:
-        return
+    is_shared = [_release(config, pattern, space) for pattern in patterns]
+    if any(is_shared):
+        return False
     rules = config.getFileRules()
     rules.insertRule(0, name, space, rule_regex(patterns))
     config.setFileRules(rules)
+    return True
 
 
-def remove_file_rules(config: OCIO.Config, names: Iterable[str]) -> None:
-    """Remove the file rules of these names, in upper or lower case, from a config, which is changed."""
-    if config.getMajorVersion() < 2:
-        return
-    unwanted, rules = {name.casefold() for name in names}, config.getFileRules()
-    for index in reversed(range(rules.getNumEntries() - 1)):  # the last one is the default, which cannot be removed
-        if rules.getName(index).casefold() in unwanted:
-            rules.removeRule(index)
+def color_space_of_file(config: OCIO.Config, name: str) -> str:
+    """Return the color space, not the role, that the rules of a config give to a file."""
+    space, _ = config.getColorSpaceFromFilepath(name)
+    return str(config.getColorSpace(space).getName())
+
+
+def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:
+    """Return the color space of each file rule of a plate's color space, by the rule's regular expression."""
+    rules, names = config.getFileRules(), (space, space + LINEAR_SUFFIX)
+    indices = [index for index in range(rules.getNumEntries()) if rules.getName(index) in names]
+    return {rules.getRegex(index): rules.getColorSpace(index) for index in indices}
+
+
+def _release(config: OCIO.Config, pattern: str, space: str) -> bool:
+    """Take the files of a pattern from the plate whose rule leads them to another space; return whether one does."""
+    rules, alternative = config.getFileRules(), _pattern_regex(pattern)
+    texts = [f"{before}{alternative}{after}" for before in "(|" for after in ")|"]
+    for index in range(rules.getNumEntries() - 1):  # the last one is the default
+        regex = rules.getRegex(index)
+        if alternative in regex and any(text in regex for text in texts) and _is_of_plate(config, rules.getName(index)):
+            break
+    else:
+        return False
+    if rules.getColorSpace(index) == space:
+        return False
+    name = rules.getName(index)
+    rules.removeRule(index)
     config.setFileRules(rules)
+    rules.insertRule(index, name, color_space_of_file(config, re.sub(r"[*?#]", "1", pattern)), regex)
+    config.setFileRules(rules)
+    return True
 
 
-def file_rules(config: OCIO.Config, names: Iterable[str]) -> dict[str, str]:
-    """Return the colour space of each file rule of these names, by the rule's regular expression."""
-    rules, wanted = config.getFileRules(), {name.casefold() for name in names}
-    found = [index for index in range(rules.getNumEntries()) if rules.getName(index).casefold() in wanted]
-    return {rules.getRegex(index) or rules.getPattern(index): rules.getColorSpace(index) for index in found}
+def _is_of_plate(config: OCIO.Config, rule: str) -> bool:
+    """Return whether a rule of this name belongs to a plate."""
+    plate = config.getColorSpace(rule.removesuffix(LINEAR_SUFFIX))
+    return plate is not None and plate.getFamily() == FAMILY
+
+
+def _linear_pattern(name: str) -> str:
+    """Return the pattern of a linear plate such as "shot.0001_linear.exr": its full name, with any frame number."""
+    return re.sub(r"\.\d{2,}(?=_linear\.exr$)", ".#", name.replace("#", "?"))
 
 
 def _pattern_regex(pattern: str) -> str:
     """Return the regular expression of one pattern."""
-    wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", "/": r"[/\\]", "\\": r"[/\\]"}
+    wildcards = {"*": r"[^/\\]*", "?": r"[^/\\]", "#": r"[0-9]+", "\\": r"[/\\]"}
     return "".join(wildcards.get(letter) or _letter_regex(letter) for letter in pattern)
 
 
 def _letter_regex(letter: str) -> str:
     """Return the regular expression of a character: an ASCII letter in both cases, anything else as it is.
 
-    In UTF-8 other letters are several bytes, and std::regex takes each byte in brackets for a character of its own.
+    In UTF-8 other letters are several bytes, and std::regex takes each byte in brackets for a separate character.
     """
     if letter.isascii() and letter.isalpha():
         return f"[{letter.lower()}{letter.upper()}]"

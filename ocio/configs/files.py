@@ -1,8 +1,9 @@
-"""OpenColorIO config files: load one, and write one after OpenColorIO has checked it against its LUTs."""
+"""OpenColorIO config files: load one of bounded size; write one after OpenColorIO has checked it against its LUTs."""
 
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from pathlib import Path
@@ -11,13 +12,22 @@ import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import NDArray
 
-from crfnet_core.errors import one_line
-from crfnet_core.files import atomic_write
+from crfnet_core.files import atomic_write, read_bytes
 from crfnet_core.types import Float32Array
 
 from ..errors import ConfigError
 from ..luts.lut1d import Lut1D
 from .reference_space import rec709_to_reference, steps_to_reference
+
+#: Bytes of the largest config that is read; the ACES configs have less than 1 MB.
+MAX_CONFIG_SIZE = 8 * 2**20
+
+#: The most YAML aliases (`*name`) of a config. OpenColorIO writes none; aliases of aliases multiply: 1 KB of them takes
+#: gigabytes.
+MOST_ALIASES = 8
+
+#: An alias where YAML allows a value.
+_ALIAS = re.compile(rb"(?:^|[\s\[{,:])\*[^\s\[\]{},]", re.MULTILINE)
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
 TOLERANCE = 1e-5
@@ -25,31 +35,33 @@ TOLERANCE = 1e-5
 #: Brightnesses at which a config and its LUT are compared.
 CHECKED_VALUES = 4096
 
-
 #: Variables by which OpenColorIO shows a part of every config only.
 HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES")
 
 
 def load_config(path: str | Path) -> OCIO.Config:
-    """Return the config in a file.
+    """Return the config in a file of at most `MAX_CONFIG_SIZE` bytes and `MOST_ALIASES` aliases.
 
     Raises
     ------
     ConfigError
-        If there is none, or OpenColorIO refuses it.
+        If there is none, it is larger, or OpenColorIO refuses it.
     """
+    path = Path(path)
     if not os.path.lexists(path):
-        raise ConfigError(f"{path}: there is no such config; check the name")
+        raise ConfigError("config_absent", path=path)
     try:
+        if len(_ALIAS.findall(read_bytes(path, most=MAX_CONFIG_SIZE))) > MOST_ALIASES:
+            raise ConfigError("config_aliases", path=path, most=MOST_ALIASES)
         return OCIO.Config.CreateFromFile(str(path))
+    except OSError as problem:
+        raise ConfigError("config_unreadable", path=path, reason=problem.strerror or problem) from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
-        raise ConfigError(
-            f"{path}: OpenColorIO refuses this config ({one_line(problem)}); mend it or choose a folder"
-        ) from None
+        raise ConfigError("config_refused", path=path, reason=problem) from None
 
 
 def loaded_or_empty(path: Path) -> OCIO.Config:
-    """Return the config in a file; an empty one if there is none, or OpenColorIO refuses it."""
+    """Return the config in a file; an empty one if it cannot be loaded."""
     try:
         return load_config(path)
     except ConfigError:
@@ -57,16 +69,16 @@ def loaded_or_empty(path: Path) -> OCIO.Config:
 
 
 def role_name(path: str | Path, role: str) -> str:
-    """Return the name of the colour space that has a role in a config file.
+    """Return the name of the color space that has a role in a config file.
 
     Raises
     ------
     ConfigError
-        If there is none, or OpenColorIO refuses the config.
+        If there is none, or the config cannot be loaded.
     """
     space = load_config(path).getColorSpace(role)
     if space is None:
-        raise ConfigError(f"{path}: has no role {role}; use another config")
+        raise ConfigError("role_absent", path=path, role=role)
     return str(space.getName())
 
 
@@ -80,7 +92,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
     config : PyOpenColorIO.Config
         The config.
     check : mapping of str to Lut1D
-        The LUT of each plate's colour space, by the name of the space. OpenColorIO's processor must equal the LUT,
+        The LUT of each plate's color space, by the name of the space. OpenColorIO's processor must equal the LUT,
         times the exposure that the config gives the plate, in both directions to `TOLERANCE`.
     overwrite : bool
         Whether an existing file may be replaced.
@@ -99,7 +111,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
             for name, lut in check.items():
                 _check_conversion(loaded, name, lut)
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
-        raise ConfigError(f"{path}: not written, OpenColorIO refuses it ({one_line(problem)})") from problem
+        raise ConfigError("config_invalid", path=path, reason=problem) from problem
 
 
 @contextmanager
@@ -113,19 +125,17 @@ def _whole_configs() -> Iterator[None]:
 
 
 def _check_conversion(config: OCIO.Config, name: str, lut: Lut1D) -> None:
-    """Raise a ConfigError unless a colour space converts as its LUT does."""
+    """Raise a ConfigError unless a color space converts as its LUT does."""
     space = config.getColorSpace(name)
     if space is None:
-        raise ConfigError(f"{name}: the config has no such colour space; add it before writing")
+        raise ConfigError("color_space_absent", name=name)
     worst = _conversion_error(config, space, lut)
     if not worst <= TOLERANCE:
-        raise ConfigError(
-            f"{name}: its conversion differs from its LUT by {worst:.2g}; write the LUT and the config again"
-        )
+        raise ConfigError("config_differs_from_lut", name=name, difference=worst)
 
 
 def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -> float:
-    """Return the largest difference between a colour space and its LUT, in both directions and beyond both ends."""
+    """Return the largest difference between a color space and its LUT, in both directions and beyond both ends."""
     low, high = lut.domain
     margin = (high - low) / 8
     brightness = np.linspace(low - margin, high + margin, CHECKED_VALUES, dtype=np.float32)
@@ -143,13 +153,13 @@ def _conversion_error(config: OCIO.Config, space: OCIO.ColorSpace, lut: Lut1D) -
 
 
 def plate_exposure(space: OCIO.ColorSpace) -> float:
-    """Return the stops that a plate's colour space adds after its LUT."""
+    """Return the stops that a plate's color space adds after its LUT."""
     steps = (step for step in steps_to_reference(space) if isinstance(step, OCIO.ExposureContrastTransform))
     return sum(float(step.getExposure()) for step in steps)
 
 
 def _converted(config: OCIO.Config, source: str, target: str, values: NDArray[np.floating]) -> Float32Array:
-    """Return gray pixels, shape (N,), converted from one colour space to another."""
+    """Return gray pixels, shape (N,), converted from one color space to another."""
     pixels = np.repeat(values.astype(np.float32), 3)
     config.getProcessor(source, target).getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(pixels)
     return pixels[::3]

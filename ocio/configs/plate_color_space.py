@@ -1,30 +1,35 @@
-"""A plate's colour space, as plain data (`PlateColorSpace`) and as a part of any OpenColorIO config."""
+"""The color space of a plate, as plain data (`PlateColorSpace`) and as a part of any OpenColorIO config."""
 
 from __future__ import annotations
 
-import copy
 import re
-from dataclasses import dataclass, replace
-from pathlib import PurePosixPath, PureWindowsPath
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path, PureWindowsPath
+from typing import TYPE_CHECKING
 
 import numpy as np
 import PyOpenColorIO as OCIO
 
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
-from crfnet_core.errors import one_line
 
 from ..errors import ConfigError
-from .file_rules import LINEAR_SUFFIX, add_file_rule, remove_file_rules
-from .plate_views import add_plate_views, plate_views, remove_plate_views
+from .file_rules import FAMILY, LINEAR_SUFFIX, add_file_rule, color_space_of_file, linear_patterns, plate_pattern
 from .reference_space import linear_space_name, matrix_transform, rec709_to_reference
 
-#: The family of every plate's colour space, by which an earlier version of it is recognised.
-FAMILY = "Camera Response"
+if TYPE_CHECKING:
+    from ..output_files import OutputFiles
+
+#: The category of the spaces of files, by which hosts sort their menus.
+CATEGORIES = ["file-io"]
+
+#: A file name for which no plate has a rule.
+USUAL_LINEAR_FILE = "crfnet_linear.exr"
 
 
 @dataclass(frozen=True)
 class PlateColorSpace:
-    """The colour space of a plate: its camera's inverse response, an exposure, and its primaries.
+    """The color space of a plate: its camera's inverse response, an exposure, and its primaries.
 
     Parameters
     ----------
@@ -35,10 +40,10 @@ class PlateColorSpace:
     aliases : tuple of str
         Other names of the space. A config gets those that it does not use already.
     description : str
-        What the response was estimated from.
+        The origin of the response.
     encoding : str
         OpenColorIO's name of the encoding.
-    file_pattern : str or None
+    file_patterns : tuple of str
         The names of the plate's files with `*`, `?` and `#` for a number, for example "shot_plate01.#.png", for a file
         rule: see `crfnet.configs.file_rules.rule_regex`.
     exposure : float
@@ -48,8 +53,7 @@ class PlateColorSpace:
     linear_patterns : tuple of str
         The names of the plate's linear OpenEXR files, for a file rule of their own.
     linear_primaries : Primaries or None
-        In which those are. None if they are not known: then there is no rule. Nor is there one for linear Rec.709, or
-        in a config without a space for them.
+        In which those are. None if they are not known: then there is no rule.
 
     Raises
     ------
@@ -63,7 +67,7 @@ class PlateColorSpace:
     aliases: tuple[str, ...] = ()
     description: str = ""
     encoding: str = "sdr-video"
-    file_pattern: str | None = None
+    file_patterns: tuple[str, ...] = ()
     exposure: float = 0.0
     primaries: Primaries = REC709
     linear_patterns: tuple[str, ...] = ()
@@ -72,127 +76,103 @@ class PlateColorSpace:
     def __post_init__(self) -> None:
         lut_file = PureWindowsPath(self.lut_file)
         if not self.name.strip():
-            raise ConfigError("a colour space needs a name, found an empty one")
+            raise ConfigError("nameless_color_space")
         if not np.isfinite(self.exposure):
-            raise ConfigError(f"{self.name}: the exposure must be a number of stops, found {self.exposure}")
+            raise ConfigError("exposure_not_finite", name=self.name, exposure=self.exposure)
         if not lut_file.name or lut_file.anchor or ".." in lut_file.parts:
-            message = f"{self.lut_file!r} is no name within the config's folder; put the LUT beside the config"
-            raise ConfigError(f"{self.name}: {message}")
+            raise ConfigError("lut_outside_config_folder", name=self.name, lut_file=self.lut_file)
         if set(self.lut_file) & set("$%"):
-            raise ConfigError(f"{self.name}: OpenColorIO takes $ and % in {self.lut_file!r} for variables; rename it")
+            raise ConfigError("lut_name_is_variable", name=self.name, lut_file=self.lut_file)
 
-    def renamed(self, name: str) -> PlateColorSpace:
-        """Return the same colour space under another name, which its aliases and its LUT file follow.
+    @classmethod
+    def from_outputs(
+        cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
+    ) -> PlateColorSpace:
+        """Return the color space of a photograph, for a config beside the LUTs that an estimate writes.
 
-        The name has to begin with the present one: what comes after it is appended to the aliases and the LUT file.
+        Parameters
+        ----------
+        files : OutputFiles
+            The files of the estimate.
+        photo : Path
+            The photograph.
+        exposure : float
+            Stops added after the response.
+        file_pattern : str or None
+            One of `file_patterns`; by default the photograph's name, where a frame number at the end (shot.0001.jpg)
+            stands for any number.
+
+        Raises
+        ------
+        ConfigError
+            If no color space can have the name.
         """
-        if not name.startswith(self.name):
-            raise ConfigError(f"{name}: does not begin with {self.name!r}; choose a name that does")
-        added, lut_file = name[len(self.name) :], PurePosixPath(self.lut_file)
-        plain = re.sub(r"\W+", "_", added).rstrip("_").lower()
-        return replace(
-            self,
-            name=name,
-            lut_file=str(lut_file.with_name(f"{lut_file.stem}{added}{lut_file.suffix}")),
-            aliases=tuple(alias + plain for alias in self.aliases),
+        return cls(
+            name=files.color_space,
+            lut_file=files.lut.name,
+            aliases=_aliases(files.color_space),
+            description=f"The inverse response of the camera that took {photo.name}, as crfnet estimated it",
+            file_patterns=(file_pattern or plate_pattern(photo.name),),
+            exposure=exposure,
+            linear_patterns=linear_patterns(files.lut.stem, [path.name for path in files.linear]),
         )
 
 
-def without_plate_rules(config: OCIO.Config) -> OCIO.Config:
-    """Return a copy of `config` without the file rules that lead to a plate's colour space.
+def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace]) -> tuple[str, ...]:
+    """Add plates' color spaces and file rules to a config, in place; return the patterns that several plates have.
 
-    A rule knows a file by its name alone, so in a config that many projects share it would also catch files of other
-    cameras.
-    """
-    config = copy.deepcopy(config)
-    if config.getMajorVersion() < 2:
-        return config
-    rules = config.getFileRules()
-    for index in reversed(range(rules.getNumEntries() - 1)):  # the last one is the default, which cannot be removed
-        space = config.getColorSpace(rules.getColorSpace(index))
-        if space is not None and space.getFamily() == FAMILY:
-            rules.removeRule(index)
-    config.setFileRules(rules)
-    return config
-
-
-def add_plate_color_space(config: OCIO.Config, *spaces: PlateColorSpace) -> OCIO.Config:
-    """Return a copy of `config` with plates' colour spaces, and with their file rules before all other rules.
-
-    The profile version and everything else stay. After the response and the exposure, the plate is converted from its
-    primaries to linear Rec.709, and from there to the config's reference space as the config's own linear Rec.709 space
-    says, or else through its `aces_interchange` role. Profile version 1 has neither aliases nor file rules: they are
-    left out there, and so is an exposure of 0.
+    Everything else stays, the search path and the profile version, too. After the response and the exposure, a plate
+    is converted from its primaries to linear Rec.709, and from there to the config's reference space as the config's
+    linear Rec.709 space says, or else through its `aces_interchange` role. Profile version 1 has neither aliases nor
+    file rules: they are left out there, and so is an exposure of 0. Linear files get a rule where the config takes
+    OpenEXR files for another space than theirs.
 
     Parameters
     ----------
     config : PyOpenColorIO.Config
-        Any config; it is not changed.
-    *spaces : PlateColorSpace
-        The plates' colour spaces. Each replaces an earlier one of the same name in the family `FAMILY`, whose views are
-        renewed.
+        Any config.
+    spaces : sequence of PlateColorSpace
+        The color spaces of the plates.
 
     Raises
     ------
     ConfigError
-        If the config uses the name for something else, or cannot convert linear Rec.709 to its reference space.
+        If the config has one of the names already, or cannot convert linear Rec.709 to its reference space.
     """
-    viewed = [space.name for space in spaces if plate_views(config, space.name)]
-    config = copy.deepcopy(config)
+    usual = color_space_of_file(config, USUAL_LINEAR_FILE) if config.getMajorVersion() >= 2 else ""
+    shared = list[str]()
     for space in spaces:
-        _add(config, space)
-    folders = [folder for folder in config.getSearchPaths() if folder not in ("", ".")]
-    config.clearSearchPaths()
-    for folder in (*folders, "."):
-        config.addSearchPath(folder)
-    return add_plate_views(config, viewed) if viewed else config
+        _add_color_space(config, space)
+        if config.getMajorVersion() < 2:
+            continue
+        linear = space.linear_primaries and linear_space_name(config, space.linear_primaries)
+        if linear and linear != usual and space.linear_patterns:
+            add_file_rule(config, space.name + LINEAR_SUFFIX, linear, space.linear_patterns)
+        if space.file_patterns and not add_file_rule(config, space.name, space.name, space.file_patterns):
+            shared += space.file_patterns
+    return tuple(dict.fromkeys(shared))
 
 
-def _add(config: OCIO.Config, space: PlateColorSpace) -> None:
-    """Add a plate's colour space and its file rule to a config, in place."""
+def _add_color_space(config: OCIO.Config, space: PlateColorSpace) -> None:
+    """Add the color space of a plate to a config, in place."""
+    if (taken := config.getColorSpace(space.name)) is not None:
+        raise ConfigError("color_space_exists", name=space.name, taken=taken.getName())
     modern = config.getMajorVersion() >= 2
-    _remove_earlier(config, space)
     try:
-        color_space = OCIO.ColorSpace(
-            name=space.name,
-            aliases=[alias for alias in space.aliases if modern and config.getColorSpace(alias) is None],
-            family=FAMILY,
-            encoding=space.encoding,
-            description=space.description,
-            bitDepth=OCIO.BIT_DEPTH_F32,
-            toReference=_to_reference(config, space),
+        config.addColorSpace(
+            OCIO.ColorSpace(
+                name=space.name,
+                aliases=[alias for alias in space.aliases if modern and config.getColorSpace(alias) is None],
+                family=FAMILY,
+                encoding=space.encoding,
+                description=space.description,
+                bitDepth=OCIO.BIT_DEPTH_F32,
+                categories=CATEGORIES if modern else [],
+                toReference=_to_reference(config, space),
+            )
         )
-        config.addColorSpace(color_space)
-        linear = space.linear_primaries
-        if linear and linear != REC709 and (name := linear_space_name(config, linear)):
-            add_file_rule(config, space.name + LINEAR_SUFFIX, name, space.linear_patterns)
-        add_file_rule(config, space.name, space.name, [space.file_pattern] if space.file_pattern else ())
     except OCIO.Exception as problem:
-        raise ConfigError(f"{space.name}: cannot be added to the config ({one_line(problem)})") from problem
-
-
-def without_plate_color_space(config: OCIO.Config, name: str) -> OCIO.Config:
-    """Return a copy of `config` without a plate's colour space, its file rules and its views; all else stays."""
-    config = copy.deepcopy(config)
-    _remove(config, name)
-    return config
-
-
-def _remove_earlier(config: OCIO.Config, space: PlateColorSpace) -> None:
-    """Remove an earlier version of a plate's space and its rule; raise a ConfigError if the name is used otherwise."""
-    earlier = config.getColorSpace(space.name)
-    if earlier is None:
-        return
-    if earlier.getFamily() != FAMILY or earlier.getName().casefold() != space.name.casefold():
-        raise ConfigError(f"{space.name}: the config uses this name for {earlier.getName()!r}; choose another name")
-    _remove(config, earlier.getName())
-
-
-def _remove(config: OCIO.Config, name: str) -> None:
-    """Remove a colour space of a config, its file rules and its views."""
-    config.removeColorSpace(name)
-    remove_file_rules(config, (name, name + LINEAR_SUFFIX))
-    remove_plate_views(config, [name])
+        raise ConfigError("color_space_refused", name=space.name, reason=problem) from problem
 
 
 def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform:
@@ -204,3 +184,8 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
     if space.primaries != REC709:
         steps.append(matrix_transform(conversion_matrix(space.primaries, REC709)))
     return OCIO.GroupTransform([*steps, *rec709_to_reference(config)])
+
+
+def _aliases(color_space: str) -> tuple[str, ...]:
+    """Return the alias of a color space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
+    return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections import Counter
 from collections.abc import Sequence
 from importlib.resources import files
 
@@ -10,8 +9,7 @@ import PyOpenColorIO as OCIO
 
 from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PROPHOTO, REC709, REC2020, Primaries, conversion_matrix
 
-from ..errors import ConfigError
-from .plate_color_space import PlateColorSpace, add_plate_color_space
+from .plate_color_space import CATEGORIES, PlateColorSpace, add_plate_color_spaces
 from .plate_views import add_plate_views
 from .reference_space import LINEAR_NAMES, REC709_TO_AP0, matrix_transform
 
@@ -28,13 +26,13 @@ MOST_PLATES_WITH_VIEWS = 16
 def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     """Return a config of profile 2.0 with `spaces`, for every host from OpenColorIO 2.0 on.
 
-    Its reference and scene-linear space is linear Rec.709 with a D65 white. Its colour spaces have the names that
+    Its reference and scene-linear space is linear Rec.709 with a D65 white. Its color spaces have the names that
     Blender uses, so that Blender's files find them. Up to `MOST_PLATES_WITH_VIEWS` plates get views "as photographed".
 
     Parameters
     ----------
     spaces : sequence of PlateColorSpace
-        The plates' colour spaces, of different names.
+        The plates' color spaces, of different names.
 
     Raises
     ------
@@ -44,11 +42,7 @@ def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
     config = OCIO.Config.CreateFromStream(_template())
     for primaries in ADDED_PRIMARIES:
         _add_linear_space(config, primaries)
-    names = Counter(space.name.casefold() for space in spaces)
-    for space in spaces:
-        if names[space.name.casefold()] > 1:
-            raise ConfigError(f"{space.name}: two plates have this name; rename one")
-    config = add_plate_color_space(config, *spaces)
+    add_plate_color_spaces(config, spaces)
     if not 0 < len(spaces) <= MOST_PLATES_WITH_VIEWS:
         return config
     return add_plate_views(config, [space.name for space in spaces])
@@ -62,6 +56,7 @@ def _add_linear_space(config: OCIO.Config, primaries: Primaries) -> None:
         aliases=aliases,
         family="Scene-linear",
         encoding="scene-linear",
+        categories=CATEGORIES,
         description=f"Scene-linear light, {primaries.name} primaries.",
         bitDepth=OCIO.BIT_DEPTH_F32,
         toReference=matrix_transform(conversion_matrix(primaries, REC709)),

@@ -57,17 +57,17 @@ def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
         If the config has neither a linear Rec.709 space (`LINEAR_REC709`) nor a role `aces_interchange`.
     """
     for name in LINEAR_REC709:
-        found = config.getColorSpace(name)
-        if found is not None and found.getReferenceSpaceType() == OCIO.REFERENCE_SPACE_SCENE:
-            return _space_to_reference(found)
+        space = config.getColorSpace(name)
+        if space is not None and space.getReferenceSpaceType() == OCIO.REFERENCE_SPACE_SCENE:
+            return _space_to_reference(space)
     interchange = config.getColorSpace("aces_interchange")
     if interchange is not None:
         return [matrix_transform(np.array(REC709_TO_AP0)), *_space_to_reference(interchange)]
-    raise ConfigError("the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one")
+    raise ConfigError("config_without_rec709")
 
 
 def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
-    """Return a colour space's transforms to its reference space, inverted where it defines the other direction only."""
+    """Return a color space's transforms to its reference space, inverted where it defines the other direction only."""
     forward = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
     if forward is not None:
         return [forward]
@@ -76,17 +76,11 @@ def _space_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
 
 
 def steps_to_reference(space: OCIO.ColorSpace) -> list[OCIO.Transform]:
-    """Return the transforms of a colour space to the reference space, one by one; none if it defines none."""
+    """Return the transforms of a color space to the reference space, one by one; none if it defines none."""
     transform = space.getTransform(OCIO.COLORSPACE_DIR_TO_REFERENCE)
     if isinstance(transform, OCIO.GroupTransform):
         return list(transform)
     return [] if transform is None else [transform]
-
-
-def lut_file_of(space: OCIO.ColorSpace) -> str:
-    """Return the LUT file that a plate's colour space begins with, as the config names it; else an empty text."""
-    first = next(iter(steps_to_reference(space)), None)
-    return str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
 
 
 def matrix_transform(rows: Float64Array) -> OCIO.MatrixTransform:

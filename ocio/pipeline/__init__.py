@@ -13,13 +13,13 @@ calibrations  the folder that `crfnet calibrate` writes, and responses to compar
 delivery   what is made of one LUT: the linear frames of a sequence, or LUT files and a config
 
 Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the user can mend. A progress callback is
-called with (done, total); whatever it raises ends the step, which first removes its unfinished files. To put a colour
-space into the config that a program reads at its start, see `crfnet.configs.installed`.
+called with (done, total); whatever it raises ends the step, which first removes its unfinished files. For a
+config that is built on another one, see `crfnet.configs.derived`.
 """
 
 from ..luts.exposure import anchored_exposure
 from .calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
-from .delivery import all_or_none, export_luts
+from .delivery import all_or_none
 from .each import estimate_each, plan_each
 from .each_linear import linearize_each, plan_each_linear
 from .estimates import (
@@ -45,7 +45,6 @@ __all__ = [
     "estimate_each",
     "estimate_frames",
     "estimate_photographs",
-    "export_luts",
     "find_photographs",
     "linearize_each",
     "load_camera_response",

@@ -15,6 +15,7 @@ from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.response.curve import ResponseCurve
 
 from ..configs.files import write_config
+from ..configs.plate_color_space import PlateColorSpace
 from ..configs.portable import portable_config
 from ..errors import PlateError
 from ..luts.files import write_lut
@@ -85,7 +86,7 @@ def plan_calibration(
     files = OutputFiles.named(folder, [stem], replace(outputs, has_linear=False, has_forward=False))
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
-    space = replace(files.plate_color_space(frames[0]), description=description, file_pattern=None)
+    space = replace(PlateColorSpace.from_outputs(files, frames[0]), description=description, file_patterns=())
     earlier = EarlierRun.in_folder(files, [stem], is_measured=True)
     return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, earlier)
 

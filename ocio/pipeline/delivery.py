@@ -8,44 +8,9 @@ from pathlib import Path
 
 from crfnet_core.files import check_target
 
-from ..configs.files import write_config
-from ..configs.plate_color_space import PlateColorSpace
-from ..configs.portable import portable_config
 from ..errors import PlateError
-from ..luts.files import write_lut
-from ..luts.lut1d import Lut1D
-from ..output_files import OutputFiles, check_config_folder, check_folder, output_folder
+from ..output_files import check_folder, output_folder
 from ..staging import staged_files
-
-
-def export_luts(files: OutputFiles, space: PlateColorSpace, lut: Lut1D, *, overwrite: bool = False) -> tuple[Path, ...]:
-    """Write a LUT in three formats and a portable config with its colour space; return the files.
-
-    If one of them fails, the folder is as it was.
-
-    Parameters
-    ----------
-    files : OutputFiles
-        Their names: `luts` and `config`. The folder is made if need be.
-    space : PlateColorSpace
-        The colour space, as `files.plate_color_space` returns it.
-    lut : Lut1D
-        The inverse response.
-    overwrite : bool
-        Whether existing files may be replaced.
-
-    Raises
-    ------
-    CRFNetError
-        If a file exists and may not be replaced, or cannot be written, or OpenColorIO refuses the config.
-    """
-    written = (*files.luts, files.config)
-    check_config_folder(files.config.parent)
-    with all_or_none(written, overwrite=overwrite) as (*luts, config):
-        for path in luts:
-            write_lut(path, lut)
-        write_config(config, portable_config([space]), check={space.name: lut})
-    return written
 
 
 @contextmanager

@@ -200,5 +200,5 @@ def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
 
 def _color_space(files: OutputFiles, record: PhotographRecord, output_space: str) -> PlateColorSpace:
     """Return the colour space of a photograph in the config of its folder."""
-    space = files.plate_color_space(Path(record.photograph))
+    space = PlateColorSpace.from_outputs(files, Path(record.photograph))
     return with_light(space, record.exposure, record.plate, linear_space(record.plate, output_space))

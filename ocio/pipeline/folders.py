@@ -14,8 +14,8 @@ from crfnet_core.files import atomic_write_text, json_text
 
 from ..configs.files import loaded_or_empty, write_config
 from ..configs.plate_color_space import PlateColorSpace
+from ..configs.plates import plates_in_config
 from ..configs.portable import portable_config
-from ..configs.studio.plates import plates_in_config
 from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
@@ -108,7 +108,7 @@ def plan_outputs(folder: Path, photos: Sequence[Path], plates: PlateOptions, out
     files = OutputFiles.named(folder, photos, outputs)
     check_distinct(zip(files.linear, photos, strict=False), remedy="add --no-linear")  # without linear plates, no pairs
     check_outputs(folder, [files], photos=photos, overwrite=plates.overwrite)
-    space = files.plate_color_space(photos[0])
+    space = PlateColorSpace.from_outputs(files, photos[0])
     portable_config([space])
     return OutputPlan(files, space, plates, outputs.lut_length, EarlierRun.in_folder(files, photos))
 

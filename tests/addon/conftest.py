@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from blender_addon.work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate, RunningConfig
+from blender_addon.work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate
 from crfnet.configs.portable import portable_config
 from crfnet.options import EstimateOptions
 from tests.helpers.images import write_image
@@ -13,7 +13,7 @@ from tests.helpers.images import write_image
 
 @pytest.fixture
 def running_config(tmp_path) -> Path:
-    """The config of a Blender that does not exist; its colour spaces are those of every exported config."""
+    """The config of a Blender that does not exist; its color spaces are those of every exported config."""
     path = tmp_path / "running" / "config.ocio"
     path.parent.mkdir()
     path.write_text(portable_config([]).serialize(), encoding="utf-8")
@@ -57,7 +57,7 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
             ),
             exposure=Exposure(anchor=anchor, gray=gray, stops=stops),
             output=Output(mode=mode, folder=folder, depth=depth, lut_length=4081, overwrite=overwrite),
-            config=RunningConfig(path=str(running_config), is_demanded=False),
+            config=str(running_config),
         )
 
     return make

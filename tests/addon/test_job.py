@@ -54,5 +54,5 @@ def test_a_job_cannot_be_changed(make_job):
 
 
 def test_modes_and_anchors_are_the_identifiers_of_the_interface():
-    assert [str(mode) for mode in ApplyMode] == ["ESTIMATE", "NODES", "COLORSPACE", "BAKE", "EXPORT"]
+    assert [str(mode) for mode in ApplyMode] == ["ESTIMATE", "NODES", "BAKE", "EXPORT"]
     assert [str(anchor) for anchor in Anchor] == ["WHITE", "GRAY"]

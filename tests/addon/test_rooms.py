@@ -14,7 +14,6 @@ LIGHT = ("background", "curve_picture", "errors", "job", "wording")
 
 #: Modules of `ui` that Blender imports when it enables the add-on.
 REGISTERED = (
-    "config_operators",
     "estimate_box",
     "handlers",
     "image_editor.analyzed_windows",
@@ -154,10 +153,3 @@ def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(ad
     from crfnet_core.photograph.image_io import HEIF_SUFFIXES
 
     assert repeated(addon_folder / "scene" / "plates.py", "HEIF_SUFFIXES") == HEIF_SUFFIXES
-
-
-def test_the_panel_knows_the_color_spaces_of_plates_by_the_name_that_they_are_given(addon_folder):
-    from crfnet.output_files import OutputFiles
-
-    prefix = repeated(addon_folder / "ui" / "plate_settings.py", "COLOR_SPACE_PREFIX")
-    assert OutputFiles.named(Path(), [Path("plate.jpg")]).color_space == f"{prefix}plate"

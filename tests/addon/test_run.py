@@ -159,7 +159,7 @@ def test_a_missing_folder_is_told_before_the_estimate(make_job, calls):
     assert loads == []
 
 
-@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT, ApplyMode.COLORSPACE])
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
 def test_the_estimate_is_kept_if_its_files_cannot_be_written(make_job, plate_file, estimate, monkeypatch, mode):
     def refuse(*_arguments, **_options):
         raise PlateError("the disk is full")

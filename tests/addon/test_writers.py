@@ -152,31 +152,35 @@ def test_an_export_whose_config_is_refused_leaves_nothing(make_job, tmp_path, mo
     def refuse(*_arguments, **_options):
         raise ConfigError("OpenColorIO refuses it")
 
-    monkeypatch.setattr("crfnet.pipeline.delivery.write_config", refuse)
+    monkeypatch.setattr("crfnet.configs.derived.write_config", refuse)
     with pytest.raises(ConfigError, match="refuses"):
         write(make_job(mode=ApplyMode.EXPORT))
     assert not (tmp_path / "out").exists()
 
 
-def test_a_color_space_is_installed_beside_the_running_config(make_job, tmp_path, running_config):
+def test_an_export_is_built_on_the_running_config(make_job, running_config):
     import PyOpenColorIO as OCIO
 
     before = running_config.read_bytes()
-    installed = write(make_job(mode=ApplyMode.COLORSPACE))
-    assert (installed.color_space, installed.is_changed) == ("CRF plate", True)
-    names = [space.getName() for space in OCIO.Config.CreateFromFile(str(installed.config)).getColorSpaces()]
-    assert names.count("CRF plate") == 1
+    config = OCIO.Config.CreateFromFile(str(write(make_job(mode=ApplyMode.EXPORT)).config))
+    base = OCIO.Config.CreateFromFile(str(running_config))
+    assert list(config.getColorSpaceNames()) == [*base.getColorSpaceNames(), "CRF plate"]
     assert running_config.read_bytes() == before
-    assert not write(make_job(mode=ApplyMode.COLORSPACE)).is_changed
+
+
+def test_the_running_config_is_never_replaced(make_job, running_config):
+    with pytest.raises(ConfigError) as caught:
+        write(make_job(mode=ApplyMode.EXPORT, folder=running_config.parent, overwrite=True))
+    assert caught.value.code == "base_would_be_replaced"
 
 
 def test_the_file_rule_is_for_every_frame(make_job, sequence_file, tmp_path):
     job = make_job(sequence_file, is_sequence=True)
     space = writers.color_space(job.plate, writers.output_files(job.plate, tmp_path), 1.5)
-    assert (space.name, space.file_pattern, space.exposure) == ("CRF shot", "shot.*.png", 1.5)
+    assert (space.name, space.file_patterns, space.exposure) == ("CRF shot", ("shot.*.png",), 1.5)
 
 
-@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT, ApplyMode.COLORSPACE])
+@pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
 def test_a_folder_is_needed_that_can_be_written(make_job, tmp_path, mode):
     with pytest.raises(AddonError, match="choose one under Folder"):
         write(make_job(mode=mode, folder=None))

@@ -163,18 +163,6 @@ def test_what_was_painted_is_not_multiplied_by_alpha_whatever_the_setting(
     assert np.abs(composited(as_it_is.outputs["Image"])[40, 100, :3] - light).max() < 0.01  # of 8 bits
 
 
-def test_a_color_space_takes_nothing_from_what_was_painted(addon, codes, tmp_path):
-    """Blender makes a generated image anew when its color space is set, so it has to be packed before."""
-    image = bpy.data.images.new("painted", 256, 256)
-    image.pixels.foreach_set(np.dstack([codes / 255, np.ones((256, 256))])[::-1].astype(np.float32).ravel())
-    painted = image.pixels[:1000]
-    with pytest.raises(RuntimeError, match="painted: pack or save it first"):
-        bpy.ops.crf.estimate_response(image=image.name, apply="COLORSPACE", folder=str(tmp_path))
-    assert image.pixels[:1000] == painted
-    image.pack()
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="COLORSPACE", folder=str(tmp_path)) == {"FINISHED"}
-
-
 def test_a_changed_setting_waits_to_be_applied(addon, plate_file):
     from blender_addon.ui.plate_settings import is_applied
 

@@ -223,7 +223,7 @@ def test_unsaved_painting_is_not_lost(addon, tree, tmp_path, codes, is_packed):
     if is_packed:
         image.pack()
     image.pixels[0] = 0.25
-    for mode in ("NODES", "BAKE", "EXPORT", "COLORSPACE"):
+    for mode in ("NODES", "BAKE", "EXPORT"):
         with pytest.raises(RuntimeError, match="has unsaved changes"):
             apply(image, apply=mode)
     assert image.is_dirty

@@ -52,7 +52,7 @@ def test_estimate_only_comes_first_and_changes_nothing_but_the_estimate(addon, i
         bpy.ops.crf.apply_response(image=image.name)
 
 
-@pytest.mark.parametrize("mode", ["NODES", "COLORSPACE", "BAKE", "EXPORT"])
+@pytest.mark.parametrize("mode", ["NODES", "BAKE", "EXPORT"])
 def test_do_not_trust_is_not_applied_without_the_users_word(untrusted, tmp_path, mode):
     folder = tmp_path / "out"
     before = scene_state()

@@ -1,4 +1,4 @@
-"""Bake, colour space and export: files judged by their pixels, the colour space in a Blender started anew."""
+"""Bake and export: files judged by their pixels, the exported config in a Blender started with it."""
 
 import json
 import os
@@ -26,6 +26,7 @@ job = json.loads(sys.argv[-1])
 assert addon_utils.enable("blender_addon", default_set=True)
 bpy.ops.wm.open_mainfile(filepath=job["blend"])
 image = bpy.data.images[job["image"]]
+image.colorspace_settings.name = "CRF plate"
 from blender_addon.scene.compositor import compositor_tree
 tree = compositor_tree(bpy.context.scene)
 output = next(node for node in tree.nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
@@ -53,8 +54,7 @@ for view in ("Standard", "AgX", "Filmic"):
         views.append(view)
     except TypeError:
         pass
-again = bpy.ops.crf.apply_response(image=job["image"])
-print("FOUND " + json.dumps({"space": image.colorspace_settings.name, "views": views, "again": list(again)}))
+print("FOUND " + json.dumps({"space": image.colorspace_settings.name, "views": views}))
 """
 
 
@@ -122,7 +122,7 @@ def converted(config, codes, space="CRF plate"):
 
 def test_files_need_a_folder_that_can_be_written(image, tmp_path):
     (tmp_path / "file").write_text("")
-    for mode in ("BAKE", "EXPORT", "COLORSPACE"):
+    for mode in ("BAKE", "EXPORT"):
         with pytest.raises(RuntimeError, match="is not a folder"):
             run(image, apply=mode, folder=str(tmp_path / "file" / "look"))
     assert "camera_response" not in image
@@ -138,30 +138,23 @@ def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, cho
     assert not (tmp_path / "renders").exists()
 
 
-def test_color_space_after_a_restart(image, plate_file, tmp_path, codes, estimate, root):
-    from blender_addon.scene.color_management import user_folder
-
+def test_a_blender_that_is_started_with_the_exported_config(image, plate_file, tmp_path, codes, estimate, root):
+    """It has the plate's color space, and AgX and Filmic as before; the user's own folder stays as it is."""
+    config = tmp_path / "look" / "config.ocio"
+    assert run(image, apply="EXPORT", folder=str(config.parent)) == {"FINISHED"}
+    assert not Path(bpy.utils.user_resource("DATAFILES", path="colormanagement")).exists()
+    image.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
+    assert restarted(tmp_path, root, config) == {"space": "CRF plate", "views": ["Standard", "AgX", "Filmic"]}
     expected = estimate(plate_file).curve.inverse(codes / 255)
-    try:
-        assert run(image, apply="COLORSPACE") == {"FINISHED"}
-        assert image.colorspace_settings.name == "sRGB"  # not there yet
-        image.use_fake_user = True
-        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-        found = restarted(tmp_path, root)
-        linear = read_image(tmp_path / "linear.exr")
-        assert np.abs(converted(user_folder() / "config.ocio", codes) - expected).max() < 1e-5
-    finally:
-        bpy.ops.crf.restore_config()
-    assert found == {"space": "CRF plate", "views": ["Standard", "AgX", "Filmic"], "again": ["FINISHED"]}
-    assert np.abs(linear - expected).max() < 1e-5
-    assert not user_folder().exists()  # an empty one would put Blender into its fallback mode
+    assert np.abs(read_image(tmp_path / "linear.exr") - expected).max() < 1e-5
 
 
-def restarted(folder, root):
-    """Open the saved file in a new Blender and return what it found there."""
+def restarted(folder, root, config):
+    """Open the saved file in a new Blender, started with a config, and return the color space and the views there."""
     job = {"blend": str(folder / "shot.blend"), "image": "plate.png", "linear": str(folder / "linear.exr")}
     paths = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
-    environment = {**os.environ, "PYTHONPATH": paths}
+    environment = {**os.environ, "PYTHONPATH": paths, "OCIO": str(config)}
     command = [sys.executable, "-c", SCRIPT, json.dumps(job)]
     done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
     assert done.returncode == 0, done.stdout + done.stderr
@@ -169,67 +162,28 @@ def restarted(folder, root):
     return json.loads(next(line for line in done.stdout.splitlines() if line.startswith("FOUND "))[6:])
 
 
-def test_a_config_of_somebody_else_is_merged_into_and_restored(image, tmp_path, codes, estimate, plate_file):
+def test_the_environments_config_is_the_base(image, tmp_path, monkeypatch):
+    """A studio's ACES config has no AgX, and the exported one has all that it has."""
     import PyOpenColorIO as OCIO
 
-    from crfnet.configs.portable import portable_config
-
-    config = tmp_path / "studio" / "config.ocio"
-    config.parent.mkdir()
-    config.write_text(portable_config([]).serialize())
-    before = config.read_bytes()
-    for _ in range(2):
-        assert run(image, apply="COLORSPACE", folder=str(config.parent)) == {"FINISHED"}
-    names = [space.getName() for space in OCIO.Config.CreateFromFile(str(config)).getColorSpaces()]
-    assert names.count("CRF plate") == 1
-    expected = estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(converted(config, codes) - expected).max() < 1e-5
-    assert [path.read_bytes() for path in config.parent.glob("config.before*")] == [before]
-    assert bpy.ops.crf.restore_config(folder=str(config.parent)) == {"FINISHED"}
-    assert config.read_bytes() == before
-    with pytest.raises(RuntimeError, match="nothing to restore"):
-        bpy.ops.crf.restore_config(folder=str(config.parent))
-
-
-def test_a_config_changed_since_is_not_restored(image, tmp_path):
-    run(image, apply="COLORSPACE", folder=str(tmp_path / "ours"))
-    config = tmp_path / "ours" / "config.ocio"
-    config.write_text(config.read_text() + "\n# mine\n")
-    with pytest.raises(RuntimeError, match="changed by another program"):
-        bpy.ops.crf.restore_config(folder=str(config.parent))
-    assert config.read_text().endswith("# mine\n")
-
-
-def test_a_config_that_does_not_load_is_left_alone(image, tmp_path):
-    config = tmp_path / "broken" / "config.ocio"
-    config.parent.mkdir()
-    config.write_text("no config")
-    with pytest.raises(RuntimeError, match="refuses this config"):
-        run(image, apply="COLORSPACE", folder=str(config.parent))
-    assert [path.name for path in config.parent.iterdir()] == ["config.ocio"]
-    assert config.read_text() == "no config"
-    assert "camera_response" not in image
-
-
-def test_the_environments_config_is_never_touched(image, tmp_path, monkeypatch):
-    """Blender looks nowhere else then, so a new config is written and the artist is told to name it."""
-    from crfnet.configs.portable import portable_config
-
     studio = tmp_path / "studio.ocio"
-    studio.write_text(portable_config([]).serialize())
+    studio.write_text(OCIO.Config.CreateFromBuiltinConfig("studio-config-v2.1.0_aces-v1.3_ocio-v2.3").serialize())
     before = studio.read_bytes()
     monkeypatch.setenv("OCIO", str(studio))
-    assert run(image, apply="COLORSPACE", folder=str(tmp_path / "mine")) == {"FINISHED"}
+    assert run(image, apply="EXPORT", folder=str(tmp_path / "mine")) == {"FINISHED"}
     assert studio.read_bytes() == before
-    assert Path(tmp_path, "mine", "config.ocio").is_file()
+    names = OCIO.Config.CreateFromFile(str(tmp_path / "mine" / "config.ocio")).getColorSpaceNames()
+    assert list(names) == [*OCIO.Config.CreateFromFile(str(studio)).getColorSpaceNames(), "CRF plate"]
 
 
-@pytest.mark.parametrize("is_users", [True, False])
-def test_an_environment_that_names_the_usual_config_demands_nothing(addon, monkeypatch, is_users):
-    """Blender 5.2 sets OCIO to its own choice, and programs that it starts inherit it."""
-    from blender_addon.scene import color_management
-
-    usual = color_management.running_config()
-    monkeypatch.setenv("OCIO", str(color_management.user_folder() / "config.ocio") if is_users else usual)
-    assert color_management.environment_config() == ""
-    assert color_management.running_config() == usual
+def test_a_file_of_an_earlier_version_with_a_way_that_is_gone(image, tmp_path):
+    """Its plate had the mode "Color Space", and waited for it."""
+    run(image, apply="NODES")
+    image.camera_response_settings.chosen = "COLORSPACE"
+    image["camera_response"]["pending_color_space"] = "CRF plate"
+    image.use_fake_user = True
+    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
+    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
+    image = bpy.data.images["plate.png"]
+    assert image.camera_response_settings.apply == "ESTIMATE"
+    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}

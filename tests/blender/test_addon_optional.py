@@ -20,7 +20,7 @@ assert addon_utils.enable("blender_addon", default_set=True)
 bpy.context.preferences.addons["blender_addon"].preferences.model = model
 image = bpy.data.images.load(sequence)
 image.source = "SEQUENCE"
-for apply in ("NODES", "EXPORT", "COLORSPACE", "BAKE"):
+for apply in ("NODES", "EXPORT", "BAKE"):
     choices = {"folder": folder} if apply != "NODES" else {}
     assert bpy.ops.crf.estimate_response(image=image.name, apply=apply, anyway=True, **choices) == {"FINISHED"}
 addon_utils.disable("blender_addon", default_set=True)

@@ -100,43 +100,15 @@ class TestTwoPlatesOfOneName:
         plates = {group["camera_response_of"].filepath for group in target.node_groups}
         assert len(plates) == 2
 
-    def test_they_have_two_color_spaces(self, twins, tmp_path):
-        import PyOpenColorIO as OCIO
 
-        for image in (*twins, twins[1]):
-            apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
-        assert [image["camera_response"]["pending_color_space"] for image in twins] == [
-            "CRF IMG_0001",
-            "CRF IMG_0001 (b)",
-        ]
-        config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
-        names = [name for name in config.getColorSpaceNames() if name.startswith("CRF")]
-        assert names == ["CRF IMG_0001", "CRF IMG_0001 (b)"]
-        luts = sorted(path.name for path in (tmp_path / "config" / "camera_response").glob("*.spi1d"))
-        assert luts == ["IMG_0001 (b).spi1d", "IMG_0001.spi1d"]
-
-    def test_packed_ones_have_two_color_spaces(self, addon, tmp_path, codes):
-        """Without a file of its own, a plate is known by its content."""
-        folder = str(tmp_path / "config")
-        images = []
-        for index in range(2):
-            path = write_image(tmp_path / "packed.png", np.roll(codes, index, axis=0))
-            images.append(bpy.data.images.load(str(path)))
-            images[-1].pack()
-        for image in (*images, images[0]):
-            apply(image, "COLORSPACE", folder=folder)
-        pending = [image["camera_response"]["pending_color_space"] for image in images]
-        assert pending == ["CRF packed", "CRF packed (2)"]
-
-
-def test_a_config_in_blender_knows_no_file_by_its_name(addon, tmp_path, codes):
+def test_an_exported_config_knows_no_frame_by_its_number_alone(addon, tmp_path, codes):
     """Frames that are named by numbers alone would make every such file of the machine a plate."""
     import PyOpenColorIO as OCIO
 
     paths = [write_image(tmp_path / f"{number:04d}.png", codes) for number in range(1, 4)]
     image = bpy.data.images.load(str(paths[0]))
     image.source = "SEQUENCE"
-    apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
+    apply(image, "EXPORT", folder=str(tmp_path / "config"))
     config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
     for path in ("/elsewhere/holiday.png", "/elsewhere/0001.png", str(paths[0])):
         assert not config.getColorSpaceFromFilepath(path)[0].startswith("CRF")
@@ -220,12 +192,11 @@ class TestNothingIsLinearizedTwice:
         assert groups(tree) == [node]
         assert node.node_tree["camera_response_of"] == image
 
-    def test_nodes_first_then_the_color_space(self, image, tree, composited, codes, estimate, plate_file, tmp_path):
-        """Whatever colour space the plate gets, its nodes are as they were."""
+    def test_nodes_first_then_the_color_space(self, image, tree, composited, codes, estimate, plate_file):
+        """Whatever color space the plate gets, its nodes are as they were."""
         apply(image)
-        apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
         expected = estimate(plate_file).curve.inverse(codes / 255)
-        for space in ("Linear Rec.709", "AgX Base sRGB"):  # stand for the plate's own, which needs a restart
+        for space in ("Linear Rec.709", "AgX Base sRGB"):
             image.colorspace_settings.name = space
             (group,) = groups(tree)
             assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
@@ -236,16 +207,6 @@ class TestNothingIsLinearizedTwice:
         expected = estimate(plate_file).curve.inverse(codes / 255)
         assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
         assert image.colorspace_settings.name == "Rec.1886"
-
-    def test_nodes_that_show_the_plate_itself_get_its_code_values(self, image, tree, tmp_path):
-        """So it was in earlier versions, and so it is if the user chooses the plate in its node again."""
-        apply(image)
-        (group,) = groups(tree)
-        source = group.inputs["Image"].links[0].from_node
-        codes = source.image
-        source.image = image
-        apply(image, "COLORSPACE", folder=str(tmp_path / "config"))
-        assert source.image == codes
 
 
 class TestTheRestStaysAsItIs:

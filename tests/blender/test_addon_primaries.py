@@ -51,11 +51,10 @@ def test_in_baked_files(image, expected, tmp_path):
     assert np.abs(read_image(tmp_path / "p3_linear.exr")[..., :3] - expected).max() < 1e-6
 
 
-@pytest.mark.parametrize("mode", ["COLORSPACE", "EXPORT"])
-def test_in_configs(image, expected, tmp_path, codes, mode):
+def test_in_a_config(image, expected, tmp_path, codes):
     import PyOpenColorIO as OCIO
 
-    apply(image, mode, folder=str(tmp_path / "config"))
+    apply(image, "EXPORT", folder=str(tmp_path / "config"))
     config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
     linear = "Linear Rec.709" if config.getColorSpace("Linear Rec.709") else "lin_rec709_scene"
     pixels = (codes / 255).astype(np.float32)

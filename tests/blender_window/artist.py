@@ -13,7 +13,6 @@ from tests.blender_window.session import LAST, Blender
 #: The buttons of the panel, as Blender writes their Python commands.
 ESTIMATE, APPLY = "bpy.ops.crf.estimate_response(", "bpy.ops.crf.apply_response("
 SHOW_PLATE, SHOW_LINEAR = "bpy.ops.crf.compare(is_after=False", "bpy.ops.crf.compare(is_after=True"
-RESTART = "bpy.ops.crf.save_and_restart("
 CANCEL = "bpy.ops.crf.cancel_run("
 
 #: How Blender prints the report of an operator.

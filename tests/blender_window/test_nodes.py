@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from tests.blender_window.artist import APPLY
-from tests.blender_window.base import COLOR_SPACE, NODES, WindowTest
+from tests.blender_window.base import NODES, WindowTest
 
 
 class TestNodes(WindowTest):
@@ -32,14 +32,3 @@ class TestNodes(WindowTest):
                 self.assertEqual(len(artist.call("plates.groups_behind", name)), 1)
         rendered = artist.call("plates.render", name, str(self.folder / "rendered.exr"))
         self.assert_linear(artist, rendered, "plate.jpg", NODES)
-
-    def test_a_color_space_after_nodes_does_not_linearize_twice(self):
-        artist = self.start()
-        name = self.applied(artist, self.plate("plate.jpg"))
-        artist.call("plates.choose", name, apply="COLORSPACE")
-        artist.run(APPLY)
-        file = self.save(artist)
-        artist.blender.quit()
-        artist = self.start(file)
-        rendered = artist.call("plates.render", name, str(self.folder / "rendered.exr"))
-        self.assert_linear(artist, rendered, "plate.jpg", COLOR_SPACE)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from tests.blender_window.artist import APPLY, CANCEL, ESTIMATE, RESTART
+from tests.blender_window.artist import APPLY, CANCEL, ESTIMATE
 from tests.blender_window.base import WindowTest
 
 #: Fraction of the sidebar's pixels that may differ where nothing is to be drawn: the highlight of a button.
@@ -39,34 +39,16 @@ class TestRunning(WindowTest):
                 (self.assertAlmostEqual if isinstance(value, float) else self.assertEqual)(shown[name], value)
 
     def test_the_panel_shows_the_estimate_although_the_mouse_rests(self):
-        for apply in ("EXPORT", "COLORSPACE"):
-            with self.subTest(apply):
-                artist, _ = self.start_with("plate.jpg", apply=apply, folder=str(self.folder / "look"))
-                artist.run()
-                time.sleep(2)
-                shown = artist.picture(artist.sidebar())
-                artist.settle()
-                artist.call("editors.redraw")
-                artist.settle()
-                drawn = artist.picture(artist.sidebar())
-                self.keep(shown, f"after_{apply.lower()}_mouse_at_rest")
-                self.assertLess(shown.difference(drawn), HIGHLIGHT)
-                artist.blender.quit()
-
-    def test_the_panel_offers_the_restart_that_is_due(self):
-        artist, name = self.start_with("plate.jpg", apply="COLORSPACE")
+        artist, _ = self.start_with("plate.jpg", apply="EXPORT", folder=str(self.folder / "look"))
         artist.run()
-        file = self.save(artist)
+        time.sleep(2)
+        shown = artist.picture(artist.sidebar())
         artist.settle()
-        artist.find(RESTART)
-        artist.blender.quit()
-        artist = self.start(file)
-        artist.call("editors.show", "IMAGE_EDITOR")
-        artist.call("plates.show_image", name)
-        artist.call("editors.show_tab", "IMAGE_EDITOR")
+        artist.call("editors.redraw")
         artist.settle()
-        with self.assertRaises(LookupError):
-            artist.find(RESTART)
+        drawn = artist.picture(artist.sidebar())
+        self.keep(shown, "after_export_mouse_at_rest")
+        self.assertLess(shown.difference(drawn), HIGHLIGHT)
 
     def test_the_status_bar_is_as_before_after_a_change_of_workspace(self):
         artist, _ = self.start_with("large.jpg", apply="EXPORT", folder=str(self.folder / "look"), alone=False)

@@ -5,7 +5,7 @@ import shutil
 
 import pytest
 
-from crfnet.configs.studio.looks import read_looks
+from crfnet.configs.looks import read_looks
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.pipeline.calibrations import response_to_compare

@@ -1,24 +1,22 @@
-"""A plate's colour space, and pixels through OpenColorIO."""
+"""A plate's color space, and pixels through OpenColorIO."""
 
 from __future__ import annotations
 
 from pathlib import Path
-from typing import Any, NoReturn
 
 import numpy as np
 import PyOpenColorIO as OCIO
 from numpy.typing import ArrayLike, NDArray
 
 from crfnet.configs.plate_color_space import PlateColorSpace
-from crfnet.errors import ConfigError
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 
-#: A plate's colour space, and a LUT for it that goes beyond [0, 1].
+#: A plate's color space, and a LUT for it that goes beyond [0, 1].
 SPACE = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",), description="from a.jpg")
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))
 
-#: Linear Rec.709 to ACEScg, as published by colour-science and others.
+#: Linear Rec.709 to ACEScg, as published by color-science and others.
 REC709_TO_AP1 = np.array(
     [[0.6130974, 0.3395231, 0.0473795], [0.0701937, 0.9163539, 0.0134524], [0.0206156, 0.1095698, 0.8698147]]
 )
@@ -42,8 +40,3 @@ def rule_names(config: OCIO.Config) -> list[str]:
     """Return the names of the file rules, the first one first."""
     rules = config.getFileRules()
     return [rules.getName(index) for index in range(rules.getNumEntries())]
-
-
-def disk_is_full(*_arguments: Any, **_options: Any) -> NoReturn:
-    """In the place of a step that writes."""
-    raise ConfigError("the disk is full")

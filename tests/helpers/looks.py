@@ -11,12 +11,12 @@ from typing import Any
 import numpy as np
 import PyOpenColorIO as OCIO
 
+from crfnet.configs.derived import DerivedConfig, write_derived_config
 from crfnet.configs.files import write_config
+from crfnet.configs.looks import read_looks
+from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
-from crfnet.configs.studio.additions import AdditionOptions, add_looks
-from crfnet.configs.studio.looks import read_looks
-from crfnet.configs.studio.plates import Changed
-from crfnet.configs.studio.sources import find_config
+from crfnet.configs.sources import find_config
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet.output_files import OutputFiles
@@ -54,15 +54,16 @@ def write_look(
     folder.mkdir(parents=True, exist_ok=True)
     files = OutputFiles.named(folder, [Path(name) for name in photographs])
     write_lut(files.lut, lut, overwrite=True)
-    space = replace(files.plate_color_space(Path(photographs[0]), exposure=exposure), primaries=primaries)
+    space = PlateColorSpace.from_outputs(files, Path(photographs[0]), exposure=exposure)
+    space = replace(space, primaries=primaries)
     write_config(files.config, portable_config([space]), check={space.name: lut}, overwrite=True)
     for path in files.linear:
-        attributes = {"colorInteropID": interop_id} if interop_id else {}
-        write_image(path, np.zeros((2, 2, 3), np.float32), **attributes)
+        write_image(path, np.zeros((2, 2, 3), np.float32), colorInteropID=interop_id)
     document = {
         "photographs": [{"name": name} for name in photographs],
         "color_space": files.color_space,
         "exposure": {"stops": exposure},
+        "output_space": {"name": interop_id, "interop_id": interop_id},
         "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
         "files": {
             "spi1d": files.lut.name,
@@ -74,9 +75,10 @@ def write_look(
     return folder
 
 
-def add(base: str | Path, look: Path, out: Path | None = None, **options: Any) -> Changed:
-    """Add a look to a config."""
-    return add_looks(find_config(str(base)), out, read_looks(look), AdditionOptions(**options))
+def add(base: str | Path, out: Path, *looks: Path, overwrite: bool = False) -> DerivedConfig:
+    """Write a config with looks added to a base."""
+    read = [look for path in looks for look in read_looks(path)]
+    return write_derived_config(find_config(str(base)), out, read, overwrite=overwrite)
 
 
 def space_of(config: OCIO.Config, path: str) -> str:
@@ -84,19 +86,19 @@ def space_of(config: OCIO.Config, path: str) -> str:
     return str(config.getColorSpaceFromFilepath(path)[0])
 
 
-def all_names(config: OCIO.Config, *, but: str = "CRF plate01") -> dict[str, Any]:
-    """Return everything of a config that has a name, but a plate, its rules and its views."""
+def all_names(config: OCIO.Config) -> dict[str, Any]:
+    """Return everything of a config that has a name, but plates and their rules."""
     every = (OCIO.SEARCH_REFERENCE_SPACE_ALL, OCIO.COLORSPACE_ALL)
-    views = {name: [view for view in config.getViews(name) if but not in view] for name in config.getDisplaysAll()}
     return {
         "version": (config.getMajorVersion(), config.getMinorVersion()),
         "roles": dict(config.getRoles()),
-        "spaces": [name for name in config.getColorSpaceNames(*every) if name != but],
+        "spaces": [name for name in config.getColorSpaceNames(*every) if "CRF" not in name],
         "named transforms": list(config.getNamedTransformNames()),
-        "view transforms": [name for name in config.getViewTransformNames() if but not in name],
+        "view transforms": list(config.getViewTransformNames()),
         "default view transform": config.getDefaultViewTransformName(),
         "looks": list(config.getLookNames()),
-        "views": views,
-        "rules": [name for name in rule_names(config) if but not in name],
+        "views": {name: list(config.getViews(name)) for name in config.getDisplaysAll()},
+        "rules": [name for name in rule_names(config) if "CRF" not in name],
         "description": config.getDescription(),
+        "environment": {name: config.getEnvironmentVarDefault(name) for name in config.getEnvironmentVarNames()},
     }

@@ -7,17 +7,14 @@ import shutil
 from pathlib import Path
 
 import numpy as np
-import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet import pipeline
 from crfnet.defaults import FRAMES_ANALYZED, LUT_LENGTH
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.rgb_lut import RgbLut1D
-from crfnet.options import EstimateOptions, OutputOptions, PlateOptions
-from crfnet.output_files import OutputFiles
+from crfnet.options import EstimateOptions, PlateOptions
 from crfnet.pipeline.batch import network_and_prior
 from crfnet.plates.frames import FrameSequence, find_frames
 from crfnet.plates.linear import linear_targets, linearize_plates
@@ -219,56 +216,6 @@ class TestAllOrNone:
         assert target.read_text() == "mine"
         bake(single, [target], LUT, PlateOptions(overwrite=True))
         assert target.stat().st_size > 1000
-
-
-class TestExport:
-    @pytest.fixture
-    def files(self, tmp_path):
-        return OutputFiles.named(tmp_path / "look", [tmp_path / "plate.png"], OutputOptions(has_sheet=False))
-
-    @pytest.fixture
-    def space(self, files, tmp_path):
-        return files.plate_color_space(tmp_path / "plate.png", exposure=1, file_pattern="plate.*.png")
-
-    def test_writes_the_lut_in_three_formats_and_a_config(self, files, space):
-        written = pipeline.export_luts(files, space, LUT)
-        assert [path.name for path in written] == ["plate.spi1d", "plate.cube", "plate.clf", "config.ocio"]
-        assert all(read_lut(path) == LUT for path in written[:3])
-        config = OCIO.Config.CreateFromFile(str(files.config))
-        assert config.getColorSpaceFromFilepath("plate.0001.png")[0] == "CRF plate"
-
-    def test_existing_files_are_refused_before_anything_is_written(self, files, space):
-        files.config.parent.mkdir()
-        files.config.write_text("mine")
-        with pytest.raises(CRFNetError, match=r"config\.ocio: exists already"):
-            pipeline.export_luts(files, space, LUT)
-        assert listed(files.config.parent) == ["config.ocio"]
-        pipeline.export_luts(files, space, LUT, overwrite=True)
-        assert len(listed(files.config.parent)) == 4
-
-    def test_a_failure_in_the_middle_leaves_earlier_files_as_they_were(self, files, space, monkeypatch):
-        earlier = {path: path.read_bytes() for path in pipeline.export_luts(files, space, LUT)}
-        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", lambda *arguments, **options: 1 / 0)
-        other = inverse_response_lut(ResponseCurve.gamma(1.5))
-        with pytest.raises(ZeroDivisionError):
-            pipeline.export_luts(files, space, other, overwrite=True)
-        assert {path: path.read_bytes() for path in files.config.parent.iterdir()} == earlier
-
-    def test_a_folder_in_which_opencolorio_finds_no_lut_is_refused(self, space, tmp_path):
-        files = OutputFiles.named(tmp_path / "projects$", [tmp_path / "plate.png"], OutputOptions(has_sheet=False))
-        with pytest.raises(PlateError, match="OpenColorIO takes \\$ and % in it for variables"):
-            pipeline.export_luts(files, space, LUT)
-        assert not files.config.parent.exists()
-
-    @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
-    def test_a_failure_in_the_middle_leaves_nothing(self, files, space, monkeypatch, problem):
-        def fail(*arguments, **options):
-            raise problem
-
-        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", fail)
-        with pytest.raises(type(problem)):
-            pipeline.export_luts(files, space, LUT)
-        assert not files.config.parent.exists()
 
 
 def test_a_worker_reads_a_prior_anew(fixed_model, tmp_path):

@@ -54,14 +54,14 @@ def print_left(left: Sequence[str], what: str) -> None:
 
 
 def print_earlier(earlier: Mapping[str, Sequence[str]], config: Path, what: str) -> None:
-    """Warn of what `EarlierRun.document` names; say how the colour spaces of plates come back."""
+    """Warn of what `EarlierRun.document` names; say how the color spaces of plates come back."""
     print_left(earlier.get("left", ()), what)
     if names := earlier.get("dropped"):
         which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
         print_lines(
             [
                 f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
-                f" {shlex.quote(str(config))} LOOK puts a plate back, by its JSON."
+                f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
             ]
         )
 

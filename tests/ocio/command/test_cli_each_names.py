@@ -10,7 +10,7 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
-from crfnet.configs.plate_color_space import FAMILY
+from crfnet.configs.file_rules import FAMILY
 from crfnet.defaults import ESTIMATES
 from tests.helpers.folders import listed, tree
 

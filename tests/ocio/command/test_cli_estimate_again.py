@@ -51,11 +51,12 @@ def test_color_spaces_that_a_replaced_config_no_longer_has_are_named(estimate, c
     assert "was replaced" not in estimate(plate, "--no-linear", "--overwrite").out
     words = f'Warning: config.ocio was replaced, and does not have "CRF plate" any more; crfnet config add --base {out}'
     assert words in estimate(other, "--no-linear", "--overwrite").out
-    assert crfnet("config", "add", "--base", out / "config.ocio", out / "plate.json").code == 0
-    config = loaded(out / "config.ocio")
+    both = tmp_path / "both"
+    assert crfnet("config", "add", "--base", out / "config.ocio", "--out", both, out / "plate.json").code == 0
+    config = loaded(both / "config.ocio")
     assert {"CRF plate", "CRF other"} < set(config.getColorSpaceNames())
-    printed = estimate(other, "--no-linear", "--overwrite", "--json").out
-    assert json.loads(printed)["dropped"] == ["CRF plate"]
+    printed = estimate(plate, "--no-linear", "--overwrite", "--json").out
+    assert json.loads(printed)["dropped"] == ["CRF other"]
 
 
 @pytest.mark.parametrize("content", [b"no config", b"ocio_profile_version: \xe4\xff", b"\xff\xfe\0\1", b""])

@@ -145,8 +145,7 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
     for command in (
         ("estimate", plate, "--out", tmp_path / folder),
         ("estimate", plate, "--out", tmp_path / folder, "--each"),
-        ("config", "add", "--base", base, "--out", tmp_path / folder / "a.ocio", lut_file),
-        ("config", "overlay", "--base", base, "--out", tmp_path / folder / "a.ocio", lut_file),
+        ("config", "add", "--base", base, "--out", tmp_path / folder, lut_file),
     ):
         done = crfnet(*command)
         words = f"{tmp_path / folder}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"

@@ -4,7 +4,6 @@ import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.configs.portable import portable_config
-from crfnet.defaults import CONFIG_NAME
 from crfnet.luts.files import write_lut
 from tests.helpers.looks import OTHER_LUT, write_look
 
@@ -33,20 +32,3 @@ def studio(tmp_path):
     path = folder / "show.ocio"
     path.write_text("# the show's own config\n" + config.serialize())
     return path
-
-
-@pytest.fixture
-def base(tmp_path):
-    """The config that a program comes with, with a folder of LUTs."""
-    config = portable_config([])
-    config.addSearchPath("luts")
-    (tmp_path / "program" / "luts").mkdir(parents=True)
-    (tmp_path / "program" / "luts" / "film.spi1d").write_text("a LUT")
-    (tmp_path / "program" / CONFIG_NAME).write_text(config.serialize())
-    return tmp_path / "program" / CONFIG_NAME
-
-
-@pytest.fixture
-def folder(tmp_path):
-    """The folder in which the program looks for the user's config; it does not exist yet."""
-    return tmp_path / "user"

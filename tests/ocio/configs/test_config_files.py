@@ -10,7 +10,7 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet.configs.files import load_config, role_name, write_config
+from crfnet.configs.files import MAX_CONFIG_SIZE, load_config, role_name, write_config
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
@@ -70,32 +70,32 @@ class TestWriting:
         write_config(folder / "b.ocio", portable_config([SPACE]), check={"CRF plate01": other})
 
     @pytest.mark.parametrize(
-        ("check", "message"),
+        ("check", "code"),
         [
-            (
-                {"CRF plate01": inverse_response_lut(ResponseCurve.gamma(2.0))},
-                "its conversion differs from its LUT by 0.27;",
-            ),
-            ({"CRF plate01": Lut1D(LUT.values[:-1], LUT.domain)}, "its conversion differs from its LUT"),
-            ({"CRF plate02": LUT}, "CRF plate02: the config has no such colour space"),
+            ({"CRF plate01": inverse_response_lut(ResponseCurve.gamma(2.0))}, "config_differs_from_lut"),
+            ({"CRF plate01": Lut1D(LUT.values[:-1], LUT.domain)}, "config_differs_from_lut"),
+            ({"CRF plate02": LUT}, "color_space_absent"),
         ],
     )
-    def test_a_config_that_converts_otherwise_is_not_written(self, folder, check, message):
-        with pytest.raises(ConfigError, match=message):
+    def test_a_config_that_converts_otherwise_is_not_written(self, folder, check, code):
+        with pytest.raises(ConfigError) as caught:
             write_config(folder / "config.ocio", portable_config([SPACE]), check=check)
+        assert caught.value.code == code
         assert listed(folder) == ["plate01.spi1d"]
 
     def test_a_config_without_its_lut_is_not_written(self, tmp_path):
-        with pytest.raises(ConfigError, match=r"not written, OpenColorIO refuses it \(.*plate01\.spi1d") as caught:
+        with pytest.raises(ConfigError, match=r"plate01\.spi1d") as caught:
             write_config(tmp_path / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
+        assert caught.value.code == "config_invalid"
         assert "\n" not in str(caught.value)
         assert list(tmp_path.iterdir()) == []
 
     def test_a_config_that_is_not_valid_is_not_written(self, folder):
         config = portable_config([SPACE])
         config.setRole("color_picking", "no such space")
-        with pytest.raises(ConfigError, match="not written, OpenColorIO refuses it"):
+        with pytest.raises(ConfigError) as caught:
             write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
+        assert caught.value.code == "config_invalid"
         assert listed(folder) == ["plate01.spi1d"]
 
 
@@ -107,19 +107,45 @@ class TestLoading:
 
     def test_a_role_that_is_not_there_is_refused(self, folder):
         write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
-        with pytest.raises(ConfigError, match="has no role nonsense; use another config"):
+        with pytest.raises(ConfigError) as caught:
             role_name(folder / "config.ocio", "nonsense")
+        assert caught.value.code == "role_absent"
 
     def test_a_config_that_is_not_there_is_named(self, tmp_path):
-        with pytest.raises(ConfigError, match="there is no such config; check the name"):
+        with pytest.raises(ConfigError) as caught:
             load_config(tmp_path / "config.ocio")
+        assert caught.value.code == "config_absent"
 
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_what_is_no_config_is_refused(self, tmp_path, text):
         (tmp_path / "config.ocio").write_text(text)
-        with pytest.raises(ConfigError, match="OpenColorIO refuses this config") as caught:
+        with pytest.raises(ConfigError) as caught:
             load_config(tmp_path / "config.ocio")
+        assert caught.value.code == "config_refused"
         assert "\n" not in str(caught.value)
+
+    @pytest.mark.parametrize("depth", [3, 9])
+    def test_nested_aliases_are_refused_before_they_multiply(self, tmp_path, depth):
+        """Nine levels of nine make a kilobyte take gigabytes."""
+        lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
+        lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, depth + 1)]
+        (tmp_path / "config.ocio").write_text("\n".join([*lines, portable_config([]).serialize()]))
+        with pytest.raises(ConfigError) as caught:
+            load_config(tmp_path / "config.ocio")
+        assert caught.value.code == "config_aliases"
+
+    def test_a_few_aliases_and_stars_in_texts_are_none(self, tmp_path):
+        text = portable_config([]).serialize().replace("name: crfnet", "name: &title crfnet")
+        text = text.replace("description: Camera", "description: 2 * 3 * x, a*b*c *.exr Camera", 1)
+        (tmp_path / "config.ocio").write_text(text.replace("family: Data", "family: *title"))
+        assert load_config(tmp_path / "config.ocio").getColorSpace("Non-Color").getFamily() == "crfnet"
+
+    def test_a_config_of_many_megabytes_is_refused(self, tmp_path):
+        with (tmp_path / "config.ocio").open("wb") as file:
+            file.truncate(MAX_CONFIG_SIZE + 1)
+        with pytest.raises(ConfigError) as caught:
+            load_config(tmp_path / "config.ocio")
+        assert caught.value.code == "config_unreadable"
 
 
 def tool(name):
@@ -145,7 +171,7 @@ class TestTools:
         folder = tmp_path_factory.mktemp("shot")
         for suffix in (".spi1d", ".cube", ".clf"):
             write_lut(folder / f"plate01{suffix}", LUT)
-        plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_pattern="shot_plate01.*.exr")
+        plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_patterns=("shot_plate01.*.exr",))
         write_config(folder / "config.ocio", portable_config([plate]), check={"CRF plate01": LUT})
         pixels = np.random.default_rng(0).uniform(-0.1, 1.1, (32, 48, 3)).astype(np.float32)
         write_image(folder / "shot_plate01.0001.exr", pixels)

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 
 from crfnet.configs.portable import portable_config
-from crfnet.configs.studio.sources import built_in_names, find_config, is_blender_config
+from crfnet.configs.sources import built_in_names, find_config
 from crfnet.errors import ConfigError
 
 
@@ -43,7 +43,7 @@ def test_a_folder_holds_a_config(config):
     assert find_config(str(config.parent)).path == moved
 
 
-def test_a_link_leads_to_the_file_that_is_changed(config, tmp_path):
+def test_a_link_leads_to_the_file_whose_luts_lie_beside_it(config, tmp_path):
     link = tmp_path / "link.ocio"
     link.symlink_to(config)
     assert find_config(str(link)).path == config
@@ -80,8 +80,9 @@ def test_the_environments_config(name, config, monkeypatch):
     monkeypatch.setenv("OCIO", "ocio://cg-config-latest")
     assert find_config(name).path is None
     monkeypatch.delenv("OCIO")
-    with pytest.raises(ConfigError, match="the environment variable OCIO is not set; name a config"):
+    with pytest.raises(ConfigError) as caught:
         find_config(name)
+    assert caught.value.code == "config_variable_unset"
 
 
 class TestBlender:
@@ -89,7 +90,6 @@ class TestBlender:
         path = blender(tmp_path / "blender")
         assert find_config(str(tmp_path / "blender")).path == path
         assert find_config(str(tmp_path / "blender" / "5.2")).path == path
-        assert is_blender_config(path)
 
     def test_its_executable(self, tmp_path, monkeypatch):
         path = blender(tmp_path / "blender")
@@ -115,27 +115,18 @@ class TestBlender:
         path = blender(tmp_path / "blender", version="5.2")
         assert find_config(str(tmp_path / "blender")).path == path
 
-    def test_another_config_is_no_blenders(self, config):
-        assert not is_blender_config(config)
-        assert not is_blender_config(None)
-
 
 @pytest.mark.parametrize(
-    ("name", "message"),
+    ("name", "code"),
     [
-        ("nowhere", "nowhere: is no config, no built-in config's name, and no Blender with one; built in are ocio://"),
-        ("ocio://nowhere", r"ocio://nowhere: is not built into this OpenColorIO \(.*\); known are ocio://default"),
-        ("nowhere.ocio", r"nowhere\.ocio: there is no such config; check the name"),
+        ("nowhere", "config_unknown"),
+        ("ocio://nowhere", "config_not_built_in"),
+        ("nowhere.ocio", "config_absent"),
+        ("a.ocioz", "config_archive"),
     ],
 )
-def test_anything_else_is_refused(name, message, tmp_path, monkeypatch):
+def test_anything_else_is_refused(name, code, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    with pytest.raises(ConfigError, match=message) as caught:
+    with pytest.raises(ConfigError) as caught:
         find_config(name)
-    assert "\n" not in str(caught.value)
-
-
-def test_an_archive_has_to_be_unpacked(tmp_path):
-    (tmp_path / "a.ocioz").write_bytes(b"PK")
-    with pytest.raises(ConfigError, match=r"a\.ocioz: is an archive; unpack it first: ocioarchive --extract a\.ocioz"):
-        find_config(str(tmp_path / "a.ocioz"))
+    assert caught.value.code == code

@@ -1,17 +1,98 @@
-"""What is read back of an estimate's files."""
+"""The files of an estimate, read back."""
 
 import json
 
+import numpy as np
 import pytest
 
-from crfnet.configs.studio.looks import read_looks
-from crfnet.errors import ConfigError
+from crfnet.configs.looks import read_looks
+from crfnet.defaults import ESTIMATES
+from crfnet.errors import ConfigError, LutError
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import Lut1D
+from crfnet.luts.rgb_lut import RgbLut1D
+from crfnet_core.colorimetry import AP1, DISPLAY_P3, REC709, Primaries
+from tests.helpers.looks import LUT, OTHER_LUT, write_look
+
+
+def test_folder_document_and_lut_are_one_look(tmp_path):
+    folder = write_look(tmp_path / "look", exposure=1.5, interop_id="lin_ap1_scene")
+    looks = [*read_looks(folder), *read_looks(folder / "plate01.json"), *read_looks(folder / "plate01.spi1d")]
+    assert len({look.space for look in looks}) == 1
+    space = looks[0].space
+    assert (space.name, space.exposure, space.file_patterns) == ("CRF plate01", 1.5, ("plate01.jpg",))
+    assert (space.linear_patterns, space.linear_primaries) == (("plate01_linear.exr", "plate01.#.exr"), AP1)
+    assert [(look.folder, look.lut == LUT) for look in looks] == [("look", True)] * 3
+
+
+def test_primaries_are_those_of_the_document(tmp_path):
+    wide = Primaries("my camera", (0.7, 0.3), (0.2, 0.7), (0.1, 0.05))
+    for primaries in (DISPLAY_P3, REC709, wide):
+        (look,) = read_looks(write_look(tmp_path / "look", primaries=primaries))
+        assert look.space.primaries == primaries
+
+
+def test_the_exposure_may_be_edited_in_the_looks_config(tmp_path):
+    folder = write_look(tmp_path / "look", exposure=1.5)
+    text = (folder / "config.ocio").read_text()
+    (folder / "config.ocio").write_text(text.replace("exposure: 1.5", "exposure: -2"))
+    assert read_looks(folder)[0].space.exposure == -2
+    (folder / "config.ocio").unlink()
+    assert read_looks(folder)[0].space.exposure == 1.5
+
+
+def test_many_estimates_have_folders_of_their_own(tmp_path):
+    write_look(tmp_path / "all" / "a", ["a.jpg"])
+    write_look(tmp_path / "all" / "b", ["b.jpg"])
+    with pytest.raises(ConfigError) as caught:
+        read_looks(tmp_path / "all")
+    assert caught.value.code == "folder_without_look"
+    (tmp_path / "all" / ESTIMATES).write_text("")
+    assert [look.space.name for look in read_looks(tmp_path / "all")] == ["CRF a", "CRF b"]
+
+
+@pytest.mark.parametrize("suffix", [".cube", ".clf", ".spi1d"])
+def test_a_lut_from_elsewhere_will_do(tmp_path, suffix):
+    write_lut(tmp_path / f"cam{suffix}", LUT)
+    (look,) = read_looks(tmp_path / f"cam{suffix}")
+    assert (look.space.name, look.space.exposure, look.space.file_patterns) == ("CRF cam", 0, ())
+    assert (look.space.linear_primaries, look.lut) == (None, LUT)
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "code"),
+    [("empty", None, "folder_without_look"), ("a.json", "{}", "not_a_look"), ("a.jpg", "no json", "not_a_look")],
+)
+def test_anything_else_is_refused(tmp_path, name, content, code):
+    path = tmp_path / name
+    path.mkdir() if content is None else path.write_text(content)
+    with pytest.raises(ConfigError) as caught:
+        read_looks(path)
+    assert caught.value.code == code
 
 
 @pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", 5, None])
-def test_a_document_that_names_no_file_beside_it_is_none(tmp_path, root, name):
+def test_a_document_does_not_lead_out_of_its_folder(tmp_path, root, name):
     document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
     document["files"]["spi1d"] = name
     (tmp_path / "plate.json").write_text(json.dumps(document))
-    with pytest.raises(ConfigError, match="is no document of crfnet estimate"):
+    with pytest.raises(ConfigError) as caught:
         read_looks(tmp_path / "plate.json")
+    assert caught.value.code == "not_a_look"
+
+
+def test_a_missing_lut_is_named(tmp_path):
+    folder = write_look(tmp_path / "look")
+    (folder / "plate01.spi1d").unlink()
+    with pytest.raises(LutError, match=r"plate01\.spi1d"):
+        read_looks(folder)
+
+
+def test_a_lut_of_another_kind_is_refused(tmp_path):
+    """One that leads from light to codes, and one whose channels differ."""
+    write_lut(tmp_path / "forward.spi1d", Lut1D(np.linspace(0, 1, 256) ** 0.45))
+    write_lut(tmp_path / "rgb.cube", RgbLut1D((LUT, LUT, OTHER_LUT)))
+    for name in ("forward.spi1d", "rgb.cube"):
+        with pytest.raises(LutError) as caught:
+            read_looks(tmp_path / name)
+        assert caught.value.code == "lut_without_inverse_response"

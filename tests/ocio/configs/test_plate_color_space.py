@@ -1,17 +1,19 @@
 """A plate's colour space as data, and added to any config."""
 
+import copy
+
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet.configs.files import write_config
-from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_space
+from crfnet.configs.plate_color_space import PlateColorSpace, add_plate_color_spaces
 from crfnet.configs.portable import portable_config
 from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError
 from crfnet.luts.files import write_lut
 from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, conversion_matrix
-from tests.helpers.configs import LUT, REC709_TO_AP1, SPACE, converted, loaded, rule_names
+from tests.helpers.configs import LUT, SPACE, converted, loaded
 
 BUILT_IN = ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v2.1.0_aces-v1.3_ocio-v2.3")
 
@@ -39,6 +41,14 @@ def small_config(version="2", roles="data: raw"):
     return OCIO.Config.CreateFromStream(SMALL.format(version=version, roles=roles))
 
 
+def added(config, *spaces):
+    """A copy of a config with plates, which finds their LUTs beside it."""
+    config = copy.deepcopy(config)
+    config.addSearchPath(".")
+    add_plate_color_spaces(config, spaces)
+    return config
+
+
 @pytest.fixture
 def folder(tmp_path):
     """A folder with the plate's LUT."""
@@ -49,87 +59,51 @@ def folder(tmp_path):
 class TestPlateColorSpace:
     @pytest.mark.parametrize("name", ["", "  "])
     def test_a_name_is_needed(self, name):
-        with pytest.raises(ConfigError, match="needs a name"):
+        with pytest.raises(ConfigError) as caught:
             PlateColorSpace(name, "a.spi1d")
+        assert caught.value.code == "nameless_color_space"
 
     @pytest.mark.parametrize(
         "lut_file", ["", ".", "/tmp/a.spi1d", "C:\\a.spi1d", "C:a.spi1d", "\\\\s\\d\\a", "../a.spi1d"]
     )
     def test_the_lut_lies_in_the_folder(self, lut_file):
-        with pytest.raises(ConfigError, match="put the LUT beside the config"):
+        with pytest.raises(ConfigError) as caught:
             PlateColorSpace("CRF", lut_file)
+        assert caught.value.code == "lut_outside_config_folder"
 
     @pytest.mark.parametrize("lut_file", ["a$b.spi1d", "a%b.spi1d"])
     def test_the_lut_is_no_variable(self, lut_file):
-        with pytest.raises(ConfigError, match="for variables"):
+        with pytest.raises(ConfigError) as caught:
             PlateColorSpace("CRF", lut_file)
+        assert caught.value.code == "lut_name_is_variable"
 
     @pytest.mark.parametrize("exposure", [np.nan, np.inf])
     def test_the_exposure_is_a_number(self, exposure):
-        with pytest.raises(ConfigError, match="must be a number of stops"):
+        with pytest.raises(ConfigError) as caught:
             PlateColorSpace("CRF", "a.spi1d", exposure=exposure)
+        assert caught.value.code == "exposure_not_finite"
 
 
 class TestAdding:
-    @pytest.mark.parametrize("base", BUILT_IN)
-    def test_the_base_keeps_everything_and_is_not_changed(self, base):
-        config = OCIO.Config.CreateFromBuiltinConfig(base)
-        before = config.serialize()
-        plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_pattern="shot.*")
-        found = add_plate_color_space(config, plate)
-        assert config.serialize() == before
-        assert found.getMinorVersion() == config.getMinorVersion()
-        assert rule_names(found) == ["CRF plate01", *rule_names(config)]
-        assert list(found.getColorSpaceNames()) == [*config.getColorSpaceNames(), "CRF plate01"]
-        assert dict(found.getRoles()) == dict(config.getRoles())
-        assert list(found.getSearchPaths()) == ["."]
-
-    @pytest.mark.parametrize("base", BUILT_IN)
-    def test_the_plate_is_converted_from_rec709_to_aces(self, folder, base):
-        config = add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(base), SPACE)
-        write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
-        written = loaded(folder / "config.ocio")
-        pixels = np.random.default_rng(0).uniform(-0.1, 1.1, (500, 3)).astype(np.float32)
-        expected = LUT.apply(pixels) @ REC709_TO_AP1.T
-        np.testing.assert_allclose(converted(written, "CRF plate01", "ACEScg", pixels), expected, atol=1e-5)
-        back = converted(written, "ACEScg", "CRF plate01", expected)
-        np.testing.assert_allclose(LUT.apply(back), LUT.apply(pixels), atol=1e-4)
-
     def test_a_config_without_rec709_goes_by_aces_interchange(self, folder):
-        config = add_plate_color_space(small_config(roles="aces_interchange: working"), SPACE)
+        config = added(small_config(roles="aces_interchange: working"), SPACE)
         write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
         written = loaded(folder / "config.ocio")
-        assert list(written.getSearchPaths()) == ["luts", "."]
         found = converted(written, "CRF plate01", "working", [[1, 1, 1], [1, 0, 0]])
         np.testing.assert_allclose(found, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
 
     def test_a_config_without_any_way_from_rec709_is_refused(self):
-        with pytest.raises(ConfigError, match="neither a space 'lin_rec709_scene' nor a role aces_interchange"):
-            add_plate_color_space(small_config(), SPACE)
+        with pytest.raises(ConfigError) as caught:
+            added(small_config(), SPACE)
+        assert caught.value.code == "config_without_rec709"
 
     def test_a_config_of_profile_1_gets_no_aliases_and_no_rules(self):
-        plate = PlateColorSpace("CRF plate01", "a.spi1d", aliases=("crf_plate01",), file_pattern="a.*")
-        found = add_plate_color_space(small_config(version="1", roles="aces_interchange: working"), plate)
+        plate = PlateColorSpace("CRF plate01", "a.spi1d", aliases=("crf_plate01",), file_patterns=("a.*",))
+        found = added(small_config(version="1", roles="aces_interchange: working"), plate)
         found.validate()
         assert found.getMajorVersion() == 1
         assert found.getColorSpace("CRF plate01") is not None
         assert found.getColorSpace("crf_plate01") is None
-
-    def test_our_own_space_is_replaced(self):
-        config = portable_config([PlateColorSpace("CRF a", "old.spi1d", ("crf_a",), file_pattern="old.*")])
-        found = add_plate_color_space(config, PlateColorSpace("CRF a", "new.spi1d", ("crf_a",), file_pattern="new.*"))
-        found.validate()
-        assert rule_names(found).count("CRF a") == 1
-        assert found.getColorSpaceFromFilepath("new.png")[0] == "CRF a"
-        assert "old.spi1d" not in found.serialize()
-
-    def test_without_a_new_pattern_the_old_rule_goes(self):
-        config = portable_config([PlateColorSpace("CRF a", "a.spi1d", file_pattern="old.*")])
-        assert "CRF a" not in rule_names(add_plate_color_space(config, PlateColorSpace("CRF a", "a.spi1d")))
-
-    def test_an_alias_of_our_own_space_is_refused(self):
-        with pytest.raises(ConfigError, match="uses this name for 'CRF plate01'"):
-            add_plate_color_space(portable_config([SPACE]), PlateColorSpace("crf_plate01", "a.spi1d"))
 
 
 class TestPrimaries:
@@ -137,7 +111,7 @@ class TestPrimaries:
 
     @pytest.mark.parametrize("base", [*BUILT_IN, "studio-config-latest"])
     def test_they_reach_aces_as_the_config_itself_converts_them(self, folder, base):
-        config = add_plate_color_space(OCIO.Config.CreateFromBuiltinConfig(base), self.PLATE)
+        config = added(OCIO.Config.CreateFromBuiltinConfig(base), self.PLATE)
         write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
         pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
         found = converted(loaded(folder / "config.ocio"), "CRF plate01", "ACES2065-1", pixels)

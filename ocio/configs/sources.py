@@ -1,4 +1,4 @@
-"""Which config a user means: a file, a name of OpenColorIO's built-in configs, $OCIO, or an installed Blender's."""
+"""The config that a user names: a file, a name of OpenColorIO's built-in configs, $OCIO, or an installed Blender."""
 
 from __future__ import annotations
 
@@ -9,11 +9,9 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
-from crfnet_core.errors import one_line
-
-from ...defaults import CONFIG_NAME
-from ...errors import ConfigError
-from ..files import load_config
+from ..defaults import CONFIG_NAME
+from ..errors import ConfigError
+from .files import load_config
 
 #: How OpenColorIO marks the names of built-in configs.
 BUILT_IN = "ocio://"
@@ -37,7 +35,7 @@ class ConfigSource:
     config : PyOpenColorIO.Config
         The config; not to be changed.
     name : str
-        What to call it.
+        The name in messages.
     path : Path or None
         Its file; None if it is built into OpenColorIO.
     """
@@ -48,7 +46,7 @@ class ConfigSource:
 
 
 def find_config(name: str) -> ConfigSource:
-    """Return the config that a user means.
+    """Return the config that a user names.
 
     Parameters
     ----------
@@ -59,11 +57,11 @@ def find_config(name: str) -> ConfigSource:
     Raises
     ------
     ConfigError
-        If there is none, or OpenColorIO refuses it.
+        If there is none, or it cannot be loaded.
     """
     if name in VARIABLE_NAMES:
         if not (value := os.environ.get(VARIABLE, "").strip()):
-            raise ConfigError(f"{name}: the environment variable {VARIABLE} is not set; name a config")
+            raise ConfigError("config_variable_unset", name=name, variable=VARIABLE)
         return find_config(value)
     if name.startswith(BUILT_IN):
         return _built_in(name)
@@ -71,10 +69,9 @@ def find_config(name: str) -> ConfigSource:
     if path is None and (f"{BUILT_IN}{name}" in built_in_names()):
         return _built_in(f"{BUILT_IN}{name}")
     if path is None:
-        message = "is no config, no built-in config's name, and no Blender with one"
-        raise ConfigError(f"{name}: {message}; built in are {', '.join(built_in_names())}")
+        raise ConfigError("config_unknown", name=name, known=", ".join(built_in_names()))
     if path.suffix.lower() == ".ocioz":
-        raise ConfigError(f"{path}: is an archive; unpack it first: ocioarchive --extract {path.name} --dir FOLDER")
+        raise ConfigError("config_archive", path=path)
     return ConfigSource(load_config(path), str(path), path)
 
 
@@ -84,27 +81,21 @@ def built_in_names() -> tuple[str, ...]:
     return tuple(BUILT_IN + name for name in ("default", "cg-config-latest", "studio-config-latest", *configs))
 
 
-def is_blender_config(path: Path | None) -> bool:
-    """Return whether a config is one that Blender reads at its start, whatever the project."""
-    return path is not None and path.parts[-3:] == ("datafiles", "colormanagement", CONFIG_NAME)
-
-
 def _built_in(name: str) -> ConfigSource:
     """Return a built-in config by its name with "ocio://"."""
     try:
         return ConfigSource(OCIO.Config.CreateFromFile(name), name, None)
-    except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
-        known = f"known are {', '.join(built_in_names())}"
-        raise ConfigError(f"{name}: is not built into this OpenColorIO ({one_line(problem)}); {known}") from None
+    except (OCIO.Exception, OCIO.ExceptionMissingFile):
+        raise ConfigError("config_not_built_in", name=name, known=", ".join(built_in_names())) from None
 
 
 def _config_file(path: Path) -> Path | None:
-    """Return the config file that a path means, with links resolved so that the file itself is changed; or None."""
+    """Return the config file that a path means, with links resolved, so that its LUTs are found; or None."""
     if (path.is_file() and not os.access(path, os.X_OK)) or path.suffix.lower() in (".ocio", ".ocioz"):
         return path.resolve()
     if path.is_dir() and (path / CONFIG_NAME).is_file():
         return (path / CONFIG_NAME).resolve()
     executable = path if path.is_file() else Path(shutil.which(str(path)) or "")
     home = path if path.is_dir() else executable.resolve().parent if executable.is_file() else None
-    found = sorted(match for pattern in BLENDER_CONFIGS if home for match in home.glob(pattern))
-    return found[-1].resolve() if found else None
+    matches = sorted(match for pattern in BLENDER_CONFIGS if home for match in home.glob(pattern))
+    return matches[-1].resolve() if matches else None

@@ -1,0 +1,151 @@
+"""A new config: another one, a studio's, a built-in or Blender's, with plates added.
+
+Everything else of the base stays: its profile version, roles, displays, views, looks and rules. Its files are found
+where they lie: the search path of the new config names the folders of the base in full. The LUTs of the new plates lie
+beside the new config. Nothing of the base is changed, nothing is deleted.
+"""
+
+from __future__ import annotations
+
+import copy
+import os
+from collections.abc import Collection, Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import PyOpenColorIO as OCIO
+
+from ..defaults import CONFIG_NAME
+from ..errors import ConfigError
+from ..luts.files import write_lut
+from ..luts.lut1d import Lut1D
+from ..output_files import check_config_folder, distinct_names, output_folder
+from ..staging import staged_files
+from .file_rules import is_counter_name
+from .files import write_config
+from .looks import Look
+from .plate_color_space import PlateColorSpace, add_plate_color_spaces
+from .plates import PlateInConfig, plates_in_config
+from .sources import ConfigSource
+
+
+@dataclass(frozen=True)
+class DerivedConfig:
+    """A config that was written with plates added.
+
+    Parameters
+    ----------
+    path : Path
+        The config.
+    files : tuple of Path
+        All files that were written, the config among them.
+    plates : tuple of PlateInConfig
+        The plates that were added.
+    without_rule : tuple of str
+        The file names, or patterns, that have no rule: many cameras give such a name, or several plates have it.
+    """
+
+    path: Path
+    files: tuple[Path, ...]
+    plates: tuple[PlateInConfig, ...]
+    without_rule: tuple[str, ...]
+
+
+def write_derived_config(
+    base: ConfigSource,
+    folder: Path,
+    looks: Sequence[Look],
+    *,
+    others: Mapping[str, Lut1D] | None = None,
+    overwrite: bool = False,
+) -> DerivedConfig:
+    """Write a config with plates' color spaces and file rules added to a base, and the plates' LUTs beside it.
+
+    A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". Names that cameras
+    give again and again ("IMG_0001.JPG") get no file rule: it would catch files of others.
+
+    Parameters
+    ----------
+    base : ConfigSource
+        The config to build on; it stays as it is.
+    folder : Path
+        The folder for `CONFIG_NAME` and the LUTs; it is made if need be.
+    looks : sequence of Look
+        The plates.
+    others : mapping of str to Lut1D, optional
+        Further LUT files, by their names.
+    overwrite : bool
+        Whether existing files may be replaced; those of the base never are.
+
+    Raises
+    ------
+    ConfigError, LutError, PlateError
+        If the folder cannot be written to, a file exists and may not be replaced, the base cannot be built on, or
+        OpenColorIO refuses the config or converts otherwise than the LUTs. The folder is as it was then.
+    """
+    target = folder / CONFIG_NAME
+    check_config_folder(folder)
+    if target.resolve() == base.path:
+        raise ConfigError("base_would_be_replaced", path=target)
+    config, luts, check = _relocated(base), dict(others or {}), dict[str, Lut1D]()
+    spaces, common = list[PlateColorSpace](), list[str]()
+    for look in looks:
+        space = _free_space(base, look, check, luts)
+        counters = tuple(filter(is_counter_name, space.file_patterns))
+        patterns = tuple(pattern for pattern in space.file_patterns if pattern not in counters)
+        spaces.append(replace(space, file_patterns=patterns))
+        common += counters
+        luts[space.lut_file] = check[space.name] = look.lut
+    shared = add_plate_color_spaces(config, spaces)
+    files = (target, *(folder / name for name in luts))
+    if not overwrite and (existing := [path for path in files if os.path.lexists(path)]):
+        raise ConfigError("output_exists", path=existing[0])
+    with output_folder(folder), staged_files(folder, overwrite=overwrite) as staged:
+        for name, lut in luts.items():
+            write_lut(staged / name, lut)
+        write_config(staged / CONFIG_NAME, config, check=check)
+    plates = tuple(plate for plate in plates_in_config(config) if plate.name in check)
+    return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *shared))))
+
+
+def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
+    """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
+    file, taken = Path(look.space.lut_file), {name.casefold() for name in names}
+    stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
+    lut_file = next(name for name in stems if name not in lut_files and not _has_file(base, name))
+    free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
+    name = next(name for name in free if base.config.getColorSpace(name) is None)
+    return replace(look.space, name=name, lut_file=lut_file)
+
+
+def _relocated(base: ConfigSource) -> OCIO.Config:
+    """Return a copy of a config that finds the files of its base, and then those of its new folder."""
+    config = copy.deepcopy(base.config)
+    folders = [folder for folder in config.getSearchPaths() if folder] or ["."]
+    config.clearSearchPaths()
+    if base.path is not None:
+        for folder in folders:
+            for path in _absolute_paths(folder, base.path.parent):
+                config.addSearchPath(path)
+    config.addSearchPath(".")
+    return config
+
+
+def _absolute_paths(folder: str, home: Path) -> list[str]:
+    """Return the absolute search paths for one of a config in `home`; the value of a variable may be absolute, too."""
+    if "$" in str(home) or str(home).count("%") > 1:
+        raise ConfigError("base_folder_is_variable", path=home)
+    if folder.startswith(("$", "%")):
+        return [f"{home}/{folder}", folder]
+    return [str(home / folder)]
+
+
+def _has_file(base: ConfigSource, name: str) -> bool:
+    """Return whether a config finds a file of this name on its search path."""
+    if base.path is None:
+        return False
+    try:
+        base.config.getCurrentContext().resolveFileLocation(name)
+    except (OCIO.Exception, OCIO.ExceptionMissingFile):
+        return False
+    return True

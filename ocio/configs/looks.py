@@ -1,0 +1,148 @@
+"""The files that an estimate wrote for a plate, read back: its LUT and its color space."""
+
+from __future__ import annotations
+
+import re
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+from crfnet_core.colorimetry import PHOTOGRAPHIC, REC709, Primaries
+from crfnet_core.errors import CRFNetError
+from crfnet_core.files import read_json
+
+from ..defaults import ESTIMATES
+from ..errors import ConfigError, LutError
+from ..luts.files import READERS, read_lut
+from ..luts.lut1d import Lut1D
+from ..luts.response import response_of_lut
+from ..output_files import OutputFiles
+from .file_rules import MOST_PATTERNS, plate_pattern
+from .files import load_config, plate_exposure
+from .plate_color_space import PlateColorSpace
+from .reference_space import LINEAR_NAMES
+
+#: Ends the name of a movie as a photograph: clip.mp4 frame 1.
+MOVIE_FRAME = re.compile(r" frame \d+$")
+
+
+@dataclass(frozen=True, eq=False)
+class Look:
+    """The look of a plate's camera.
+
+    Parameters
+    ----------
+    space : PlateColorSpace
+        The plate's color space; its LUT is a .spi1d file beside the config.
+    lut : Lut1D
+        The inverse response.
+    folder : str
+        The name of the folder that it comes from, which sets it apart from other plates of the name.
+    """
+
+    space: PlateColorSpace
+    lut: Lut1D
+    folder: str
+
+
+def read_looks(path: Path) -> list[Look]:
+    """Return the looks that an estimate wrote.
+
+    Parameters
+    ----------
+    path : Path
+        The folder, with one or several estimates; the JSON document of one; or a LUT file of an inverse response, which
+        may come from elsewhere.
+
+    Raises
+    ------
+    ConfigError
+        If there is nothing of the kind.
+    LutError
+        If a LUT cannot be read, or is not one of an inverse response.
+    """
+    path = path.resolve()
+    if path.is_dir():
+        pattern = "**/*.json" if (path / ESTIMATES).is_file() else "*.json"
+        documents = [file for file in sorted(path.glob(pattern)) if _document(file)]
+        if not documents:
+            raise ConfigError("folder_without_look", path=path)
+        return [look for document in documents for look in read_looks(document)]
+    if path.suffix.lower() in READERS:
+        return [_look(path, _document(path.with_suffix(".json")))]
+    document = _document(path)
+    if document is None:
+        raise ConfigError("not_a_look", path=path)
+    return [_look(path.with_name(document["files"]["spi1d"]), document)]
+
+
+def _look(lut_file: Path, document: dict[str, Any] | None) -> Look:
+    """Return the look of a LUT, with all that its document states."""
+    folder = lut_file.parent
+    if document:
+        names = [MOVIE_FRAME.sub("", photo["name"]) for photo in document["photographs"]]
+        photo = Path(names[0])
+        files = OutputFiles.named(folder, [photo])
+        files = replace(files, linear=tuple(folder / name for name in document["files"]["linear"]))
+        space = replace(
+            PlateColorSpace.from_outputs(files, photo, exposure=_exposure(folder, document)),
+            file_patterns=tuple(dict.fromkeys(map(plate_pattern, names)))[:MOST_PATTERNS],
+            primaries=_primaries(document),
+            linear_primaries=_linear_primaries(document),
+        )
+    else:
+        photo = Path(lut_file.name)
+        space = replace(PlateColorSpace.from_outputs(OutputFiles.named(folder, [photo]), photo), file_patterns=())
+    return Look(space, _inverse_response(lut_file), folder.name)
+
+
+def _inverse_response(path: Path) -> Lut1D:
+    """Return the LUT of an inverse response; raise a LutError if it is another kind of LUT."""
+    lut = read_lut(path)
+    try:
+        response_of_lut(lut)
+    except CRFNetError as problem:
+        raise LutError("lut_without_inverse_response", path=path, reason=problem) from problem
+    assert isinstance(lut, Lut1D)  # others have no response
+    return lut
+
+
+def _document(path: Path) -> dict[str, Any] | None:
+    """Return the document of an estimate, or None if the file is absent or something else."""
+    try:
+        document = read_json(path)
+        names = [document["color_space"], *(photo["name"] for photo in document["photographs"])]
+        names += [document["files"][kind] for kind in ("spi1d", "config")] + document["files"]["linear"]
+        float(document["exposure"]["stops"])
+        str(document["output_space"]["interop_id"])
+        _primaries(document)
+    except (OSError, KeyError, OverflowError, TypeError, ValueError):
+        return None
+    is_named = all(isinstance(name, str) and name and Path(name).name == name for name in names)
+    return document if is_named and document["photographs"] else None
+
+
+def _exposure(folder: Path, document: dict[str, Any]) -> float:
+    """Return the stops of a plate: those in the look's config, where they may have been edited, or the document."""
+    config = folder / document["files"]["config"]
+    space = load_config(config).getColorSpace(document["color_space"]) if config.is_file() else None
+    return plate_exposure(space) if space is not None else float(document["exposure"]["stops"])
+
+
+def _primaries(document: dict[str, Any]) -> Primaries:
+    """Return the primaries of a plate; unknown ones are taken for Rec.709."""
+    entry = document["primaries"]
+    if "red" not in entry:
+        return REC709
+    red, green, blue, white = ((float(x), float(y)) for x, y in map(entry.get, ("red", "green", "blue", "white")))
+    primaries = Primaries(str(entry["name"]), red, green, blue, white)
+    known = (each for each in PHOTOGRAPHIC.values() if replace(each, name=primaries.name, interop_id="") == primaries)
+    return next(known, primaries)
+
+
+def _linear_primaries(document: dict[str, Any]) -> Primaries | None:
+    """Return the primaries of the plate's linear files, by the Color Interop Forum's name; None if it is not known."""
+    name = document["output_space"]["interop_id"]
+    return next(
+        (primaries for primaries in LINEAR_NAMES if primaries.interop_id and primaries.interop_id == name), None
+    )

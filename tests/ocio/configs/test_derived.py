@@ -1,0 +1,263 @@
+"""Plates in a copy of somebody's config: the base stays, and everything of it means the same in the copy."""
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet.configs import derived
+from crfnet.configs.files import load_config
+from crfnet.configs.portable import portable_config
+from crfnet.configs.reference_space import REC709_TO_AP0
+from crfnet.errors import ConfigError, PlateError
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import inverse_response_lut
+from crfnet_core.colorimetry import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
+from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.configs import converted, loaded, rule_names
+from tests.helpers.folders import listed, tree
+from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look
+
+BUILT_IN = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
+
+THIRD_LUT = inverse_response_lut(ResponseCurve.gamma(2.6))
+
+CODES = np.linspace(0, 1, 30, dtype=np.float32).reshape(-1, 3)
+
+
+def conversions(config):
+    """Return what a config makes of gray and colored pixels: through all spaces, and all views of all displays."""
+    scene = config.getColorSpaceNames(OCIO.SEARCH_REFERENCE_SPACE_SCENE, OCIO.COLORSPACE_ALL)
+    names = [name for name in scene if "CRF" not in name and not config.getColorSpace(name).isData()]
+    pixels = {name: converted(config, name, "scene_linear", CODES) for name in names}
+    for display in config.getDisplaysAll():
+        for view in config.getViews(display):
+            shown = CODES.copy()
+            processor = config.getProcessor("scene_linear", display, view, OCIO.TRANSFORM_DIR_FORWARD)
+            processor.getDefaultCPUProcessor().applyRGB(shown)
+            pixels[f"{display} {view}"] = shown
+    return pixels
+
+
+def assert_same(found, expected):
+    assert found.keys() == expected.keys()
+    for name, pixels in expected.items():
+        np.testing.assert_array_equal(found[name], pixels, err_msg=name)
+
+
+@pytest.mark.parametrize("name", BUILT_IN)
+class TestBuiltIn:
+    def test_all_of_it_is_kept_and_the_plate_is_right_in_aces(self, name, small_look, tmp_path):
+        found = loaded(add(name, tmp_path / "show", small_look).path)
+        assert all_names(found) == all_names(OCIO.Config.CreateFromBuiltinConfig(name))
+        pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
+        expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
+        np.testing.assert_allclose(converted(found, NAME, "aces_interchange", pixels), expected, atol=1e-5)
+
+    def test_only_the_plates_own_files_change_their_space(self, name, small_look, tmp_path):
+        base = OCIO.Config.CreateFromBuiltinConfig(name)
+        found = loaded(add(name, tmp_path / "show", small_look).path)
+        assert [space_of(found, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
+        for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
+            assert found.getColorSpace(space_of(found, path)).getName().startswith("Linear Rec.709")
+        for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
+            assert space_of(found, path) == space_of(base, path)
+
+
+@pytest.mark.parametrize("primaries", [DISPLAY_P3, ADOBE_RGB, PROPHOTO])
+def test_other_primaries_are_right_in_aces(primaries, tmp_path):
+    folder = write_look(tmp_path / "look", primaries=primaries, exposure=1.5)
+    found = loaded(add(STUDIO, tmp_path / "show", folder).path)
+    pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
+    expected = 2**1.5 * LUT.apply(pixels) @ conversion_matrix(primaries, AP0).T
+    np.testing.assert_allclose(converted(found, NAME, "aces_interchange", pixels), expected, atol=3e-5)
+
+
+class TestBase:
+    """A studio's config with LUTs of its own."""
+
+    def test_it_stays_as_it_is_and_all_of_it_means_the_same(self, studio, small_look, tmp_path):
+        before = tree(studio.parent)
+        done = add(studio, tmp_path / "new", small_look)
+        assert tree(studio.parent) == before
+        assert listed(tmp_path / "new") == ["config.ocio", "plate01.spi1d"]
+        assert done.files == (tmp_path / "new" / "config.ocio", tmp_path / "new" / "plate01.spi1d")
+        found = loaded(done.path)
+        assert all_names(found) == all_names(loaded(studio))
+        assert_same(conversions(found), conversions(loaded(studio)))
+        home = str(studio.parent)
+        assert list(found.getSearchPaths()) == [f"{home}/luts", f"{home}/$SHOW/luts", "$SHOW/luts", "."]
+
+    @pytest.mark.parametrize("paths", [[".", "luts"], ["luts", "."], ["sub/../luts"], ["more", ".", "luts"], []])
+    @pytest.mark.parametrize("lut", [THIRD_LUT, None])
+    def test_a_lut_name_of_two_folders_stays_the_same_file(self, studio, small_look, tmp_path, paths, lut):
+        (studio.parent / "sub").mkdir()
+        write_lut(studio.parent / "film.spi1d", LUT)
+        if lut is not None:
+            (studio.parent / "more").mkdir()
+            write_lut(studio.parent / "more" / "film.spi1d", lut)
+        config = loaded(studio)
+        config.clearSearchPaths()
+        for path in paths:
+            config.addSearchPath(path)
+        studio.write_text(config.serialize())
+        found = conversions(loaded(add(studio, tmp_path / "new", small_look).path))
+        assert_same(found, conversions(loaded(studio)))
+
+    @pytest.mark.parametrize("is_absolute", [True, False])
+    def test_paths_that_begin_with_a_variable_mean_the_same_folder(self, studio, small_look, tmp_path, is_absolute):
+        (tmp_path / "new" / "other").mkdir(parents=True)
+        write_lut(tmp_path / "new" / "other" / "film.spi1d", THIRD_LUT)
+        (studio.parent / "other").mkdir()
+        write_lut(studio.parent / "other" / "film.spi1d", LUT)
+        config = loaded(studio)
+        config.clearSearchPaths()
+        config.addSearchPath("$WHERE")
+        config.addEnvironmentVar("WHERE", str(studio.parent / "other") if is_absolute else "other")
+        studio.write_text(config.serialize())
+        found = converted(loaded(add(studio, tmp_path / "new", small_look).path), "film", "scene_linear", CODES)
+        np.testing.assert_array_equal(found, converted(loaded(studio), "film", "scene_linear", CODES))
+
+    def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance):
+        """The plate's LUT would be called film.spi1d, like one of the base."""
+        look = write_look(tmp_path / "look", ["film.jpg"])
+        done = add(studio, tmp_path / "new", look)
+        assert listed(tmp_path / "new") == ["config.ocio", "film (look).spi1d"]
+        found = loaded(done.path)
+        assert_same(conversions(found), conversions(loaded(studio)))
+        light = converted(found, "CRF film", "scene_linear", CODES)
+        np.testing.assert_allclose(light, LUT.apply(CODES), atol=tolerance.plate)
+
+    def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
+        config = OCIO.Config.CreateRaw()
+        config.setVersion(1, 0)
+        config.addColorSpace(OCIO.ColorSpace(name="lin_srgb"))
+        config.setRole("scene_linear", "lin_srgb")
+        studio.write_text(config.serialize())
+        done = add(studio, tmp_path / "new", small_look)
+        assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, ())
+        assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
+
+    def test_a_folder_that_opencolorio_takes_for_a_variable_is_refused(self, studio, small_look, tmp_path):
+        moved = studio.parent.rename(tmp_path / "a$b") / studio.name
+        with pytest.raises(ConfigError) as caught:
+            add(moved, tmp_path / "new", small_look)
+        assert caught.value.code == "base_folder_is_variable"
+
+
+class TestAgain:
+    def test_more_looks_are_added_to_the_config_of_the_first(self, studio, small_look, tmp_path, tolerance):
+        one = add(studio, tmp_path / "one", small_look)
+        two = add(one.path, tmp_path / "two", write_look(tmp_path / "night", ["night.jpg"], lut=OTHER_LUT))
+        found = loaded(two.path)
+        assert [plate.name for plate in two.plates] == ["CRF night"]
+        for name, lut in ((NAME, LUT), ("CRF night", OTHER_LUT)):
+            light = converted(found, name, "scene_linear", CODES)
+            np.testing.assert_allclose(light, lut.apply(CODES), atol=tolerance.plate)
+        assert [space_of(found, path) for path in ("plate01.jpg", "night.jpg")] == [NAME, "CRF night"]
+
+    @pytest.mark.parametrize("is_together", [True, False])
+    def test_plates_of_one_file_name_keep_their_responses_and_none_gets_the_rule(
+        self, studio, tmp_path, tolerance, is_together
+    ):
+        luts = {"s010": LUT, "s020": OTHER_LUT, "s030": THIRD_LUT}
+        looks = [write_look(tmp_path / shot, lut=lut) for shot, lut in luts.items()]
+        if is_together:
+            done = add(studio, tmp_path / "show", *looks)
+        else:
+            path = studio
+            for number, look in enumerate(looks):
+                done = add(path, tmp_path / f"show{number}", look)
+                path = done.path
+        found = loaded(done.path)
+        for name, lut in zip((NAME, f"{NAME} (s020)", f"{NAME} (s030)"), luts.values(), strict=True):
+            light = converted(found, name, "scene_linear", CODES)
+            np.testing.assert_allclose(light, lut.apply(CODES), atol=tolerance.plate)
+        assert space_of(found, "/s010/plate01.jpg") == space_of(loaded(studio), "plate01.jpg") == "sRGB"
+        assert done.without_rule == ("plate01.jpg",)
+
+    def test_linear_files_of_one_name_and_different_spaces_get_no_rule(self, tmp_path):
+        looks = [write_look(tmp_path / "a", interop_id="lin_ap1_scene"), write_look(tmp_path / "b")]
+        found = loaded(add(STUDIO, tmp_path / "show", *looks).path)
+        assert space_of(found, "plate01_linear.exr") == space_of(OCIO.Config.CreateFromBuiltinConfig(STUDIO), "b.exr")
+
+    def test_the_same_again_writes_the_same_bytes(self, studio, small_look, tmp_path):
+        add(studio, tmp_path / "new", small_look)
+        before = tree(tmp_path / "new")
+        add(studio, tmp_path / "new", small_look, overwrite=True)
+        assert tree(tmp_path / "new") == before
+
+
+class TestFolder:
+    def test_the_base_is_never_replaced(self, studio, small_look):
+        base = studio.rename(studio.with_name("config.ocio"))
+        with pytest.raises(ConfigError) as caught:
+            add(base, base.parent, small_look, overwrite=True)
+        assert caught.value.code == "base_would_be_replaced"
+
+    @pytest.mark.parametrize("name", ["config.ocio", "plate01.spi1d"])
+    def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
+        (tmp_path / "show").mkdir()
+        (tmp_path / "show" / name).write_text("mine")
+        with pytest.raises(ConfigError) as caught:
+            add(STUDIO, tmp_path / "show", small_look)
+        assert caught.value.code == "output_exists"
+        assert listed(tmp_path / "show") == [name]
+        add(STUDIO, tmp_path / "show", small_look, overwrite=True)
+        assert (tmp_path / "show" / name).read_text() != "mine"
+
+    def test_a_failure_leaves_it_as_it_was(self, studio, small_look, monkeypatch, tmp_path):
+        def disk_is_full(*_arguments, **_options):
+            raise PlateError("the disk is full")
+
+        monkeypatch.setattr(derived, "write_config", disk_is_full)
+        with pytest.raises(PlateError):
+            add(studio, tmp_path / "new" / "show", small_look)
+        assert not (tmp_path / "new").exists()
+
+    def test_it_can_be_moved_if_the_base_is_built_in(self, small_look, tmp_path, tolerance):
+        add(STUDIO, tmp_path / "show", small_look)
+        (tmp_path / "show").rename(tmp_path / "elsewhere")
+        found = converted(loaded(tmp_path / "elsewhere" / "config.ocio"), NAME, "lin_rec709_scene", CODES)
+        np.testing.assert_allclose(found, LUT.apply(CODES), atol=tolerance.plate)
+
+
+class TestRules:
+    def test_a_cameras_own_name_gets_no_rule(self, tmp_path):
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", ["IMG_0042.JPG"]))
+        assert space_of(loaded(done.path), "IMG_0042.JPG") == "sRGB - Display"
+        assert space_of(loaded(done.path), "img_0042_linear.exr") == "Linear Rec.709 (sRGB)"
+        assert done.without_rule == ("IMG_0042.JPG",)
+
+    @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
+    def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
+        """The frames of `crfnet linearize` are called sky.0001.exr."""
+        look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
+        found = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert {space_of(found, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
+        assert space_of(found, "sky.v2.png") == "sRGB - Display"
+        linear = found.getColorSpace(interop_id).getName()
+        for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr"):
+            assert space_of(found, path) == linear
+
+    def test_a_movie_has_rules_for_its_file_and_its_linear_frames(self, tmp_path):
+        look = write_look(tmp_path / "look", ["clip.mp4 frame 1", "clip.mp4 frame 9"], interop_id="lin_ap1_scene")
+        found = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert space_of(found, "/x/clip.mp4") == "CRF clip"
+        assert [space_of(found, path) for path in ("clip.0001.exr", "clip_linear.exr")] == ["ACEScg"] * 2
+
+    @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
+    def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):
+        done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
+        assert rule_names(loaded(done.path))[:1] == [NAME]
+        assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"
+
+    def test_the_portable_config_of_an_estimate_is_a_base_too(self, small_look, tmp_path):
+        night = write_look(tmp_path / "night", ["night.jpg"])
+        found = loaded(add(small_look, tmp_path / "show", night).path)
+        assert_same(conversions(found), conversions(loaded(small_look / "config.ocio")))
+        assert rule_names(found)[:2] == ["CRF night", NAME]
+
+
+def test_hosts_find_plates_and_files_by_their_category():
+    config = portable_config([])
+    assert all("file-io" in space.getCategories() for space in config.getColorSpaces())
