@@ -18,11 +18,12 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core import ResponseCurve, ResponseEstimate, Window, WindowEstimate
-from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core import ResponseCurve, ResponseEstimate
+from crfnet_core.estimate.result import CameraAnswer, WindowEstimate
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, Verdict
+from crfnet_core.statistics.windows import Window
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:

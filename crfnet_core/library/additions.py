@@ -8,7 +8,7 @@ from pathlib import Path
 
 from crfnet_core.errors import CameraError, PhotoError
 from crfnet_core.estimate.analysis import analyze_photographs
-from crfnet_core.estimate.estimate import estimate_of
+from crfnet_core.estimate.estimate import estimate_from_evidence
 from crfnet_core.files import file_sha256
 from crfnet_core.library.camera import (
     Camera,
@@ -136,11 +136,12 @@ def _kept(path: Path, network: ResponseNetwork) -> KeptPhotograph:
     """Return what is kept of a photograph."""
     photo = read_photo(path)
     (analyzed,) = analyze_photographs(photo, network=network)
-    if found := estimate_of([analyzed], model=network.config.label).recognition:
+    if found := estimate_from_evidence([analyzed], model=network.config.label).recognition:
         raise PhotoError(f"{path}: {found.reason}; {found.advice}; a camera is known by photographs as it wrote them")
+    cut = replace(analyzed.photograph, windows=(), samples=analyzed.photograph.samples[:0])
     return KeptPhotograph(
         sha256=file_sha256(path),
         model=network.config.label,
         settings=CameraSettings.of(photo.metadata),
-        analyzed=replace(analyzed, windows=(), window_evidences=()),
+        analyzed=replace(analyzed, photograph=cut, window_evidences=()),
     )

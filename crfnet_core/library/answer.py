@@ -6,8 +6,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from crfnet_core.errors import CameraError
-from crfnet_core.estimate.estimate import editor_warnings, estimate_of
+from crfnet_core.errors import CameraError, Notice
+from crfnet_core.estimate.estimate import editor_warnings, estimate_from_evidence
 from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
 from crfnet_core.library.camera import Camera, KeptPhotograph, MeasuredResponse
 from crfnet_core.posterior import Prior, Verdict
@@ -93,14 +93,12 @@ def with_camera(own: ResponseEstimate, camera: Camera, *, prior: Prior | None = 
     """
     answer = camera_estimate(camera, model=own.model, prior=prior)
     found = _compared(own, camera, answer)
-    warnings = [own.recognition.reason] if own.recognition else []
+    warnings = [Notice("recognized", {"reason": own.recognition.reason})] if own.recognition else []
     warnings += [*editor_warnings(own.origins), *_other_cameras(camera, own), *answer.warnings]
     verdict = Verdict.DO_NOT_TRUST if own.recognition else answer.verdict
     if not found.agrees:
-        warnings.append(
-            f"the photograph's own estimate is {found.difference_stops:.2f} stop and E_est {found.difference:.2f} away"
-            f" from the response of {camera.name!r}, more than usual: look whether its picture mode is the same"
-        )
+        stops, error = found.difference_stops, found.difference
+        warnings.append(Notice("camera_disagrees", {"stops": stops, "error": error, "camera": repr(camera.name)}))
         verdict = Verdict.USABLE if verdict is Verdict.GOOD else verdict
     return replace(
         answer,
@@ -131,7 +129,7 @@ def _answer(camera: Camera) -> CameraAnswer:
 
 def _estimate(photographs: list[KeptPhotograph], model: str, prior: Prior | None = None) -> ResponseEstimate:
     """Return the estimate from kept photographs of one network."""
-    return estimate_of([photograph.analyzed for photograph in photographs], model=model, prior=prior)
+    return estimate_from_evidence([photograph.analyzed for photograph in photographs], model=model, prior=prior)
 
 
 def _measured_estimate(measured: MeasuredResponse) -> ResponseEstimate:
@@ -151,7 +149,7 @@ def _measured_estimate(measured: MeasuredResponse) -> ResponseEstimate:
         verdict=Verdict.of_errors(measured.shape_stops, error),
         prior="",
         origins=(),
-        warnings=measured.warnings,
+        warnings=tuple(map(Notice.from_text, measured.warnings)),
         model="",
         photos=(),
     )
@@ -168,12 +166,12 @@ def brightness_per_stop(curve: ResponseCurve) -> Float64Array:
     return np.asarray(np.log(2) * curve.irradiance * rise)
 
 
-def _other_cameras(camera: Camera, own: ResponseEstimate) -> list[str]:
+def _other_cameras(camera: Camera, own: ResponseEstimate) -> list[Notice]:
     """Return a warning if the files say that another camera took them."""
     name = camera.settings.camera
     others = dict.fromkeys(origin.camera for origin in own.origins if origin.camera)
     return [
-        f"the photograph is of {other}, but {camera.name!r} is {name}"
+        Notice("other_camera", {"other": other, "camera": repr(camera.name), "name": name})
         for other in others
         if name and other.casefold() != name.casefold()
     ]

@@ -103,7 +103,7 @@ class KeptPhotograph:
     @property
     def name(self) -> str:
         """The file's name."""
-        return self.analyzed.name
+        return self.analyzed.photograph.name
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import CameraError, CRFNetError, one_line
-from crfnet_core.estimate.analysis import THUMBNAIL, AnalyzedPhotograph
+from crfnet_core.estimate.analysis import THUMBNAIL, AnalyzedPhotograph, CutPhotograph
 from crfnet_core.files import read_json
 from crfnet_core.library.camera import Camera, CameraSettings, KeptPhotograph, MeasuredResponse, checked_name
 from crfnet_core.photograph.metadata import FileOrigin
@@ -131,7 +131,7 @@ def _measured(entry: Mapping[str, Any]) -> MeasuredResponse:
 
 def _photograph_document(photograph: KeptPhotograph) -> dict[str, Any]:
     """Return what is kept of a photograph, ready for JSON."""
-    analyzed = photograph.analyzed
+    analyzed = photograph.analyzed.photograph
     return {
         "name": analyzed.name,
         "sha256": photograph.sha256,
@@ -140,7 +140,7 @@ def _photograph_document(photograph: KeptPhotograph) -> dict[str, Any]:
         "origin": asdict(analyzed.origin) if analyzed.origin else None,
         "is_gray": analyzed.is_gray,
         "clipped": analyzed.clipped,
-        "evidence": vars(analyzed.evidence),
+        "evidence": vars(photograph.analyzed.evidence),
         "levels": {name: counts.astype(np.int64) for name, counts in vars(analyzed.levels).items()},
         "thumbnail": analyzed.thumbnail.ravel().astype(np.int64),
     }
@@ -155,18 +155,22 @@ def _photograph(entry: Mapping[str, Any]) -> KeptPhotograph:
         model=str(entry["network"]),
         settings=settings,
         analyzed=AnalyzedPhotograph(
-            name=str(entry["name"]),
+            photograph=CutPhotograph(
+                name=str(entry["name"]),
+                windows=(),
+                samples=np.empty((0, 0, 0, 3), np.float32),
+                thumbnail=_numbers(entry["thumbnail"], THUMBNAIL * THUMBNAIL).reshape(THUMBNAIL, THUMBNAIL),
+                levels=Levels(_numbers(levels["histogram"], BINS), _numbers(levels["luma"], BINS)),
+                make=settings.make,
+                origin=FileOrigin.from_dict(entry["origin"]) if entry["origin"] else None,
+                is_gray=bool(entry["is_gray"]),
+                clipped=float(entry["clipped"]),
+            ),
             evidence=Evidence(
                 location=_numbers(evidence["location"], size),
                 factor=_numbers(evidence["factor"], size, size),
                 log_odds=_numbers(evidence["log_odds"], odds),
             ),
-            thumbnail=_numbers(entry["thumbnail"], THUMBNAIL * THUMBNAIL).reshape(THUMBNAIL, THUMBNAIL),
-            levels=Levels(_numbers(levels["histogram"], BINS), _numbers(levels["luma"], BINS)),
-            make=settings.make,
-            origin=FileOrigin.from_dict(entry["origin"]) if entry["origin"] else None,
-            is_gray=bool(entry["is_gray"]),
-            clipped=float(entry["clipped"]),
         ),
     )
 

@@ -7,8 +7,9 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
-from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
 from crfnet_core.library import CameraSettings, offered_cameras, with_camera
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device
@@ -263,10 +264,12 @@ def _estimate(
         photos,
         network=network,
         prior=prior,
-        use_metadata=options.use_metadata,
-        device=_device(options.device),
-        windows=options.windows,
-        seed=options.seed,
+        options=AnalysisOptions(
+            use_metadata=options.use_metadata,
+            device=_device(options.device),
+            windows=options.windows,
+            seed=options.seed,
+        ),
         progress=progress,
     )
     return with_camera(estimate, camera, prior=prior) if camera else estimate

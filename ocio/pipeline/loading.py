@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import Camera, camera_estimate, find_camera
 from crfnet_core.network import ModelConfig, ResponseNetwork, model_folder
 from crfnet_core.posterior import Prior

@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import atomic_write_text, parse_json
 from crfnet_core.photograph.metadata.color_tags import Primaries
 
@@ -109,7 +109,7 @@ class PhotographRecord:
             verdict=estimate.verdict,
             uncertainty=estimate.uncertainty,
             shape_uncertainty_stops=estimate.shape_uncertainty,
-            warnings=estimate.warnings,
+            warnings=tuple(map(str, estimate.warnings)),
             summary=result_line(estimate, name=photograph.name),
         )
 

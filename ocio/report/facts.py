@@ -7,8 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.errors import beside_limits
-from crfnet_core.estimate.estimate import ResponseEstimate
-from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent

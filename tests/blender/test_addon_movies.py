@@ -187,7 +187,7 @@ def test_a_baked_movie_has_the_same_bytes_again(movie, tmp_path):
 def test_the_estimate_is_that_of_its_frames(addon, movie, movie_folder):
     from blender_addon.scene.stored_estimate import restored
     from crfnet.plates.frames import find_frames, sample_frames
-    from crfnet_core import ResponseNetwork, estimate_response, read_photo
+    from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
     from crfnet_core.network import DEFAULT_MODEL
 
     if not DEFAULT_MODEL.is_dir():
@@ -196,7 +196,9 @@ def test_the_estimate_is_that_of_its_frames(addon, movie, movie_folder):
     clip = load("clip", movie("rgb.mkv"))
     bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES")
     frames = sample_frames(find_frames(movie_folder / "%04d.png"))
-    expected = estimate_response(map(read_photo, frames), network=ResponseNetwork.load(), use_metadata=False)
+    expected = estimate_response(
+        map(read_photo, frames), network=ResponseNetwork.load(), options=AnalysisOptions(use_metadata=False)
+    )
     assert restored(clip).photos[-1] == "rgb.0012.png"
     np.testing.assert_array_equal(restored(clip).weights, expected.weights)
 

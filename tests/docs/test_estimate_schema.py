@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+from crfnet_core import AnalysisOptions, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
 from crfnet_core.photograph.metadata import FileOrigin
@@ -32,7 +32,9 @@ def problems(schema):
 
 @pytest.fixture(scope="module")
 def estimate(plate, fixed_model):
-    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), windows=2)
+    return estimate_response(
+        read_photo(plate), network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2)
+    )
 
 
 @pytest.fixture(scope="module")

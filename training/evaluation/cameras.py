@@ -18,7 +18,8 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.estimate.analysis import analyze_photographs
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_of
+from crfnet_core.estimate.estimate import estimate_from_evidence
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import Camera, CameraSettings, KeptPhotograph, compared
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.response.curve import ResponseCurve
@@ -141,7 +142,7 @@ def _read(case: RealPhotograph, stack: Stack, data: Path, network: ResponseNetwo
     """Return what the network reads in a photograph."""
     label, photo = network.config.label, read_real_photo(case)
     (analyzed,) = analyze_photographs(photo, network=network)
-    own = estimate_of([analyzed], model=label, bank=bank_without_fold(case, data))
+    own = estimate_from_evidence([analyzed], model=label, bank=bank_without_fold(case, data))
     return ReadPhotograph(
         case, stack, KeptPhotograph(case.name, label, CameraSettings.of(photo.metadata), analyzed), own
     )
@@ -151,7 +152,7 @@ def _together(photographs: Sequence[ReadPhotograph], data: Path) -> ResponseEsti
     """Return what is estimated from photographs of one body together, out of fold."""
     first = photographs[0]
     analyzed = [one.kept.analyzed for one in photographs]
-    return estimate_of(analyzed, model=first.kept.model, bank=bank_without_fold(first.case, data))
+    return estimate_from_evidence(analyzed, model=first.kept.model, bank=bank_without_fold(first.case, data))
 
 
 def _errors(true: ResponseCurve, found: ResponseCurve) -> Errors:

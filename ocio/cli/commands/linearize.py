@@ -7,7 +7,7 @@ from dataclasses import asdict
 from pathlib import Path
 
 from crfnet_core.errors import CameraError
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 
 from ... import pipeline, report
 from ...defaults import PLATES

@@ -7,11 +7,12 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import groupby
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
@@ -147,8 +148,8 @@ def queried_estimate(
 ) -> ResponseEstimate:
     """Return the product's estimate from photographs of one camera, asked as the query says."""
     asked = {"windows": query.windows, "coverage": query.coverage}
-    options: dict[str, Any] = {name: value for name, value in asked.items() if value is not None}
-    return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, **options)
+    options = AnalysisOptions(**{name: value for name, value in asked.items() if value is not None})
+    return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, options=options)
 
 
 def queried_curve(estimate: ResponseEstimate, query: Query) -> ResponseCurve:

@@ -9,7 +9,8 @@ from pathlib import Path
 
 from tqdm import tqdm
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata

@@ -11,6 +11,7 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
@@ -78,7 +79,9 @@ def measure_unusual(
             for way, (metadata, device) in ways_of_picture(kind).items():
                 if (one := label(scene, kind, way)) not in file.verdicts:
                     asked = replace(photo, metadata=metadata)
-                    file.verdicts[one] = estimate_response(asked, network=networks[name], device=device).verdict
+                    file.verdicts[one] = estimate_response(
+                        asked, network=networks[name], options=AnalysisOptions(device=device)
+                    ).verdict
                     file.save()
 
 
