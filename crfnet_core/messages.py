@@ -20,15 +20,15 @@ SENTENCES: Mapping[str, str] = {
     "other_schema": "the estimate has schema_version {found}, this version reads {known}: update it",
     # estimate: warnings; where JSON has them, their text does not change
     "as_written": "{text}",
-    "camera_disagrees": "the photograph's own estimate is {stops:.2f} stop and E_est {error:.2f} away from the response of"
-    " {camera}, more than usual: look whether its picture mode is the same",
+    "camera_disagrees": "the photograph's own estimate is {stops:.2f} stop and E_est {error:.2f} away from the response"
+    " of {camera}, more than usual: look whether its picture mode is the same",
     "clipped": "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure",
     "developed": "developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop"
     " the raw file to linear light, which needs no estimate",
     "edited": "saved by {editor}, which may have changed the tones: give the camera's own file",
     "gray": "gray photograph: one channel says less than three, and it may be a mixture of channels",
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",
-    "other_camera": "the photograph is of {other}, but {camera} is {name}",
+    "other_camera": "the photograph is of {other}, but {name!r} is {camera}",
     "recognized": "{reason}",
     "several_cameras": "photographs of different cameras ({cameras}): estimate each camera by itself",
 }

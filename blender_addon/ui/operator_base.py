@@ -8,7 +8,7 @@ import bpy
 
 from ..scene import plates, stored_estimate
 from ..work.errors import AddonError, CancelledError
-from ..work.wording import american
+from ..work.wording import problem_line
 from . import running
 
 #: Why nothing can be done with the response of a plate that has none.
@@ -83,5 +83,5 @@ def why_unchangeable(context: bpy.types.Context) -> str:
 
 def failed(operator: bpy.types.Operator, problem: Exception) -> set[str]:
     """Report why an operator did nothing, and return its result; that the user cancelled is no error."""
-    operator.report({"INFO" if isinstance(problem, CancelledError) else "ERROR"}, american(str(problem)))
+    operator.report({"INFO" if isinstance(problem, CancelledError) else "ERROR"}, problem_line(problem))
     return {"CANCELLED"}

@@ -14,9 +14,12 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
 from crfnet.output_files import OutputFiles, plain_stem
-from crfnet.pipeline import all_or_none, export_luts
+from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frames import FrameSequence
+from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import linear_targets, linearize_plates
+from crfnet.plates.linear_space import linear_space
+from crfnet.plates.primaries import PlatePrimaries
 from crfnet_core.photograph.metadata.color_tags import REC709, Primaries
 from crfnet_core.types import Progress, counted_from, show_progress
 
@@ -96,54 +99,52 @@ def write(
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
-    """Write the linear plate, or all its frames; a cancelled or failed job leaves the folder as it was."""
-    targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
+    """Write the linear plate, or all its frames; a canceled or failed job leaves the folder as it was."""
+    folder = _folder(job)
+    targets = linear_targets(folder / baked_name(job.plate), sequence)
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
-    linearize = partial(_linearize, job.plate.alpha_mode, lut, options)
-    with frame_reader(job.plate) as read, all_or_none(targets, overwrite=options.overwrite) as staged:
-        if job.plate.decoder is None:
-            linearize(read(sequence, progress), staged, progress)
-        else:
-            _linearize_decoded(read, sequence, staged, linearize, progress)
+    plan = OutputPlan(replace(output_files(job.plate, folder), linear=targets), options, lut_length=0)
+    with frame_reader(job.plate) as read:
+        linearize = partial(_linearize, job.plate, read)
+        deliver(plan, _light(lut, stops), [sequence], linearize=linearize, progress=progress)
     return Baked(targets, job.plate.has_frames)
 
 
-def _linearize_decoded(
+def _linearize(
+    plate: Plate,
     read: FrameReader,
     sequence: FrameSequence,
     targets: Sequence[Path],
-    linearize: Callable[[FrameSequence, Sequence[Path]], None],
-    progress: Progress | None,
+    lut: Lut1D,
+    options: PlateOptions,
+    *,
+    progress: Progress | None = None,
 ) -> None:
-    """Decode and linearise the frames of a movie, with a few decoded ones on the disk at a time."""
-    for start in range(0, len(targets), FRAMES_DECODED):
-        part = slice(start, start + FRAMES_DECODED)
-        frames = FrameSequence(sequence.paths[part], sequence.numbers[part])
-        linearize(read(frames, counted_from(progress, start, len(targets))), targets[part])
+    """Write frames as linear EXR, their alpha taken as by Blender; a few decoded ones are on the disk at a time."""
+    step = len(targets) if plate.decoder is None else FRAMES_DECODED
+    for start in range(0, len(targets), step):
+        part, counted = slice(start, start + step), counted_from(progress, start, len(targets))
+        files = read(FrameSequence(sequence.paths[part], sequence.numbers[part], sequence.missing), counted)
+        frames = PlateFrames(files.paths, files.numbers, files.missing, alpha_mode=plate.alpha_mode)
+        linearize_plates(frames, targets[part], lut, options, progress=counted if plate.decoder is None else None)
     show_progress(progress, len(targets), len(targets))
 
 
-def _linearize(
-    alpha_mode: str,
-    lut: Lut1D,
-    options: PlateOptions,
-    sequence: FrameSequence,
-    targets: Sequence[Path],
-    progress: Progress | None = None,
-) -> None:
-    """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
-    frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
-    linearize_plates(frames, targets, lut, options, progress=progress)
-
-
 def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:
-    """Write the LUT in three formats, and a portable config with the plate's colour space."""
+    """Write the LUT in three formats, and a portable config with the plate's color space."""
     folder = _folder(job)
-    files = output_files(job.plate, folder)
-    space = color_space(job.plate, files, stops, primaries)
-    return Exported(folder, export_luts(files, space, lut, overwrite=job.output.overwrite))
+    files, plates = output_files(job.plate, folder), PlateOptions(overwrite=job.output.overwrite)
+    space = files.plate_color_space(_photo(job.plate), file_pattern=job.plate.pattern)
+    plan = OutputPlan(files, plates, len(lut.values), space)
+    return Exported(folder, deliver(plan, _light(lut, stops, primaries)))
+
+
+def _light(lut: Lut1D, stops: float, primaries: Primaries = REC709) -> PlateLight:
+    """Return the meaning of the linear values."""
+    plate = PlatePrimaries(primaries, "as the plate is tagged")
+    return PlateLight(lut, stops, plate, linear_space(plate))
 
 
 def install_color_space(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Installed:
@@ -164,7 +165,7 @@ def identity(plate: Plate) -> str:
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
     """Return the files that the `crfnet` command would write for a plate into a folder."""
-    return OutputFiles.named(folder, [_photo(plate)], OutputOptions(has_sheet=False))
+    return OutputFiles.named(folder, [_photo(plate)], OutputOptions(has_sheet=False, has_linear=False))
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:

@@ -117,7 +117,7 @@ class ResponseEstimate(EqualByFields):
     photos : tuple of str
         File names of the photographs.
     recognition : Recognition, optional
-        The kind of the photographs, if they are not ordinary camera photographs: see `crfnet_core.photograph.recognition`.
+        The kind of the photographs, if they are not ordinary ones: see `crfnet_core.photograph.recognition`.
     camera : CameraAnswer, optional
         The stored camera whose response this is; None if it is estimated from the photographs alone.
     """

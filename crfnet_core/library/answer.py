@@ -171,7 +171,7 @@ def _other_cameras(camera: Camera, own: ResponseEstimate) -> list[Notice]:
     name = camera.settings.camera
     others = dict.fromkeys(origin.camera for origin in own.origins if origin.camera)
     return [
-        Notice("other_camera", {"other": other, "camera": repr(camera.name), "name": name})
+        Notice("other_camera", {"other": other, "name": camera.name, "camera": name})
         for other in others
         if name and other.casefold() != name.casefold()
     ]

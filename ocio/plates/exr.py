@@ -74,14 +74,19 @@ def linear_header(
         if attribute.name in KEPT_METADATA:
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
             kind = "int" if isinstance(attribute.value, int) else attribute.type
-            header.attribute(attribute.name, kind, attribute.value)
+            header.attribute(attribute.name, kind, _text(attribute.value))
     header.attribute("compression", "zips")
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
         else:
-            header.attribute(name, value)
+            header.attribute(name, _text(value))
     return header
+
+
+def _text(value: Any) -> Any:
+    """Return a text without what is not Unicode in it, which OpenImageIO does not take; any other value as it is."""
+    return value.encode(errors="replace").decode() if isinstance(value, str) else value
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:

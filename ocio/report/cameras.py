@@ -10,7 +10,7 @@ from typing import Any
 from crfnet_core.estimate.result import CameraAnswer
 from crfnet_core.library import Camera, KeptPhotograph
 
-from .facts import agreement
+from .facts import COMMAND, Phrases, agreement
 
 
 def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
@@ -21,9 +21,9 @@ def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
     return [f"A response of this camera is known; to use it, add {named}."]
 
 
-def offer_words(offer: CameraAnswer) -> str:
+def offer_words(offer: CameraAnswer, phrases: Phrases = COMMAND) -> str:
     """Return what a stored camera's response rests on, and how far the photograph's own estimate is from it."""
-    return f"{offer.basis}; this estimate is {agreement(offer)}"
+    return f"{offer.basis}; this estimate is {agreement(offer, phrases)}"
 
 
 def camera_line(camera: Camera) -> str:

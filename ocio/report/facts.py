@@ -48,10 +48,34 @@ class PhotoFacts:
         return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits{base}"
 
 
-def curve_error_words(estimate: ResponseEstimate) -> str:
+@dataclass(frozen=True)
+class Phrases:
+    """The phrases of a face: its remedies in its own terms, and whether it shows the figures of the literature.
+
+    Parameters
+    ----------
+    calibrate : str
+        Behind the advice about an estimate that is not to be trusted.
+    state_device : str
+        The same, if nothing names the camera.
+    has_e_est : bool
+        Whether errors are also given as E_est.
+    """
+
+    calibrate: str = ", or run crfnet calibrate"
+    state_device: str = ", or say with --taken-with which kind of camera took it, if it is a photograph"
+    has_e_est: bool = True
+
+
+#: The phrases of the command.
+COMMAND = Phrases()
+
+
+def curve_error_words(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    return f"{percent:.1f} % of the brightness range (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})"
+    figure = f" (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})" if phrases.has_e_est else ""
+    return f"{percent:.1f} % of the brightness range{figure}"
 
 
 def shape_error_words(estimate: ResponseEstimate) -> str:
@@ -68,25 +92,26 @@ def expected_errors(estimate: ResponseEstimate) -> str:
     return ", ".join(filter(None, [shape_error_words(estimate), curve_error_words(estimate)]))
 
 
-def basis(estimate: ResponseEstimate) -> str:
+def basis(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return the stored camera, or the prior and what the files say of their making; empty if it is not known."""
     if estimate.camera:
-        return camera_words(estimate.camera)
+        return camera_words(estimate.camera, phrases)
     if not estimate.prior:
         return ""
     return f"prior: {estimate.prior}; {_metadata_words(estimate)}"
 
 
-def camera_words(camera: CameraAnswer) -> str:
+def camera_words(camera: CameraAnswer, phrases: Phrases = COMMAND) -> str:
     """Return a stored camera, what its response rests on, and how far the photographs' own estimate is from it."""
     words = f'response of the camera "{camera.name}", {camera.basis}'
-    return words if camera.agrees is None else f"{words}; the photographs' own estimate is {agreement(camera)}"
+    return words if camera.agrees is None else f"{words}; the photographs' own estimate is {agreement(camera, phrases)}"
 
 
-def agreement(camera: CameraAnswer) -> str:
+def agreement(camera: CameraAnswer, phrases: Phrases = COMMAND) -> str:
     """Return how far the photographs that were compared with a stored camera are from it."""
     more = "" if camera.agrees else ", more than usual"
-    return f"{camera.difference_stops:.2f} stop (E_est {camera.difference:.2f}) away{more}"
+    figure = f" (E_est {camera.difference:.2f})" if phrases.has_e_est else ""
+    return f"{camera.difference_stops:.2f} stop{figure} away{more}"
 
 
 def agreeing(estimate: ResponseEstimate) -> str:

@@ -23,6 +23,7 @@ from crfnet_core.network import ResponseNetwork
 
 from ... import pipeline, report
 from ...interchange.files import write_response
+from ..remedies import CommandError
 from .printing import print_json, print_lines, progress_bar
 
 
@@ -42,7 +43,7 @@ def _add(arguments: argparse.Namespace) -> None:
     """Add photographs or a measured response to a camera."""
     photos, calibration = arguments.photos, arguments.from_calibration
     if bool(photos) == bool(calibration):
-        raise CameraError("give photographs, or --from-calibration FILE: one of them")
+        raise CommandError("photographs_or_calibration")
     library = CameraLibrary.of_user()
     if calibration:
         measured = read_calibration(calibration)

@@ -2,14 +2,14 @@
 
 import pytest
 
-from crfnet.defaults import FRAMES_ANALYZED, PRIORS
+from crfnet.defaults import FRAMES_ANALYZED
 from crfnet.movies.frames import MovieFrames
 from crfnet.movies.selection import chosen_photos
+from crfnet.movies.source import file_source
 from crfnet.options import EstimateOptions
-from crfnet.pipeline import estimate_photographs
+from crfnet.pipeline import estimate_files
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.posterior import Prior
+from crfnet_core.estimate.options import AnalysisOptions
 from tests.helpers.movies import SOURCE, make_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
@@ -66,10 +66,10 @@ def test_frames_have_names_bits_and_metadata(tmp_path):
 
 def test_a_published_curve_is_answered_with_its_color_space_unless_metadata_is_ignored(tmp_path, fixed_model):
     path = make_movie(tmp_path / "a.mp4", f"{H264} -color_trc arib-std-b67", source=SOURCE.replace("128x96", "320x240"))
-    network, prior = ResponseNetwork.load(fixed_model), Prior.load(PRIORS[0])
     with pytest.raises(PhotoError) as told:
-        estimate_photographs([path], network, prior, EstimateOptions())
+        estimate_files([file_source(path)], EstimateOptions(model=fixed_model))
     message = str(told.value)
     assert message.startswith(f"{path} frame 1: is encoded as HLG: so says its metadata (CICP)")
     assert 'in ACES configs "Rec.2100-HLG - Display"' in message
-    assert estimate_photographs([path], network, prior, EstimateOptions(use_metadata=False)).movies
+    options = EstimateOptions(model=fixed_model, analysis=AnalysisOptions(use_metadata=False))
+    assert estimate_files([file_source(path)], options).movies

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from functools import cache, lru_cache
 from itertools import groupby
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -147,7 +148,7 @@ def queried_estimate(
     photos: Sequence[Photo], query: Query, network: ResponseNetwork, bank: ResponseBank | None = None
 ) -> ResponseEstimate:
     """Return the product's estimate from photographs of one camera, asked as the query says."""
-    asked = {"windows": query.windows, "coverage": query.coverage}
+    asked: dict[str, Any] = {"windows": query.windows, "coverage": query.coverage}
     options = AnalysisOptions(**{name: value for name, value in asked.items() if value is not None})
     return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, options=options)
 

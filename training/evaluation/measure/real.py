@@ -10,6 +10,7 @@ from pathlib import Path
 from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
@@ -99,9 +100,14 @@ def estimates(
     photos: Sequence[Photo], kind: str, network: ResponseNetwork, bank: ResponseBank
 ) -> list[ResponseEstimate]:
     """Return the estimates from photographs of one body of a `RealPhotograph.kind`, in the order of `ways_of`."""
-    device, lost = (Device(kind) if kind in set(Device) else None), [without_exif(photo) for photo in photos]
+    told, lost = AnalysisOptions(device=Device(kind) if kind in set(Device) else None), list(map(without_exif, photos))
     estimate = partial(estimate_response, network=network, bank=bank)
-    return [estimate(photos), estimate(lost), estimate(lost, device=device), estimate(photos, use_metadata=False)]
+    return [
+        estimate(photos),
+        estimate(lost),
+        estimate(lost, options=told),
+        estimate(photos, options=AnalysisOptions(use_metadata=False)),
+    ]
 
 
 def without_exif(photo: Photo) -> Photo:
