@@ -131,7 +131,8 @@ def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
 
     network = ResponseNetwork.load(fixed_model)
 
-    def estimated(*paths, **options):
-        return estimate_response(map(read_photo, paths), network=network, options=AnalysisOptions(**options))
+    def estimated(*paths, prior=None, **options):
+        chosen = AnalysisOptions(**options)
+        return estimate_response(map(read_photo, paths), network=network, prior=prior, options=chosen)
 
     return estimated

@@ -33,7 +33,7 @@ from .workers import worker_pool
 NUMBER_BYTES = 8
 
 #: How often, and after how many seconds each, the record of files that another run has just written is looked for.
-RECORD_TRIALS, RECORD_SECONDS = 20, 0.1
+RECORD_TRIALS, RECORD_SECONDS = 10, 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -303,21 +303,17 @@ def _recorded(task: Task) -> PhotographRecord:
     try:
         if reason := unreadable_reason(task.photo):
             raise PlateError("unreadable", path=task.photo, reason=reason)
-        if not task.batch.plates.overwrite and any(os.path.lexists(path) for path in task.targets):
-            return _record_of_existing(task) or task.batch.done(task)
         return _done_once(task)
     except Exception as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
         return PhotographRecord(photograph=str(task.photo), options=task.options, error=_words(problem, task.photo))
 
 
 def _done_once(task: Task) -> PhotographRecord:
-    """Do a task; if another run has written its files meanwhile, return the record that this run is about to append."""
+    """Do a task; if another run has just written its files, return the record that it is about to append."""
     try:
-        return task.batch.done(task)
-    except PlateError as problem:
-        if problem.code != "written_meanwhile":
-            raise
-        for _ in range(RECORD_TRIALS):
+        return _record_of_existing(task) or task.batch.done(task)
+    except CRFNetError:
+        for _ in range(RECORD_TRIALS if _existing(task) else 0):
             record = task.batch.records.read().get(str(task.photo))
             if record and task.is_done(record):
                 return record
@@ -326,23 +322,30 @@ def _done_once(task: Task) -> PhotographRecord:
 
 
 def _record_of_existing(task: Task) -> PhotographRecord | None:
-    """Return the record of files that are there, as another run may have made it meanwhile; None for a killed run.
+    """Return the record of files that are there, as another run may have made it meanwhile; None without any record.
 
     Raises
     ------
     PlateError
         If they are those of another photograph, or of another program.
     """
+    there = [] if task.batch.plates.overwrite else _existing(task)
+    if not there:
+        return None
     records = task.batch.records.read()
     record = records.get(str(task.photo))
     if task.is_done(record):
         return record
     place = (task.folder.as_posix(), task.stem)
     is_owned = any((other.folder, other.stem) == place for other in records.values() if other is not record)
-    there = [path for path in task.targets if os.path.lexists(path)]
     if is_owned or (record is None and len(there) < len(task.targets)):
         raise PlateError("file_exists", path=there[0])
     return None
+
+
+def _existing(task: Task) -> list[Path]:
+    """Return the files of a task that are there."""
+    return [path for path in task.targets if os.path.lexists(path)]
 
 
 def _words(problem: Exception, photo: Path) -> str:

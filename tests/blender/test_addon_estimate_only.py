@@ -83,7 +83,7 @@ def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypat
     from crfnet.errors import PlateError
 
     def refuse(*_arguments, **_options):
-        raise PlateError("the disk is full, colour and all")
+        raise PlateError("the disk is full, color and all")
 
     monkeypatch.setattr(writers, "write", refuse)
     before = scene_state()
