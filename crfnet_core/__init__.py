@@ -14,6 +14,7 @@ errors, types  the errors that a user can fix; names of array types. messages ha
 
 The names below are the public interface: see docs/API.md. docs/METHOD.md explains the steps and their equations.
 Each is imported when it is first used, so that `import crfnet_core` waits neither for NumPy nor for onnxruntime.
+`crfnet.estimate` is called `estimate_photograph` here, where `estimate` is a package.
 """
 
 from importlib import import_module
@@ -22,57 +23,50 @@ from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
     from crfnet_core.errors import CRFNetError
-    from crfnet_core.estimate.estimate import ResponseEstimate, WindowEstimate, estimate_response
-    from crfnet_core.network import ModelConfig, ResponseNetwork
+    from crfnet_core.estimate.estimate import estimate_response
+    from crfnet_core.estimate.facade import estimate as estimate_photograph
+    from crfnet_core.estimate.options import AnalysisOptions
+    from crfnet_core.estimate.result import ResponseEstimate
+    from crfnet_core.network import ResponseNetwork
     from crfnet_core.photograph.image_io import read_photo
     from crfnet_core.photograph.photo import Photo
     from crfnet_core.response.curve import ResponseCurve
     from crfnet_core.response.emor import EmorBasis
-    from crfnet_core.response.metrics import estimation_error, linearization_error
-    from crfnet_core.statistics.windows import Window, select_windows
 
 __all__ = [
+    "AnalysisOptions",
     "CRFNetError",
     "EmorBasis",
-    "ModelConfig",
     "Photo",
     "ResponseCurve",
     "ResponseEstimate",
     "ResponseNetwork",
-    "Window",
-    "WindowEstimate",
+    "estimate_photograph",
     "estimate_response",
-    "estimation_error",
-    "linearization_error",
     "read_photo",
-    "select_windows",
 ]
 
-#: The module of each public name.
-_MODULES = {
-    "CRFNetError": "errors",
-    "EmorBasis": "response.emor",
-    "ModelConfig": "network",
-    "Photo": "photograph.photo",
-    "ResponseCurve": "response.curve",
-    "ResponseNetwork": "network",
-    "ResponseEstimate": "estimate.result",
-    "Window": "statistics.windows",
-    "WindowEstimate": "estimate.result",
-    "estimate_response": "estimate.estimate",
-    "estimation_error": "response.metrics",
-    "linearization_error": "response.metrics",
-    "read_photo": "photograph.image_io",
-    "select_windows": "statistics.windows",
+#: The module of each public name, and its name there.
+_PLACES = {
+    "AnalysisOptions": ("estimate.options", "AnalysisOptions"),
+    "CRFNetError": ("errors", "CRFNetError"),
+    "EmorBasis": ("response.emor", "EmorBasis"),
+    "Photo": ("photograph.photo", "Photo"),
+    "ResponseCurve": ("response.curve", "ResponseCurve"),
+    "ResponseEstimate": ("estimate.result", "ResponseEstimate"),
+    "ResponseNetwork": ("network", "ResponseNetwork"),
+    "estimate_photograph": ("estimate.facade", "estimate"),
+    "estimate_response": ("estimate.estimate", "estimate_response"),
+    "read_photo": ("photograph.image_io", "read_photo"),
 }
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name, or a module of this package, when it is first used (PEP 562)."""
-    if name in __all__:
-        found = getattr(import_module(f"{__name__}.{_MODULES[name]}"), name)
-        globals()[name] = found
-        return found
+    if name in _PLACES:
+        module, member = _PLACES[name]
+        globals()[name] = getattr(import_module(f"{__name__}.{module}"), member)
+        return globals()[name]
     if not name.startswith("_") and find_spec(f"{__name__}.{name}"):
         return import_module(f"{__name__}.{name}")
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

@@ -37,16 +37,30 @@ class CRFNetError(Exception):
         return filled(self.sentences.get(self.code, self.code), self.facts)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Notice:
-    """A finding that is no error, such as a reason to doubt an estimate: a code and its facts, as of `CRFNetError`."""
+    """A finding that is not an error, such as a reason to doubt an estimate: a code and its facts, as of `CRFNetError`.
+
+    Two notices are equal if their sentences are: a notice that was read from a document has its sentence alone.
+    """
 
     code: str
     facts: Mapping[str, object] = field(default_factory=dict)
 
+    @classmethod
+    def from_text(cls, text: str) -> Notice:
+        """Return the notice of a sentence whose code is not known."""
+        return cls("as_written", {"text": text})
+
     def __str__(self) -> str:
         """Return the sentence of the code, on one line."""
         return filled(SENTENCES.get(self.code, self.code), self.facts)
+
+    def __eq__(self, other: object) -> bool:
+        return str(self) == str(other) if isinstance(other, Notice) else NotImplemented
+
+    def __hash__(self) -> int:
+        return hash(str(self))
 
 
 def filled(sentence: str, facts: Mapping[str, object]) -> str:

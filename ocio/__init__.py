@@ -24,42 +24,34 @@ import crfnet_core
 
 if TYPE_CHECKING:
     from crfnet_core import (
+        AnalysisOptions,
         CRFNetError,
         EmorBasis,
-        ModelConfig,
         Photo,
         ResponseCurve,
         ResponseEstimate,
         ResponseNetwork,
-        Window,
-        WindowEstimate,
         estimate_response,
-        estimation_error,
-        linearization_error,
         read_photo,
-        select_windows,
     )
+    from crfnet_core import estimate_photograph as estimate
 
 __all__ = [
+    "AnalysisOptions",
     "CRFNetError",
     "EmorBasis",
-    "ModelConfig",
     "Photo",
     "ResponseCurve",
     "ResponseEstimate",
     "ResponseNetwork",
-    "Window",
-    "WindowEstimate",
+    "estimate",
     "estimate_response",
-    "estimation_error",
-    "linearization_error",
     "read_photo",
-    "select_windows",
 ]
 
 
 def __getattr__(name: str) -> Any:
     """Import a public name when it is first used (PEP 562)."""
     if name in __all__:
-        return getattr(crfnet_core, name)
+        return getattr(crfnet_core, "estimate_photograph" if name == "estimate" else name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

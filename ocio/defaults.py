@@ -3,14 +3,11 @@
 #: File name of the OpenColorIO config that is written beside the LUTs; Blender looks for the same name.
 CONFIG_NAME = "config.ocio"
 
-#: File names of the manifests in the output folder: of `crfnet estimate --each`, and of `crfnet linearize --each`.
+#: File names of the records in the output folder: of `crfnet estimate --each`, and of `crfnet linearize --each`.
 ESTIMATES, PLATES = "estimates.jsonl", "plates.jsonl"
 
 #: Entries of a LUT: 255 * 16 + 1, so that every 8-bit code lies on an entry and is converted exactly.
 LUT_LENGTH = 4081
-
-#: Windows cut from each photograph, as in `crfnet_core.estimate_response`.
-WINDOWS = 10
 
 #: The packaged priors, as in `crfnet_core.posterior`; the first is the default.
 PRIORS = ("camera", "any")

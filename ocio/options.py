@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
-from .defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS, WINDOWS
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.photograph.metadata import Device
+
+from .defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -18,28 +21,31 @@ class EstimateOptions:
         The folder or the name of the model; None for the default model.
     threads : int
         Threads of the network; 0 for as many as there are cores.
-    windows : int
-        Windows cut from each photograph.
-    seed : int
-        Seed of the choice of windows.
     prior : str or Path
         Which kinds of responses to expect: the name of a packaged prior, or a JSON file.
-    use_metadata : bool
-        Whether what the files say of their making counts.
-    device : str or None
-        What took them, one of `crfnet.defaults.DEVICES`, as a person knows it; None to go by the files.
     camera : str or None
         The stored camera whose response is the answer; None to estimate it from the photographs.
+    analysis : AnalysisOptions
+        How the photographs are analyzed.
     """
 
     model: Path | None = None
     threads: int = 0
-    windows: int = WINDOWS
-    seed: int = 0
     prior: str | Path = PRIORS[0]
-    use_metadata: bool = True
-    device: str | None = None
     camera: str | None = None
+    analysis: AnalysisOptions = field(default_factory=AnalysisOptions)
+
+
+def stated_device(name: str | None) -> Device | None:
+    """Return the device of a name in `crfnet.defaults.DEVICES`; None if the user states none."""
+    if name is None:
+        return None
+    return Device.UNKNOWN if name == "other" else Device(name)
+
+
+def device_name(device: Device | None) -> str | None:
+    """Return the name in `crfnet.defaults.DEVICES` of a stated device."""
+    return "other" if device is Device.UNKNOWN else device
 
 
 @dataclass(frozen=True, kw_only=True)

@@ -84,7 +84,7 @@ class OutputFiles:
         return self.luts[0]
 
     @property
-    def own(self) -> tuple[Path, ...]:
+    def unshared(self) -> tuple[Path, ...]:
         """Every file except the config, which other estimates may share."""
         sheet = () if self.sheet is None else (self.sheet,)
         return (*self.luts, *self.forward, *self.linear, *sheet, self.report)
@@ -156,7 +156,7 @@ def check_outputs(
         be replaced.
     """
     outputs = tuple(outputs)
-    targets = [path for files in outputs for path in files.own]
+    targets = [path for files in outputs for path in files.unshared]
     check_targets(folder, targets, photos=photos, shared=[files.config for files in outputs[:1]], overwrite=overwrite)
 
 
@@ -195,12 +195,13 @@ def check_targets(
     every = [*targets, *shared]
     for path in every:
         if os.path.realpath(path) in originals:
-            raise PlateError(f"{path}: is one of the photographs and would be replaced; choose another folder")
+            raise PlateError("replaces_photograph", path=path)
         if path.is_dir():
-            raise PlateError(f"{path}: is a folder, and a file of that name is to be written; choose another folder")
-    if not overwrite and (existing := [path.name for path in every if os.path.lexists(path)]):
-        what = f"{existing[0]} and {len(existing) - 1} more exist" if len(existing) > 1 else f"{existing[0]} exists"
-        raise PlateError(f"{folder}: {what} already; add --overwrite or choose another folder")
+            raise PlateError("folder_in_place", path=path)
+    if not overwrite and (existing := [path for path in every if os.path.lexists(path)]):
+        if len(existing) > 1:
+            raise PlateError("files_exist", path=folder, name=existing[0].name, more=len(existing) - 1)
+        raise PlateError("file_exists", path=existing[0])
 
 
 def check_folder(folder: Path) -> None:
@@ -213,9 +214,9 @@ def check_folder(folder: Path) -> None:
     """
     existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     if not existing.is_dir():
-        raise PlateError(f"{existing}: is not a folder; choose another for the output")
+        raise PlateError("not_a_folder", path=existing)
     if not os.access(existing, os.W_OK | os.X_OK):
-        raise PlateError(f"{existing}: is not writable; choose another folder for the output")
+        raise PlateError("not_writable", path=existing)
 
 
 def check_config_folder(folder: Path) -> None:
@@ -223,8 +224,7 @@ def check_config_folder(folder: Path) -> None:
     check_folder(folder)
     path = str(folder.absolute())
     if "$" in path or path.count("%") > 1:
-        reason = "OpenColorIO takes $ and % in it for variables and finds no LUT"
-        raise PlateError(f"{path}: {reason}; choose another folder")
+        raise PlateError("variables_in_path", path=path)
 
 
 @contextmanager

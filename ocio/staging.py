@@ -50,16 +50,25 @@ def staged_files(folder: Path, *, overwrite: bool = True) -> Iterator[Path]:
         yield temporary
         _publish(temporary, folder, overwrite=overwrite)
     except CRFNetError as problem:
-        raise type(problem)(str(problem).replace(str(temporary), str(folder))) from problem
+        raise _renamed(problem, temporary, folder) from problem
     finally:
         _remove(temporary, folder)
+
+
+def _renamed(problem: CRFNetError, temporary: Path, folder: Path) -> CRFNetError:
+    """Return an error that names files in `folder` in the place of those in the temporary one."""
+
+    def rename(fact: object) -> object:
+        return fact if isinstance(fact, int | float) else str(fact).replace(str(temporary), str(folder))
+
+    return type(problem)(str(rename(problem.code)), **{name: rename(fact) for name, fact in problem.facts.items()})
 
 
 def _publish(temporary: Path, folder: Path, *, overwrite: bool) -> None:
     """Move the files of one folder into another, or none of them; earlier files of these names move into `_EARLIER`."""
     files = sorted(path for path in temporary.iterdir())
     if not overwrite and (there := [path.name for path in files if os.path.lexists(folder / path.name)]):
-        raise PlateError(f"{folder / there[0]}: was written by another process meanwhile; choose another folder")
+        raise PlateError("written_meanwhile", path=folder / there[0])
     earlier = temporary / _EARLIER
     earlier.mkdir()
     target = folder
@@ -74,7 +83,7 @@ def _publish(temporary: Path, folder: Path, *, overwrite: bool) -> None:
             _take_back(path, folder / path.name, earlier / path.name)
         if not isinstance(problem, OSError):
             raise
-        raise PlateError(f"{target}: cannot be written ({problem.strerror or problem}); check the file") from problem
+        raise PlateError("file_not_written", path=target, reason=problem.strerror or problem) from problem
 
 
 def _take_back(path: Path, target: Path, earlier: Path) -> None:

@@ -127,7 +127,12 @@ def plate_file(tmp_path, codes) -> Path:
 @pytest.fixture
 def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
     """Estimate the response of files with the fixed model: estimate(path, ..., use_metadata=True)."""
-    from crfnet_core import ResponseNetwork, estimate_response, read_photo
+    from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
 
     network = ResponseNetwork.load(fixed_model)
-    return lambda *paths, **options: estimate_response(map(read_photo, paths), network=network, **options)
+
+    def estimated(*paths, prior=None, **options):
+        chosen = AnalysisOptions(**options)
+        return estimate_response(map(read_photo, paths), network=network, prior=prior, options=chosen)
+
+    return estimated

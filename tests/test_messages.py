@@ -9,6 +9,7 @@ import pytest
 
 import crfnet.messages
 import crfnet_core.messages
+from crfnet.cli import remedies
 from crfnet.errors import OutputError
 from crfnet_core.errors import CRFNetError, Notice, PhotoError
 
@@ -28,6 +29,8 @@ def stated(package):
             name = getattr(node.func, "id", getattr(node.func, "attr", ""))
             code = getattr(node.args[0], "value", None)
             if not (name.endswith("Error") or name == "Notice") or not isinstance(code, str) or " " in code:
+                continue
+            if name == "CommandError":
                 continue
             if name == "Notice":
                 facts = node.args[1] if len(node.args) > 1 else None
@@ -85,3 +88,12 @@ def test_errors_survive_pickling():
 
 def test_an_unknown_code_is_its_own_sentence():
     assert str(Notice("unknown", {"path": "{x}"})) == "unknown"
+
+
+def test_the_command_has_a_remedy_only_for_errors_that_are_raised():
+    """The sentences of the command's own errors stand beside them."""
+    known = {code for sentences in PACKAGES.values() for code in sentences}
+    assert set(remedies.REMEDIES) <= known
+    assert not set(remedies.SENTENCES) & known
+    text = "".join(path.read_text("utf-8") for path in (ROOT / "ocio/cli/commands").glob("*.py"))
+    assert all(f'CommandError("{code}"' in text for code in remedies.SENTENCES)

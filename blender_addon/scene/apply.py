@@ -7,6 +7,8 @@ from pathlib import Path
 
 import bpy
 
+from crfnet.options import device_name
+
 from ..work.errors import AddonError
 from ..work.job import Job
 from ..work.run import CompletedJob
@@ -63,8 +65,8 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
     settings.depth = job.output.depth
     options = job.estimation.options
     settings.camera = options.camera or ""
-    settings.device = options.device or "file"
-    settings.ignore_metadata = not options.use_metadata
+    settings.device = device_name(options.analysis.device) or "file"
+    settings.ignore_metadata = not options.analysis.use_metadata
     settings.prior = "file" if isinstance(options.prior, Path) else options.prior
     if settings.prior == "file" and Path(bpy.path.abspath(settings.prior_file)) != options.prior:
         settings.prior_file = str(options.prior)

@@ -107,9 +107,9 @@ def recognized_as(datablock: Datablock) -> str:
     return found["kind"] if found else ""
 
 
-def warnings(datablock: Datablock) -> list[str]:
-    """Return the warnings of the stored estimate."""
-    return datablock[KEY]["warnings"].splitlines()
+def warning_codes(datablock: Datablock) -> list[str]:
+    """Return the codes of the warnings of the stored estimate; files of earlier versions have none."""
+    return [code for code, _ in json.loads(datablock[KEY].get("notices", "[]"))]
 
 
 def camera_models(datablock: Datablock) -> list[str]:

@@ -92,7 +92,7 @@ def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
     if stored_estimate.is_loaded(datablock):
         return LOADED_WORDS
     verdict = stored_estimate.verdict(datablock)
-    if says_too_little(verdict, stored_estimate.warnings(datablock)):
+    if says_too_little(verdict, stored_estimate.warning_codes(datablock)):
         return MEAN_OF_CAMERAS
     word, icon, advice = VERDICTS[verdict]
     if verdict == stored_estimate.DO_NOT_TRUST:  # the first line is "The estimate is not to be trusted: ..."

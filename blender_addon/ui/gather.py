@@ -9,8 +9,9 @@ from typing import Any
 
 import bpy
 
-from crfnet.options import EstimateOptions
+from crfnet.options import EstimateOptions, stated_device
 from crfnet_core.colorimetry import Primaries
+from crfnet_core.estimate.options import AnalysisOptions
 
 from ..scene import color_management, node_group, plates, stored_estimate
 from ..work.errors import AddonError
@@ -62,9 +63,11 @@ def gather_job(
                 model=absolute(preferences().model),
                 threads=preferences().threads,
                 prior=_prior(chosen, is_needed=not is_estimated),
-                use_metadata=not chosen["ignore_metadata"],
-                device=None if chosen["device"] == "file" else chosen["device"],
                 camera=chosen["camera"].strip() or None,
+                analysis=AnalysisOptions(
+                    use_metadata=not chosen["ignore_metadata"],
+                    device=stated_device(None if chosen["device"] == "file" else chosen["device"]),
+                ),
             ),
             is_forced=chosen["force"],
             stored=stored_estimate.restored(datablock) if is_estimated else None,

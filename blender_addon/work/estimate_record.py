@@ -18,11 +18,13 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core import ResponseCurve, ResponseEstimate, Window, WindowEstimate
-from crfnet_core.estimate.result import CameraAnswer
+from crfnet_core import ResponseCurve, ResponseEstimate
+from crfnet_core.errors import Notice
+from crfnet_core.estimate.result import CameraAnswer, WindowEstimate
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, Verdict
+from crfnet_core.statistics.windows import Window
 
 
 def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
@@ -39,7 +41,8 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "metadata": json.dumps([dataclasses.asdict(origin) for origin in estimate.origins], ensure_ascii=False),
         "recognition": json.dumps(estimate.recognition and dataclasses.asdict(estimate.recognition)),
         "camera": json.dumps(estimate.camera and dataclasses.asdict(estimate.camera), ensure_ascii=False),
-        "warnings": "\n".join(estimate.warnings),
+        "warnings": "\n".join(map(str, estimate.warnings)),
+        "notices": json.dumps([[notice.code, dict(notice.facts)] for notice in estimate.warnings], ensure_ascii=False),
         "weights": estimate.weights.tolist(),
         "brightness": estimate.curve.brightness.tolist(),
         "lower": estimate.band[0].tolist(),
@@ -103,7 +106,7 @@ def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
         verdict=Verdict(entries["verdict"]),
         prior=entries.get("prior", ""),
         origins=tuple(map(FileOrigin.from_dict, json.loads(entries.get("metadata", "[]")))),
-        warnings=_lines(entries["warnings"]),
+        warnings=tuple(_warnings(entries)),
         model=entries["model"],
         photos=_lines(entries["photos"]),
         recognition=Recognition.from_dict(json.loads(entries.get("recognition", "null"))),
@@ -126,6 +129,14 @@ def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),
         )
+
+
+def _warnings(entries: Mapping[str, Any]) -> Iterator[Notice]:
+    """Yield the warnings; files of earlier versions have their sentences alone."""
+    if "notices" in entries:
+        yield from (Notice(code, facts) for code, facts in json.loads(entries["notices"]))
+    else:
+        yield from map(Notice.from_text, _lines(entries["warnings"]))
 
 
 def _lines(text: str) -> tuple[str, ...]:

@@ -6,24 +6,17 @@ from __future__ import annotations
 from collections.abc import Callable
 from contextlib import suppress
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache, partial
+from functools import cache, partial
 from pathlib import Path
 
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut
-from crfnet.pipeline import (
-    anchored_exposure,
-    estimate_frames,
-    estimate_photographs,
-    load_network,
-    load_prior,
-    response_lut,
-)
+from crfnet.pipeline import FileEstimate, anchored_exposure, estimate_files, response_lut
 from crfnet.plates.frames import FrameSequence
+from crfnet.plates.primaries import plate_primaries
 from crfnet.report import verdict_lines
 from crfnet_core import ResponseEstimate
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
-from crfnet_core.library import offered_cameras
 from crfnet_core.photograph.image_io.file_kinds import file_kind
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Progress, show_progress
@@ -34,13 +27,10 @@ from .errors import AddonError, CancelledError
 from .frame_files import frames_of, primaries_of, sampled_files
 from .job import Anchor, ApplyMode, Job, Plate
 from .target_check import check_targets
-from .wording import is_loaded, loaded_line, panel_line
+from .wording import is_loaded, loaded_line, panel_phrases
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
-
-#: The network of the last estimate stays loaded.
-_load_network = lru_cache(maxsize=1)(load_network)
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,7 +71,7 @@ class CompletedJob:
         """The verdict and the warnings in words, one line each."""
         if is_loaded(self.estimate):
             return (loaded_line(self.estimate.model),)
-        return tuple(map(panel_line, verdict_lines(self.estimate)))
+        return tuple(verdict_lines(self.estimate, panel_phrases()))
 
     @property
     def is_withheld(self) -> bool:
@@ -119,39 +109,33 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     """
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
     check_targets(job, sequence)
-    if job.estimation.stored is not None and not job.estimation.is_forced:
-        check_is_encoded(job.plate, job.plate.file, job.config)
-    estimate = job.estimation.stored or estimate_plate(job, sequence(), progress)
-    primaries, offers = _primaries(job, sequence), _offers(job, estimate)
-    estimated = CompletedJob(job, estimate, job.exposure.stops, (), None, primaries, offers=offers)
+    if job.estimation.stored is not None:
+        return _completed(_restored(job, job.estimation.stored, sequence), sequence, progress)
+    estimated = _estimated(job, estimate_plate(job, sequence(), progress))
     try:
         return _completed(estimated, sequence, progress)
     except CancelledError:
         raise
     except (AddonError, CRFNetError) as problem:
-        if job.estimation.stored is not None:
-            raise
         return replace(estimated, problem=problem)
 
 
-def _offers(job: Job, estimate: ResponseEstimate) -> tuple[tuple[str, str], ...]:
-    """Return the `offers` of a job; none if it asks for a stored camera, or the metadata was left out."""
-    options = job.estimation.options
-    if job.estimation.stored is not None or options.camera:
-        return ()
-    return tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in offered_cameras(estimate))
+def _restored(job: Job, estimate: ResponseEstimate, sequence: Callable[[], FrameSequence]) -> CompletedJob:
+    """Return a job with its stored estimate; where the files of the plate are not found, its primaries are Rec.709."""
+    if not job.estimation.is_forced:
+        check_is_encoded(job.plate, job.plate.file, job.config)
+    primaries = job.estimation.primaries or REC709
+    if job.estimation.primaries is None:
+        with suppress(CRFNetError):
+            primaries = primaries_of(job.plate, sequence(), is_encoded=is_said_encoded(job))
+    return CompletedJob(job, estimate, job.exposure.stops, (), None, primaries)
 
 
-def _primaries(job: Job, sequence: Callable[[], FrameSequence]) -> Primaries:
-    """Return the primaries of a plate; where the files of a stored estimate are not found, Rec.709."""
-    if job.estimation.primaries is not None:
-        return job.estimation.primaries
-    try:
-        return primaries_of(job.plate, sequence(), is_encoded=is_said_encoded(job))
-    except CRFNetError:
-        if job.estimation.stored is None:
-            raise
-        return REC709
+def _estimated(job: Job, found: FileEstimate) -> CompletedJob:
+    """Return a job with its new estimate."""
+    primaries = plate_primaries(found.firsts[0].tags).primaries or REC709
+    offers = tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in found.offers)
+    return CompletedJob(job, found.estimate, job.exposure.stops, (), None, primaries, offers=offers)
 
 
 def _completed(
@@ -184,13 +168,13 @@ def _lut(estimate: ResponseEstimate, length: int) -> Lut1D:
     return response_lut(estimate, length=length)
 
 
-def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> ResponseEstimate:
+def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> FileEstimate:
     """Return the response of a plate, estimated from its file or several of its frames, and from further photographs.
 
     Raises
     ------
     AddonError
-        If the colour space of the plate or a photograph is logarithmic or linear and the job does not force the
+        If the color space of the plate or a photograph is logarithmic or linear and the job does not force the
         estimate.
     CRFNetError
         If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
@@ -205,13 +189,10 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
             for plate, frames in zip(plates, files, strict=True):
                 _check_is_encoded(plate, frames.paths[0], job.config)
         paths = [path for frames in files for path in frames.paths]
-        prior, network = load_prior(options), _load_network(options)
-        has_metadata = options.use_metadata and all(plate.has_metadata for plate in plates)
+        has_metadata = options.analysis.use_metadata and all(plate.has_metadata for plate in plates)
         is_overruled = has_metadata and job.estimation.is_forced and is_tagged(paths)
-        options = replace(options, use_metadata=has_metadata and not is_overruled)
-        if len(plates) == 1:
-            return estimate_frames(files[0], network, prior, options, progress=progress)
-        return estimate_photographs(paths, network, prior, options, progress=progress).estimate
+        analysis = replace(options.analysis, use_metadata=has_metadata and not is_overruled)
+        return estimate_files(files, replace(options, analysis=analysis), progress=progress)
 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:

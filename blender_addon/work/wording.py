@@ -1,60 +1,48 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the add-on says of an estimate, in the American English of Blender's interface."""
+"""The add-on's own sentences about estimates and errors, by their codes."""
 
 from __future__ import annotations
 
-import re
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from crfnet.report import Phrases
     from crfnet_core import ResponseEstimate
 
-#: British spellings in the messages of `crfnet_core` and `ocio`, and the American ones.
-_AMERICAN = {
-    "colour": "color",
-    "grey": "gray",
-    "linearise": "linearize",
-    "linearisation": "linearization",
-    "analyse": "analyze",
-    "cancelled": "canceled",
-    "centre": "center",
-}
-
-_BRITISH = re.compile("|".join(_AMERICAN), re.IGNORECASE)
-
-#: What messages say of the command's options and of Python's packages, and what there is in Blender instead.
-_IN_BLENDER = {
-    "ignore metadata": "tick Estimate Anyway under Advanced",
-    "add --encoded": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
-    "with --taken-with which": "with Taken With under Advanced which",
-    "there is no such file; check the name, or give a sequence such as plate.%04d.png or plate.####.png": "there is no"
-    " such file; find it with File, External Data",
-    "are too far apart; say which frames to use": "are too far apart to be one sequence; move those away that do not"
-    " belong to it",
-    "give any, camera or a JSON file": "choose another Prior File, or expect Camera",
-    "there is no frame of this name; check the name and the frames": "none of its frames is found; find them with File,"
-    " External Data",
-    ", or give the primaries of all with --primaries": "",
-    ", or run crfnet calibrate": "",
-    "pip install 'pi-heif' 'pillow'": "install the add-on again from its zip, or save it as JPEG or PNG",
-    "pip install 'av', or save it": "save it",
-}
-
-#: The remedy in Blender by the code of an error, whose own sentence names none; it follows the sentence after "; ".
+#: Code of an error -> what to do in Blender, behind "; " at the end of its sentence, which names no button.
 REMEDIES = {
     # library
     "no_camera": "choose another Camera under Advanced, or none",
+    # movies and plates
+    "exr_untagged": "choose for it a color space that is not linear, or tick Estimate Anyway under Advanced",
+    "frames_far_apart": "move those away that do not belong to the sequence",
+    "no_such_frames": "find them with File, External Data",
+    "no_such_plate": "find it with File, External Data",
+    # photograph
+    "heif_package_missing": "install the add-on again from its zip, or save it as JPEG or PNG",
+    "tagged_color_space": "tick Estimate Anyway under Advanced",
+    "tagged_encoding": "tick Estimate Anyway under Advanced",
+    "tagged_linear": "tick Estimate Anyway under Advanced",
+    # pipeline
+    "file_exists": "tick Overwrite",
+    "files_exist": "tick Overwrite",
+    # posterior
+    "no_prior": "choose another Prior File, or expect Camera",
 }
 
-#: What shows that a word is part of a path, a file name or a quoted name.
-_NAME = re.compile(r"[/\\\"']|\.\w")
+#: Code of a warning -> the few words that fit into Blender's status bar; other warnings stand there as they are.
+SHORT_WARNINGS = {
+    "clipped": "mostly clipped",
+    "developed": "developed from a raw file by {editor}",
+    "edited": "saved by {editor}",
+    "gray": "gray photograph",
+    "narrow_range": "no window covers the range of brightness",
+    "several_cameras": "photographs of different cameras",
+}
 
-#: The estimation error in the units of the literature, which the panel leaves out.
-_ESTIMATION_ERROR = re.compile(r" \(E_est [\d.]+\)")
-
-#: How the warning begins of a picture that hardly tells one response from another, such as a gray card.
-_SAYS_TOO_LITTLE = "no window covers the range of brightness"
+#: The code of the warning about a picture that hardly tells one response from another, such as a gray card.
+NARROW_RANGE = "narrow_range"
 
 #: Each verdict as a sentence about the response, for one-line reports.
 _SENTENCES = {
@@ -63,8 +51,16 @@ _SENTENCES = {
     "do not trust": "the response is not to be trusted",
 }
 
-#: How the model of a response is named that was loaded from a LUT file, so that it is no estimate and has no verdict.
+#: The beginning of the model's name of a response that was loaded from a LUT file: it is not an estimate.
 LOADED = "loaded from "
+
+
+def panel_phrases() -> Phrases:
+    """Return the phrases of the panel for the sentences of `crfnet.report`."""
+    from crfnet.report import Phrases
+
+    device = ", or say with Taken With under Advanced which kind of camera took it, if it is a photograph"
+    return Phrases(calibrate="", state_device=device, has_e_est=False)
 
 
 def is_loaded(estimate: ResponseEstimate) -> bool:
@@ -73,29 +69,14 @@ def is_loaded(estimate: ResponseEstimate) -> bool:
 
 
 def loaded_line(model: str) -> str:
-    """Return what the panel says of a response that was loaded from a LUT file, in place of a verdict."""
+    """Return the panel's line about a response that was loaded from a LUT file, in place of a verdict."""
     return f"The response is {model}: this is no estimate, so there is no verdict."
-
-
-def american(text: str) -> str:
-    """Return a message in American spelling, with Blender's settings in the place of the command's options.
-
-    Words that belong to a file or a quoted name stay as they are.
-    """
-    for of_command, in_blender in _IN_BLENDER.items():
-        text = text.replace(of_command, in_blender)
-    return " ".join(word if _NAME.search(word) else _BRITISH.sub(_spelled, word) for word in text.split(" "))
 
 
 def problem_line(problem: Exception) -> str:
     """Return the sentence of an error, with the remedy in Blender."""
     remedy = REMEDIES.get(getattr(problem, "code", ""))
-    return american(f"{problem}; {remedy}" if remedy else str(problem))
-
-
-def panel_line(line: str) -> str:
-    """Return a line of the report as the panel says it: in American spelling, without E_est."""
-    return american(_ESTIMATION_ERROR.sub("", line))
+    return f"{problem}; {remedy}" if remedy else str(problem)
 
 
 def capitalized(text: str) -> str:
@@ -103,28 +84,32 @@ def capitalized(text: str) -> str:
     return text[:1].upper() + text[1:]
 
 
-def says_too_little(verdict: str, warnings: Iterable[str]) -> bool:
+def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
     """Return whether an estimate is little more than the mean of cameras, though its verdict is good or usable."""
-    return verdict != "do not trust" and any(warning.startswith(_SAYS_TOO_LITTLE) for warning in warnings)
+    return verdict != "do not trust" and NARROW_RANGE in codes
 
 
 def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
     """Return one line for Blender's status bar: the plate, the verdict, the first warning, and what was done.
 
-    Blender cuts lines that are too long in their middle, so the advice behind the colon of a warning is left out.
+    Blender cuts lines that are too long in their middle, so warnings are short.
     """
     if is_loaded(estimate):
         return f"{name}: the response is {estimate.model}; {done}"
-    first, *others = estimate.warnings or ("",)
-    finding = first.partition(": ")[0]
-    warning = f" (warning: {finding}{f', and {len(others)} more' if others else ''})" if first else ""
+    warning = ""
+    if estimate.warnings:
+        more = f", and {len(estimate.warnings) - 1} more" if estimate.warnings[1:] else ""
+        warning = f" (warning: {_first_warning(estimate)}{more})"
     sentence = _SENTENCES[estimate.verdict.value]
-    if says_too_little(estimate.verdict.value, estimate.warnings):
+    if says_too_little(estimate.verdict.value, [each.code for each in estimate.warnings]):
         sentence = "the response is little more than the mean of cameras"
-    return american(f"{name}: {sentence}{warning}; {done}")
+    return f"{name}: {sentence}{warning}; {done}"
 
 
-def _spelled(match: re.Match[str]) -> str:
-    """Return the American spelling of a British one, with its capital letter."""
-    american_word = _AMERICAN[match[0].lower()]
-    return american_word.capitalize() if match[0][0].isupper() else american_word
+def _first_warning(estimate: ResponseEstimate) -> str:
+    """Return the first warning in a few words."""
+    first = estimate.warnings[0]
+    if estimate.recognition and first.code == "recognized":
+        return estimate.recognition.kind.value
+    short = SHORT_WARNINGS.get(first.code)
+    return short.format(**first.facts) if short else str(first)

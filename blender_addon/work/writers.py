@@ -5,6 +5,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 
 from crfnet.configs.derived import write_derived_config
@@ -14,9 +15,12 @@ from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
 from crfnet.output_files import OutputFiles, plain_stem
-from crfnet.pipeline import all_or_none
+from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frames import FrameSequence
+from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import linear_targets, linearize_plates
+from crfnet.plates.linear_space import linear_space
+from crfnet.plates.primaries import PlatePrimaries
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.types import Progress
 
@@ -92,27 +96,37 @@ def write(
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
-    """Write the linear plate, or all its frames; a cancelled or failed job leaves the folder as it was."""
-    targets = linear_targets(_folder(job) / baked_name(job.plate), sequence)
+    """Write the linear plate, or all its frames; a canceled or failed job leaves the folder as it was."""
+    folder = _folder(job)
+    targets = linear_targets(folder / baked_name(job.plate), sequence)
     options = PlateOptions(
         depth=job.output.depth, exposure=stops, overwrite=job.output.overwrite, is_encoded=is_said_encoded(job)
     )
-    with frame_reader(job.plate) as read, all_or_none(targets, overwrite=options.overwrite) as staged:
-        _linearize(job.plate.alpha_mode, lut, options, read(sequence), staged, progress)
+    plan = OutputPlan(replace(output_files(job.plate, folder), linear=targets), options, lut_length=0)
+    with frame_reader(job.plate) as read:
+        linearize = partial(_linearize, job.plate.alpha_mode)
+        deliver(plan, _light(lut, stops), [read(sequence)], linearize=linearize, progress=progress)
     return Baked(targets, job.plate.is_sequence)
 
 
 def _linearize(
     alpha_mode: str,
-    lut: Lut1D,
-    options: PlateOptions,
     sequence: FrameSequence,
     targets: Sequence[Path],
+    lut: Lut1D,
+    options: PlateOptions,
+    *,
     progress: Progress | None = None,
 ) -> None:
     """Write frames as linear EXR, their alpha taken as by Blender; see `Plate.alpha_mode`."""
     frames = PlateFrames(sequence.paths, sequence.numbers, sequence.missing, alpha_mode=alpha_mode)
     linearize_plates(frames, targets, lut, options, progress=progress)
+
+
+def _light(lut: Lut1D, stops: float, primaries: Primaries = REC709) -> PlateLight:
+    """Return the meaning of the linear values."""
+    plate = PlatePrimaries(primaries, "as the plate is tagged")
+    return PlateLight(lut, stops, plate, linear_space(plate))
 
 
 def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Exported:
@@ -130,7 +144,7 @@ def export(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) ->
 
 def output_files(plate: Plate, folder: Path) -> OutputFiles:
     """Return the files that the `crfnet` command would write for a plate into a folder."""
-    return OutputFiles.named(folder, [_photo(plate)], OutputOptions(has_sheet=False))
+    return OutputFiles.named(folder, [_photo(plate)], OutputOptions(has_sheet=False, has_linear=False))
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:

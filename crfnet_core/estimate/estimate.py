@@ -5,16 +5,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 import numpy as np
 
-from crfnet_core.errors import PriorError
-from crfnet_core.estimate.analysis import AnalyzedPhotograph, analyze_photographs
+from crfnet_core.errors import Notice, PriorError
+from crfnet_core.estimate.analysis import AnalyzedPhotograph, CutPhotograph, Photographs, analyze_photographs
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate, WindowEstimate
 from crfnet_core.network import ResponseNetwork, pooling
-from crfnet_core.photograph.metadata import Device, FileOrigin
-from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Levels, Recognition, log_factor, recognize
 from crfnet_core.posterior import (
     Family,
@@ -27,26 +27,19 @@ from crfnet_core.posterior import (
     scene_similarities,
 )
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOWS_PER_PHOTOGRAPH
 from crfnet_core.types import Progress
-
-__all__ = ["ResponseEstimate", "WindowEstimate", "editor_warnings", "estimate_of", "estimate_response"]
 
 #: Fraction of samples at the ends of the range above which a photograph counts as mostly clipped.
 MOSTLY_CLIPPED = 0.5
 
 
 def estimate_response(
-    photos: Photo | Iterable[Photo],
+    photos: Photographs,
     *,
     network: ResponseNetwork,
     prior: Prior | None = None,
     bank: ResponseBank | None = None,
-    use_metadata: bool = True,
-    device: Device | None = None,
-    windows: int = WINDOWS_PER_PHOTOGRAPH,
-    seed: int = 0,
-    coverage: int = FULL_COVERAGE,
+    options: AnalysisOptions | None = None,
     progress: Progress | None = None,
 ) -> ResponseEstimate:
     """Estimate the response of the camera that took one or several photographs.
@@ -58,83 +51,66 @@ def estimate_response(
 
     Parameters
     ----------
-    photos : Photo or iterable of Photo
-        Photographs of one camera with the same settings; of an iterator, one photograph is in memory
-        at a time, and the windows of all.
+    photos : Photo, CutPhotograph, or iterable of them
+        Photographs of one camera with the same settings. Of an iterator, the pixels of one photograph are in memory at
+        a time, and the windows of all.
     network : ResponseNetwork
         See `ResponseNetwork.load`.
     prior : Prior, optional
         How likely each family of responses is before photographs are seen; by default the packaged prior "camera".
     bank : ResponseBank, optional
         The responses to choose from; by default the packaged ones.
-    use_metadata : bool
-        Whether what the files say of their making counts: see `crfnet_core.photograph.metadata`.
-    device : Device, optional
-        What took them all, where somebody knows, in place of what the files say; UNKNOWN is a camera of another kind.
-    windows : int
-        Windows of each photograph.
-    seed : int
-        Seed of the choice of windows.
-    coverage : int
-        Code values, of 256, that a window should hold; see `select_windows`.
+    options : AnalysisOptions, optional
+        How the photographs are analyzed. Photographs that are cut already keep the choices of their cutting.
     progress : callable, optional
         Called with (done, total) after every window.
 
     Raises
     ------
     PhotoError
-        If there is no photograph, one is smaller than a window, something else is given, or a file names an encoding
-        with a published curve.
+        If there is no photograph, one is smaller than a window, an argument of another kind is given, or a file names
+        an encoding with a published curve.
     PriorError
-        If `prior` is no `Prior`.
+        If `prior` is not a `Prior`.
     """
     if prior is not None and not isinstance(prior, Prior):
-        raise PriorError(f"a {type(prior).__name__} is no Prior; Prior.load makes one of a name or a file")
-    analyzed = analyze_photographs(
-        photos,
-        network=network,
-        use_metadata=use_metadata,
-        device=device,
-        windows=windows,
-        seed=seed,
-        coverage=coverage,
-        progress=progress,
-    )
-    return estimate_of(analyzed, model=network.config.label, prior=prior, bank=bank)
+        raise PriorError("not_a_prior", kind=type(prior).__name__)
+    analyzed = analyze_photographs(photos, network=network, options=options, progress=progress)
+    return estimate_from_evidence(analyzed, model=network.config.label, prior=prior, bank=bank)
 
 
-def estimate_of(
-    photographs: Sequence[AnalyzedPhotograph],
+def estimate_from_evidence(
+    analyzed: Sequence[AnalyzedPhotograph],
     *,
     model: str,
     prior: Prior | None = None,
     bank: ResponseBank | None = None,
 ) -> ResponseEstimate:
-    """Return the response of the camera that took photographs which a network has read.
+    """Return the response of the camera that took photographs whose evidence is known.
 
     Parameters
     ----------
-    photographs : sequence of AnalyzedPhotograph
-        At least one; all read by one network.
+    analyzed : sequence of AnalyzedPhotograph
+        At least one; all analyzed by one network.
     model : str
         The label of this network.
     prior, bank : Prior and ResponseBank, optional
         As of `estimate_response`.
     """
     bank = bank or ResponseBank.load()
+    photographs = [one.photograph for one in analyzed]
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
     prior = (prior or Prior.load()).reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
-    evidences = [photograph.evidence for photograph in photographs]
-    posterior = Posterior.from_evidences(bank, prior, evidences, independent=independent)
+    posterior = Posterior.from_evidences(bank, prior, [one.evidence for one in analyzed], independent=independent)
     makes = tuple(photograph.make for photograph in photographs)
     recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
     doubts = _doubts(photographs, origins)
     return ResponseEstimate(
         curve=posterior.curve,
         weights=EmorBasis.load().project(posterior.curve.brightness),
-        windows=_window_estimates(photographs, bank, prior),
+        windows=_window_estimates(analyzed, bank, prior),
         uncertainty=posterior.expected_error,
         shape_uncertainty=posterior.expected_shape_error,
         band=posterior.band(),
@@ -149,68 +125,55 @@ def estimate_of(
     )
 
 
-def editor_warnings(origins: Sequence[FileOrigin]) -> list[str]:
+def editor_warnings(origins: Sequence[FileOrigin]) -> list[Notice]:
     """Return a warning for each program that edited or developed the photographs."""
     editors = dict.fromkeys((origin.editor, origin.is_developed) for origin in origins if origin.editor)
-    return [_editor_warning(editor, is_developed) for editor, is_developed in editors]
-
-
-def _editor_warning(editor: str, is_developed: bool) -> str:
-    """Return what a program may have done to the tones, and what to give instead."""
-    if is_developed:
-        return (
-            f"developed from a raw file by {editor}, and not by the camera: give the camera's own file, or develop the"
-            " raw file to linear light, which needs no estimate"
-        )
-    return f"saved by {editor}, which may have changed the tones: give the camera's own file"
+    return [Notice("developed" if is_developed else "edited", {"editor": editor}) for editor, is_developed in editors]
 
 
 def _window_estimates(
-    photographs: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
+    analyzed: Sequence[AnalyzedPhotograph], bank: ResponseBank, prior: Prior
 ) -> tuple[WindowEstimate, ...]:
-    """Return what each window says by itself, in the order of the photographs."""
-    found = []
-    for number, photo in enumerate(photographs):
-        if not photo.windows:
+    """Return the estimate of each window alone, in the order of the photographs."""
+    estimates = []
+    for number, one in enumerate(analyzed):
+        if not one.photograph.windows:
             continue
-        for window, evidence, kept in zip(
-            photo.windows, photo.window_evidences, pooling.agreeing(photo.window_evidences).tolist(), strict=True
-        ):
+        agrees = pooling.agreeing(one.window_evidences).tolist()
+        for window, evidence, kept in zip(one.photograph.windows, one.window_evidences, agrees, strict=True):
             alone = Posterior.from_evidences(bank, prior, [evidence])
-            found.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, kept))
-    return tuple(found)
+            estimates.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, kept))
+    return tuple(estimates)
 
 
-def _doubts(photographs: Sequence[AnalyzedPhotograph], origins: Sequence[FileOrigin]) -> list[str]:
-    """Return why an estimate cannot be good, in words; the expected errors leave it out."""
+def _doubts(photographs: Sequence[CutPhotograph], origins: Sequence[FileOrigin]) -> list[Notice]:
+    """Return why an estimate cannot be good; the expected errors do not show it."""
     doubts, cameras = [], list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
     if len(cameras) > 1:
-        doubts.append(f"photographs of different cameras ({', '.join(cameras)}): estimate each camera by itself")
+        doubts.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
     if np.mean([photograph.clipped for photograph in photographs]) > MOSTLY_CLIPPED:
-        doubts.append(
-            "mostly clipped: the answer is little more than the mean of cameras, so take one with another exposure"
-        )
+        doubts.append(Notice("clipped"))
     return doubts
 
 
-def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[str]) -> Verdict:
+def _verdict(posterior: Posterior, recognition: Recognition | None, doubts: Sequence[Notice]) -> Verdict:
     """Return how far to trust the answer of a posterior."""
     verdict = Verdict.DO_NOT_TRUST if recognition else Verdict.from_posterior(posterior)
     return Verdict.USABLE if doubts and verdict is Verdict.GOOD else verdict
 
 
 def _warnings(
-    photographs: Sequence[AnalyzedPhotograph],
+    photographs: Sequence[CutPhotograph],
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
-    doubts: Sequence[str],
-) -> tuple[str, ...]:
-    """Return what makes a poor estimate likely, in words."""
-    warnings = [recognition.reason] if recognition else []
+    doubts: Sequence[Notice],
+) -> tuple[Notice, ...]:
+    """Return what makes a poor estimate likely."""
+    warnings = [Notice("recognized", {"reason": recognition.reason})] if recognition else []
     warnings += [*editor_warnings(origins), *doubts]
     windows = [window for photograph in photographs for window in photograph.windows]
     if windows and not any(window.covers_range for window in windows):
-        warnings.append("no window covers the range of brightness: expect a poor estimate")
+        warnings.append(Notice("narrow_range"))
     if all(photograph.is_gray for photograph in photographs):
-        warnings.append("gray photograph: one channel says less than three, and it may be a mixture of channels")
+        warnings.append(Notice("gray"))
     return tuple(warnings)

@@ -1,4 +1,4 @@
-"""What an estimate says: a response, its evidence and how far to trust it; and the same as a document.
+"""The result: a response, its evidence and how far to trust it; and the same as a document.
 
 docs/estimate.schema.json describes the document. `crfnet estimate` writes it too, with the names of its files.
 """
@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.errors import EstimateError, one_line
+from crfnet_core.errors import EstimateError, Notice
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.recognition import Recognition
 from crfnet_core.posterior import Family, LikelyKind, Verdict
@@ -84,7 +84,7 @@ class ResponseEstimate(EqualByFields):
     weights : ndarray, float64, shape (11,)
         The EMoR weights nearest to it.
     windows : tuple of WindowEstimate
-        What each window says by itself.
+        The estimate of each window alone.
     uncertainty : float
         The expected E_est of this estimate.
     shape_uncertainty : float
@@ -98,15 +98,15 @@ class ResponseEstimate(EqualByFields):
     prior : str
         Name of the prior.
     origins : tuple of FileOrigin
-        What the metadata of each photograph says of how it was made; empty if metadata is ignored.
-    warnings : tuple of str
-        What makes a poor estimate likely, in words.
+        How each photograph was made, by its metadata; empty if metadata is ignored.
+    warnings : tuple of Notice
+        What makes a poor estimate likely.
     model : str
         Name and hash of the network.
     photos : tuple of str
         File names of the photographs.
     recognition : Recognition, optional
-        What the photographs are if they are no camera photographs: see `crfnet_core.photograph.recognition`.
+        The kind of the photographs, if they are not ordinary ones: see `crfnet_core.photograph.recognition`.
     camera : CameraAnswer, optional
         The stored camera whose response this is; None if it is estimated from the photographs alone.
     """
@@ -121,7 +121,7 @@ class ResponseEstimate(EqualByFields):
     verdict: Verdict
     prior: str
     origins: tuple[FileOrigin, ...]
-    warnings: tuple[str, ...]
+    warnings: tuple[Notice, ...]
     model: str
     photos: tuple[str, ...]
     recognition: Recognition | None = None
@@ -151,7 +151,7 @@ class ResponseEstimate(EqualByFields):
             "camera": dataclasses.asdict(self.camera) if self.camera else None,
             "prior": self.prior,
             "metadata": [dataclasses.asdict(origin) for origin in self.origins],
-            "warnings": self.warnings,
+            "warnings": list(map(str, self.warnings)),
             "model": self.model,
             "weights": self.weights,
             "windows": [_window_document(window) for window in self.windows],
@@ -168,7 +168,7 @@ class ResponseEstimate(EqualByFields):
         Raises
         ------
         EstimateError
-            If it is no such document, or one of a later version.
+            If it is another document, or one of a later version.
         CurveError
             If its response does not increase strictly from 0 to 1.
         """
@@ -185,32 +185,31 @@ class ResponseEstimate(EqualByFields):
                 verdict=Verdict(document["verdict"]),
                 prior=document["prior"],
                 origins=tuple(map(FileOrigin.from_dict, document["metadata"])),
-                warnings=tuple(document["warnings"]),
+                warnings=tuple(map(Notice.from_text, document["warnings"])),
                 model=document["model"],
                 photos=tuple(photo["name"] for photo in document["photographs"]),
                 recognition=Recognition.from_dict(document.get("recognition")),
                 camera=CameraAnswer.from_dict(document.get("camera")),
             )
         except KeyError as problem:
-            raise EstimateError(f"the document of an estimate lacks {problem}; write it again") from None
+            raise EstimateError("estimate_lacks", entry=problem) from None
         except (AttributeError, OverflowError, TypeError, ValueError) as problem:
-            raise EstimateError(f"the document of an estimate is damaged ({one_line(problem)})") from None
+            raise EstimateError("damaged_estimate", problem=problem) from None
 
 
 def _check_version(document: Mapping[str, Any]) -> None:
-    """Refuse what is no document of an estimate, or one of another version."""
+    """Refuse a document of another kind or another version."""
     if isinstance(document, Mapping) and "estimates" in document:
-        raise EstimateError("this document holds a list of estimates; give document['estimates'][0]")
+        raise EstimateError("list_of_estimates")
     version = document.get("schema_version") if isinstance(document, Mapping) else None
     if version is None:
-        raise EstimateError("this is no document of an estimate: it lacks 'schema_version'")
+        raise EstimateError("not_an_estimate")
     if version != SCHEMA_VERSION:
-        found = f"{version!a:.20}"
-        raise EstimateError(f"the estimate has schema_version {found}, this crfnet reads {SCHEMA_VERSION}: update it")
+        raise EstimateError("other_schema", found=f"{version!a:.20}", known=SCHEMA_VERSION)
 
 
 def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
-    """Return where a window lies and what it says."""
+    """Return a window's place and its estimate, ready for JSON."""
     window = estimate.window
     return {
         "photo": estimate.photo,
@@ -223,7 +222,7 @@ def _window_document(estimate: WindowEstimate) -> dict[str, Any]:
 
 
 def _windows(documents: list[dict[str, Any]]) -> Iterator[WindowEstimate]:
-    """Yield what the windows of a document say."""
+    """Yield the windows of a document."""
     for entry in documents:
         window = Window(*(entry[field.name] for field in dataclasses.fields(Window)))
         weights = np.array(entry["weights"], np.float64)

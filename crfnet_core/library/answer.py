@@ -37,7 +37,7 @@ def camera_estimate(camera: Camera) -> ResponseEstimate:
         verdict=Verdict.from_errors(camera.shape_stops, error),
         prior="",
         origins=(),
-        warnings=camera.warnings,
+        warnings=tuple(map(Notice.from_text, camera.warnings)),
         model="",
         photos=(),
         camera=CameraAnswer(camera.name, camera.basis),
@@ -58,14 +58,14 @@ def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
         The camera.
     """
     answer = camera_estimate(camera)
-    warnings = [estimate.recognition.reason] if estimate.recognition else []
-    warnings += [*editor_warnings(estimate.origins), *_other_cameras(camera, estimate), *answer.warnings]
+    notices = [Notice("recognized", {"reason": estimate.recognition.reason})] if estimate.recognition else []
+    notices += [*editor_warnings(estimate.origins), *_other_cameras(camera, estimate), *answer.warnings]
     return replace(
         answer,
         windows=estimate.windows,
         verdict=Verdict.DO_NOT_TRUST if estimate.recognition else answer.verdict,
         origins=estimate.origins,
-        warnings=tuple(dict.fromkeys(warnings)),
+        warnings=tuple(dict.fromkeys(notices)),
         model=estimate.model,
         photos=estimate.photos,
         recognition=estimate.recognition,
@@ -95,12 +95,12 @@ def brightness_per_stop(curve: ResponseCurve) -> Float64Array:
     return np.asarray(np.log(2) * curve.irradiance * rise)
 
 
-def _other_cameras(camera: Camera, estimate: ResponseEstimate) -> list[str]:
+def _other_cameras(camera: Camera, estimate: ResponseEstimate) -> list[Notice]:
     """Return a warning for each other camera that the files name."""
     name = camera.settings.camera
     others = dict.fromkeys(origin.camera for origin in estimate.origins if origin.camera)
     return [
-        str(Notice("other_camera", {"other": other, "name": camera.name, "camera": name}))
+        Notice("other_camera", {"other": other, "name": camera.name, "camera": name})
         for other in others
         if name and other.casefold() != name.casefold()
     ]

@@ -12,18 +12,20 @@ from importlib import import_module
 from .arguments.command_line import build_parser
 from .arguments.parts import BAD_INPUT
 from .interruption import interruptible
-from .remedies import REMEDIES
 from .streams import complete_streams, own_stderr
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
     MemoryError: "not enough memory; close something or give fewer photographs",
-    UnicodeEncodeError: "a file's name is no valid Unicode; rename it",
+    UnicodeEncodeError: "a file's name is not valid Unicode; rename it",
 }
 
 
 def main(argv: Sequence[str] | None = None) -> int:
-    """Run the command and return its exit code: 0, `BAD_INPUT`, or 128 and the number of the signal that ended it."""
+    """Run the command and return its exit code.
+
+    It is 0, `BAD_INPUT`, `NOT_TRUSTED` with --strict, or 128 and the number of the signal that ended it.
+    """
     complete_streams()
     with own_stderr(), interruptible() as interruption:
         try:
@@ -42,11 +44,11 @@ def _run(arguments: argparse.Namespace, argv: Sequence[str]) -> int:
 
     try:
         "".join(argv).encode()  # refuses file names that are not valid Unicode
-        import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
+        code = import_module(f"crfnet.cli.commands.{arguments.command}").run(arguments)
         sys.stdout.flush()
     except (CRFNetError, OSError, MemoryError, UnicodeError) as problem:
         return _fail(problem)
-    return 0
+    return code or 0
 
 
 def _fail(problem: BaseException) -> int:
@@ -54,11 +56,11 @@ def _fail(problem: BaseException) -> int:
     if isinstance(problem, BrokenPipeError):  # as in `crfnet info X | head`: nobody reads the output any more
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return BAD_INPUT
-    from crfnet_core.errors import one_line  # as above
+    from crfnet_core.errors import CRFNetError, one_line  # as above
 
-    text = UNEXPLAINED.get(type(problem), str(problem))
-    if remedy := REMEDIES.get(getattr(problem, "code", "")):
-        text = f"{text}; {remedy}"
+    from .remedies import explained
+
+    text = explained(problem) if isinstance(problem, CRFNetError) else UNEXPLAINED.get(type(problem), str(problem))
     if isinstance(problem, OSError) and problem.strerror:
         text = f"{problem.filename or 'the output'}: {problem.strerror}; check the name, the folder and the disk"
     _print_error(f"crfnet: error: {one_line(text)}")

@@ -1,8 +1,15 @@
-"""Remedies for errors that name an option of the command: the libraries' sentences name none."""
+"""The command's own words about errors: what to do with its options, and errors of the options themselves.
+
+The libraries' sentences (`crfnet_core.messages`, `crfnet.messages`) name no option. `explained` adds the remedy.
+"""
+
+from __future__ import annotations
 
 from collections.abc import Mapping
 
-#: Code of an error -> text behind its sentence and "; ".
+from crfnet_core.errors import CRFNetError
+
+#: Code of an error -> what the user can do with an option, behind "; " at the end of its sentence.
 REMEDIES: Mapping[str, str] = {
     # library
     "camera_exists": "give another name with --name, or --overwrite to replace it",
@@ -17,4 +24,36 @@ REMEDIES: Mapping[str, str] = {
     "tagged_color_space": "--ignore-metadata does so",
     "tagged_encoding": "--ignore-metadata does so",
     "tagged_linear": "--ignore-metadata does so",
+    # pipeline
+    "file_exists": "or add --overwrite",
+    "files_exist": "or add --overwrite",
+    "folder_for_photograph": "or add --each for every photograph in it",
+    "movie_in_batch": "leave --each out",
+    "one_name": "or add --no-linear",
+    "one_name_elsewhere": "or add --no-linear",
+    "other_options": "or add --overwrite",
+    "process_died": "photographs that are done are not done again, and --workers makes fewer processes",
 }
+
+#: The sentences of `CommandError`, by code.
+SENTENCES: Mapping[str, str] = {
+    "each_option_alone": "--{name} is for --each, one response for each photograph; add it, or drop --{name}",
+    "frames_of_each": "--frames chooses the frames of one response, --each takes photographs; drop one",
+    "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
+    " such as shot.%04d.png, or a name without a placeholder",
+    "photographs_or_calibration": "give photographs, or --from-calibration FILE: one of them",
+    "several_plates": "{count} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each",
+    "two_responses": "--lut and --camera both name a response; give one of them",
+}
+
+
+class CommandError(CRFNetError):
+    """Options that do not go together."""
+
+    sentences = SENTENCES
+
+
+def explained(problem: CRFNetError) -> str:
+    """Return an error's sentence with the command's remedy, if there is one."""
+    remedy = REMEDIES.get(problem.code)
+    return f"{problem}; {remedy}" if remedy else str(problem)

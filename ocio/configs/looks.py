@@ -13,7 +13,7 @@ from crfnet_core.files import read_json
 
 from ..defaults import ESTIMATES
 from ..errors import ConfigError, LutError
-from ..luts.files import READERS, read_lut
+from ..luts.files import WRITERS, read_lut
 from ..luts.lut1d import Lut1D
 from ..luts.response import response_of_lut
 from ..output_files import OutputFiles
@@ -68,7 +68,7 @@ def read_looks(path: Path) -> list[Look]:
         if not documents:
             raise ConfigError("folder_without_look", path=path)
         return [look for document in documents for look in read_looks(document)]
-    if path.suffix.lower() in READERS:
+    if path.suffix.lower() in WRITERS:
         return [_look(path, _document(path.with_suffix(".json")))]
     document = _document(path)
     if document is None:

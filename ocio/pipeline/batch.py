@@ -2,112 +2,217 @@
 
 from __future__ import annotations
 
+import hashlib
+import itertools
+import os
+import time
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
-from functools import lru_cache
 from pathlib import Path
-from typing import Any, TypeVar
+from typing import Any
 
-from crfnet_core.errors import CRFNetError, PhotoError, one_line
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.posterior import Prior
+from crfnet_core.errors import CRFNetError, one_line
+from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.files import cut_to_bytes
 from crfnet_core.types import Progress, cores, show_progress
 
 from ..errors import PlateError
 from ..options import EstimateOptions, PlateOptions
-from ..output_files import check_targets, plain_stem
+from ..output_files import LONGEST_STEM, check_targets, output_folder, plain_stem
+from ..plates.light import PlateLight
+from ..report import result_line
 from .estimates import response_lut
-from .loading import load_camera_response, load_network, load_prior
-from .manifest import RESPONSE, Manifest, PhotographRecord
-from .photographs import check_distinct, fault, is_folder
+from .loading import load_camera_response
+from .photographs import unreadable_reason, without_outputs
+from .records import PhotographRecord, RecordFile
 from .workers import worker_pool
+
+#: Bytes that a number behind a stem may need.
+NUMBER_BYTES = 8
+
+#: How often, and after how many seconds each, the record of files that another run has just written is looked for.
+RECORD_TRIALS, RECORD_SECONDS = 10, 0.1
 
 
 @dataclass(frozen=True, kw_only=True)
-class Task(ABC):
-    """One photograph, and all that its worker gets.
+class Batch(ABC):
+    """What many photographs have in common.
 
     Parameters
     ----------
-    photo : Path
-        The photograph.
-    folder : Path
-        The folder of its files, relative to the manifest.
+    out : Path
+        The folder for everything.
     options : EstimateOptions
         How responses are estimated.
     plates : PlateOptions
-        How the linear plate is written; `overwrite` holds for every file.
+        How linear plates are written; `overwrite` holds for every file.
     """
 
-    photo: Path
-    folder: Path
+    out: Path
     options: EstimateOptions
     plates: PlateOptions
 
     @property
     @abstractmethod
-    def targets(self) -> tuple[Path, ...]:
-        """The files of this photograph alone."""
+    def records(self) -> RecordFile:
+        """The file of records."""
 
-    @property
-    def settings(self) -> dict[str, Any]:
-        """The options that all tasks of a manifest have in common."""
-        chosen = {**asdict(self.options), **asdict(self.plates)}
-        return {name: chosen[name] for name in chosen if name not in ("threads", "overwrite")}
+    @abstractmethod
+    def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
+        """Return the files of one photograph alone."""
 
-    def response_identity(self) -> str | None:
-        """Return which response all tasks of a manifest have now: the stored camera's; None if each has its own."""
+    @abstractmethod
+    def done(self, task: Task) -> PhotographRecord:
+        """Write the files of one photograph and return its record.
+
+        Raises
+        ------
+        Exception
+            Whatever goes wrong.
+        """
+
+    def shared_response(self) -> str | None:
+        """Return which response all photographs have now: the stored camera's; None if each has its own."""
         stored = load_camera_response(self.options)
         return response_lut(stored).identity if stored else None
 
+    @property
+    def choices(self) -> dict[str, Any]:
+        """The options that make two results differ."""
+        chosen = {**asdict(self.options), **asdict(self.plates)}
+        return {name: value for name, value in chosen.items() if name not in ("threads", "overwrite")}
 
-AnyTask = TypeVar("AnyTask", bound=Task)
+    def digest(self) -> str:
+        """Return a digest of the options and of the shared response."""
+        text = repr(sorted((self.choices | {"response": self.shared_response()}).items()))
+        return hashlib.sha256(text.encode(errors="backslashreplace")).hexdigest()[:16]
 
 
-def check_tasks(out: Path, tasks: Sequence[Task], *, shared: Sequence[Path] = ()) -> None:
-    """Check that the files of all tasks can be written, and no two photographs to the same; create nothing.
+@dataclass(frozen=True)
+class Task:
+    """One photograph of a batch, and all that its worker gets.
 
     Parameters
     ----------
-    out : Path
-        The folder to write to; it need not exist yet.
-    tasks : sequence of Task
-        At least one. Those that `run_tasks` will refuse write nothing.
+    batch : Batch
+        The batch.
+    photo : Path
+        The photograph.
+    folder : Path
+        The folder of its files, relative to the batch's.
+    stem : str
+        The name of its files, without suffix; no other photograph of the folder has it.
+    options : str
+        The batch's digest.
+    """
+
+    batch: Batch
+    photo: Path
+    folder: Path
+    stem: str
+    options: str
+
+    @property
+    def targets(self) -> tuple[Path, ...]:
+        """The files of this photograph alone."""
+        return self.batch.targets(self.folder, self.stem)
+
+    def record(
+        self,
+        light: PlateLight,
+        estimate: ResponseEstimate | None,
+        *,
+        lut: Path | None = None,
+        linear: Sequence[Path] = (),
+    ) -> PhotographRecord:
+        """Return the record of this photograph, whose files are whole, and of its estimate if there is one."""
+        record = PhotographRecord(
+            photograph=str(self.photo),
+            options=self.options,
+            folder=self.folder.as_posix(),
+            lut="".join(path.relative_to(self.batch.out).as_posix() for path in (lut,) if path),
+            linear="".join(path.relative_to(self.batch.out).as_posix() for path in linear),
+            exposure=light.stops,
+            primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
+            primaries_source=light.plate.source,
+            summary=f"{self.photo.name}: linear",
+        )
+        if estimate is None:
+            return record
+        kind = estimate.likely_kind
+        return replace(
+            record,
+            weights=tuple(estimate.weights.tolist()),
+            family=kind.words if kind else "",
+            verdict=estimate.verdict,
+            uncertainty=estimate.uncertainty,
+            shape_uncertainty_stops=estimate.shape_uncertainty,
+            warnings=tuple(map(str, estimate.warnings)),
+            summary=result_line(estimate, name=self.photo.name),
+        )
+
+    def is_done(self, record: PhotographRecord | None) -> bool:
+        """Return whether a record says that this photograph needs no work, and its files are still there."""
+        if record is None or record.error or (record.folder, record.stem) != (self.folder.as_posix(), self.stem):
+            return False
+        return record.options == self.options and all(path.exists() for path in self.targets)
+
+
+def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], *, shared: Sequence[Path] = ()) -> tuple[Task, ...]:
+    """Return what is to be done for each photograph, after checking that it can be; create nothing.
+
+    Two photographs of one name in one folder get files of different names: a.jpg and a.png those of `a` and `a_2`.
+    A photograph keeps the name that an earlier run has given it.
+
+    Parameters
+    ----------
+    batch : Batch
+        What they have in common.
+    photographs : mapping of Path to Path
+        As `find_photographs` returns them. Those in the batch's folder are left out, if a folder around it was
+        searched.
     shared : sequence of Path
-        The configs, of several photographs.
+        Files of several photographs, which must not replace a photograph.
 
     Raises
     ------
-    PlateError
-        See `check_distinct` and `crfnet.output_files.check_targets`; existing files may be replaced.
+    CRFNetError
+        If a photograph would be replaced, the folder cannot be used, the response cannot be read, or the records
+        are damaged.
     """
-    pairs = [(target, task.photo) for task in tasks if not fault(task.photo) for target in task.targets]
-    check_distinct(pairs, remedy="give them to two runs, each with its own --out")
-    photos = [task.photo for task in tasks]
-    check_targets(out, [target for target, _ in pairs], photos=photos, shared=shared, overwrite=True)
+    chosen, records = without_outputs(photographs, batch.out), batch.records.read()
+    stems, digest = _distinct_stems(batch, chosen, records), batch.digest()
+    tasks = tuple(Task(batch, photo, folder, stems[photo], digest) for photo, folder in chosen.items())
+    for task in () if batch.plates.overwrite else tasks:
+        record = records.get(str(task.photo))
+        if record and not record.error and record.options != digest and any(map(os.path.lexists, task.targets)):
+            raise PlateError("other_options", path=batch.records.path, photo=task.photo)
+    targets = [path for task in tasks if not unreadable_reason(task.photo) for path in task.targets]
+    check_targets(batch.out, targets, photos=list(chosen), shared=shared, overwrite=True)
+    return tasks
 
 
 def run_tasks(
-    path: Path,
-    tasks: Sequence[AnyTask],
-    work: Callable[[AnyTask], PhotographRecord],
+    batch: Batch,
+    tasks: Sequence[Task],
     *,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
-) -> Manifest:
-    """Do the tasks that are not done yet; return the manifest with the records of all, in order.
+) -> list[PhotographRecord]:
+    """Do the tasks that are not done yet; return the records of all, in order.
+
+    A record is appended as soon as the files of its photograph are whole. The same call after an interruption goes on;
+    photographs that failed are tried again.
 
     Parameters
     ----------
-    path : Path
-        The manifest, to which a record is added as soon as a task ends; its folder must exist.
+    batch : Batch
+        See `plan_tasks`.
     tasks : sequence of Task
-        At least one.
-    work : callable
-        A function of a module, since other processes call it.
+        As `plan_tasks` returns them.
     workers : int, optional
         Processes; by default one a core.
     scheduler : str, optional
@@ -118,77 +223,136 @@ def run_tasks(
     Raises
     ------
     CRFNetError
-        If the manifest is of other settings or has files of these names for other photographs, or a process dies; not
-        if a photograph is bad.
+        If a process dies, or no scheduler answers; not if a photograph is bad.
     """
-    chosen = {name: str(value) if isinstance(value, Path) else value for name, value in tasks[0].settings.items()}
-    manifest = Manifest(path, chosen | {RESPONSE: tasks[0].response_identity()}, overwrite=tasks[0].plates.overwrite)
-    _check_owners(tasks, manifest)
-    todo = [task for task in tasks if not _is_done(task, manifest)]
-    before = len(tasks) - len(todo)
-    show_progress(progress, before, len(tasks))
-    for done, record in enumerate(_records(todo, work, workers or cores(), scheduler), before + 1):
-        manifest.add(record)
+    with output_folder(batch.out):
+        file = batch.records
+        records = {} if batch.plates.overwrite else file.read()
+        todo = [task for task in tasks if not task.is_done(records.get(str(task.photo)))]
+        done = len(tasks) - len(todo)
         show_progress(progress, done, len(tasks))
-    earlier = [name for name, record in manifest.records.items() if not (record.error and is_folder(Path(name)))]
-    manifest.rewrite(dict.fromkeys([*(str(task.photo) for task in tasks), *earlier]))
-    return manifest
+        for record in _ended(todo, workers or cores(), scheduler):
+            file.append(record)
+            records[record.photograph] = record
+            done += 1
+            show_progress(progress, done, len(tasks))
+    return [records[str(task.photo)] for task in tasks]
 
 
-def network_and_prior(options: EstimateOptions) -> tuple[ResponseNetwork, Prior]:
-    """Return the network, loaded once in a process, and the prior, whose file may change while a worker lives."""
-    return _network(options), load_prior(options)
+def _distinct_stems(
+    batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]
+) -> dict[Path, str]:
+    """Return a stem for each photograph whose files are nobody else's, on systems that take A for a, too."""
+    owners: dict[str, str] = {}
+    for record in records.values():
+        owners |= dict.fromkeys(
+            _keys(batch, Path(record.folder), record.stem) if record.stem else (), record.photograph
+        )
+    stems = {}
+    for photo, folder in photographs.items():
+        earlier = records.get(str(photo))
+        stem = earlier.stem if earlier and earlier.folder == folder.as_posix() else ""
+        for candidate in itertools.chain([stem] if stem else [], _stems(photo)):
+            keys = _keys(batch, folder, candidate)
+            if all(_same_file(owners.get(key, str(photo)), photo) for key in keys):
+                owners |= dict.fromkeys(keys, str(photo))
+                stems[photo] = candidate
+                break
+    return stems
 
 
-def _check_owners(tasks: Sequence[Task], manifest: Manifest) -> None:
-    """Refuse to take the files of another photograph, which an earlier run has written, for those of a task."""
-    written = [(record.folder, Path(name)) for name, record in manifest.records.items() if not record.error]
-    owners = {(folder, plain_stem(photo).casefold()): photo for folder, photo in written}
-    for task in tasks:
-        owner = owners.get((task.folder.as_posix(), plain_stem(task.photo).casefold()), task.photo)
-        is_other = owner.absolute() != task.photo.absolute() and not fault(task.photo)
-        if is_other and any(path.exists() for path in task.targets):
-            raise PlateError(
-                f"{task.targets[0]}: belongs to {owner}; choose another folder for {task.photo}, or add --overwrite"
-            )
+def _keys(batch: Batch, folder: Path, stem: str) -> list[str]:
+    """Return the names of a photograph's files, equal for those that some systems take for one."""
+    return [str(path).casefold() for path in batch.targets(folder, stem)]
 
 
-@lru_cache(maxsize=1)
-def _network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network."""
-    return load_network(options)
+def _stems(photo: Path) -> Iterator[str]:
+    """Yield names for the files of a photograph: its own, then with a number."""
+    stem = plain_stem(photo)
+    yield stem
+    number = 2
+    while True:
+        yield f"{cut_to_bytes(stem, LONGEST_STEM - NUMBER_BYTES)}_{number}"
+        number += 1
 
 
-def _records(
-    tasks: Sequence[AnyTask], work: Callable[[AnyTask], PhotographRecord], workers: int, scheduler: str | None
-) -> Iterator[PhotographRecord]:
-    """Yield the records of photographs as they are done."""
+def _same_file(name: str, photo: Path) -> bool:
+    """Return whether a name, perhaps by another way to its folder, is that of a photograph."""
+    return os.path.normpath(Path(name).absolute()) == os.path.normpath(photo.absolute())
+
+
+def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
+    """Yield the records of photographs as they end."""
     if not tasks:
         return
     workers = min(workers, len(tasks))
-    if (workers > 1 or scheduler) and not tasks[0].options.threads:
-        single = replace(tasks[0].options, threads=1)
-        tasks = [replace(task, options=single) for task in tasks]
+    if (workers > 1 or scheduler) and not tasks[0].batch.options.threads:
+        single = replace(tasks[0].batch, options=replace(tasks[0].batch.options, threads=1))
+        tasks = [replace(task, batch=single) for task in tasks]
     with worker_pool(workers, scheduler=scheduler) as pool:
-        futures = [pool.submit(_recorded, work, task) for task in tasks]
+        futures = [pool.submit(_recorded, task) for task in tasks]
         try:
             for future in as_completed(futures):
                 yield future.result()
         except BrokenExecutor as problem:
-            raise CRFNetError("a process died, perhaps for lack of memory; run the same command again") from problem
+            raise PlateError("process_died") from problem
 
 
-def _recorded(work: Callable[[AnyTask], PhotographRecord], task: AnyTask) -> PhotographRecord:
+def _recorded(task: Task) -> PhotographRecord:
     """Return the record of a task; what goes wrong stands in it."""
     try:
-        if problem := fault(task.photo):
-            raise PhotoError(f"{task.photo}: {problem}")
-        return work(task)
-    except (CRFNetError, OSError, MemoryError) as failure:
-        return PhotographRecord(photograph=str(task.photo), error=one_line(failure) or "not enough memory")
+        if reason := unreadable_reason(task.photo):
+            raise PlateError("unreadable", path=task.photo, reason=reason)
+        return _done_once(task)
+    except Exception as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
+        return PhotographRecord(photograph=str(task.photo), options=task.options, error=_words(problem, task.photo))
 
 
-def _is_done(task: Task, manifest: Manifest) -> bool:
-    """Return whether the manifest has a photograph without an error whose files are still there."""
-    record = manifest.records.get(str(task.photo))
-    return record is not None and not record.error and all(path.exists() for path in task.targets)
+def _done_once(task: Task) -> PhotographRecord:
+    """Do a task; if another run has just written its files, return the record that it is about to append."""
+    try:
+        return _record_of_existing(task) or task.batch.done(task)
+    except CRFNetError:
+        for _ in range(RECORD_TRIALS if _existing(task) else 0):
+            record = task.batch.records.read().get(str(task.photo))
+            if record and task.is_done(record):
+                return record
+            time.sleep(RECORD_SECONDS)
+        raise
+
+
+def _record_of_existing(task: Task) -> PhotographRecord | None:
+    """Return the record of files that are there, as another run may have made it meanwhile; None without any record.
+
+    Raises
+    ------
+    PlateError
+        If they are those of another photograph, or of another program.
+    """
+    there = [] if task.batch.plates.overwrite else _existing(task)
+    if not there:
+        return None
+    records = task.batch.records.read()
+    record = records.get(str(task.photo))
+    if task.is_done(record):
+        return record
+    place = (task.folder.as_posix(), task.stem)
+    is_owned = any((other.folder, other.stem) == place for other in records.values() if other is not record)
+    if is_owned or (record is None and len(there) < len(task.targets)):
+        raise PlateError("file_exists", path=there[0])
+    return None
+
+
+def _existing(task: Task) -> list[Path]:
+    """Return the files of a task that are there."""
+    return [path for path in task.targets if os.path.lexists(path)]
+
+
+def _words(problem: Exception, photo: Path) -> str:
+    """Return why a photograph failed, on one line, with its name."""
+    if isinstance(problem, MemoryError):
+        return one_line(f"{photo}: not enough memory")
+    text = one_line(problem)
+    if isinstance(problem, CRFNetError | OSError):
+        return text
+    return one_line(f"{photo}: {type(problem).__name__} ({text})")

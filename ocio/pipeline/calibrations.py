@@ -10,7 +10,7 @@ from typing import Any
 import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
-from crfnet_core.errors import CalibrationError, CurveError
+from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.response.curve import ResponseCurve
 
@@ -25,7 +25,7 @@ from ..options import OutputOptions
 from ..output_files import OutputFiles, check_outputs, output_folder
 from ..report import calibration_document, calibration_provenance
 from ..staging import staged_files
-from .folders import EarlierRun
+from .delivery import EarlierRun
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,15 +73,14 @@ def plan_calibration(
 
     Raises
     ------
-    CalibrationError
-        If the name is none for a file.
     PlateError
-        If a file cannot be written or would replace another, or a frame: see `check_outputs`.
+        If the name cannot be that of a file, or a file cannot be written or would replace another, or a frame: see
+        `check_outputs`.
     ConfigError
         If the colour space cannot be in a config.
     """
     if name is not None and (not name.strip(" .") or Path(name).name != name):
-        raise CalibrationError(f"{name!r} is no name for a file; give one without slashes, such as eos20d")
+        raise PlateError("not_a_file_name", name=repr(name))
     stem = frames[0] if name is None else Path(f"{name}.stack")
     files = OutputFiles.named(folder, [stem], replace(outputs, has_linear=False, has_forward=False))
     check_outputs(folder, [files], photos=frames, overwrite=overwrite)
@@ -129,7 +128,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
 
     Raises
     ------
-    CalibrationError
+    PlateError
         If the document cannot be read or holds no response.
     CRFNetError
         If a LUT file holds none: see `crfnet.luts.response.read_response`.
@@ -140,11 +139,9 @@ def response_to_compare(path: Path) -> ResponseCurve:
         samples = read_json(path)["response"]["brightness"]
         return ResponseCurve.restored(samples)
     except OSError as problem:
-        raise CalibrationError(f"{path}: cannot be opened ({problem.strerror}); check its name") from problem
+        raise PlateError("not_opened", path=path, reason=problem.strerror) from problem
     except (KeyError, OverflowError, TypeError, ValueError, CurveError) as problem:
-        raise CalibrationError(
-            f"{path}: holds no response; give the JSON that crfnet estimate or calibrate wrote, or a LUT"
-        ) from problem
+        raise PlateError("no_response_in_file", path=path) from problem
 
 
 def _write_sheet(path: Path, calibration: Calibration) -> None:

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
@@ -16,16 +15,15 @@ from ..configs.portable import portable_config
 from ..defaults import ESTIMATES
 from ..errors import LutError, PlateError
 from ..luts.files import read_lut
-from ..options import EstimateOptions, OutputOptions, PlateOptions
-from ..output_files import OutputFiles, output_folder
+from ..movies.source import file_source
+from ..options import OutputOptions
+from ..output_files import OutputFiles
 from ..plates.linear_space import linear_space
-from ..staging import staged_files
-from .batch import Task, check_tasks, network_and_prior, run_tasks
-from .estimates import estimate_photographs
-from .folders import estimated_light, left_files, with_light, write_estimate
-from .loading import load_camera
-from .manifest import Manifest, PhotographRecord
-from .photographs import without_outputs
+from .batch import Batch, Task, plan_tasks, run_tasks
+from .delivery import OutputPlan, deliver_estimate, estimated_light, stale_files, with_light
+from .estimates import estimate_files
+from .loading import load_camera, load_network, load_prior
+from .records import PhotographRecord, RecordFile
 
 #: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
 #: build it grows with the square.
@@ -33,172 +31,146 @@ MAX_COLOR_SPACES = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
-class EstimateTask(Task):
-    """One photograph whose response is estimated.
+class EstimateBatch(Batch):
+    """Photographs whose responses are estimated.
 
     Parameters
     ----------
-    files : OutputFiles
-        What is written.
     outputs : OutputOptions
-        Which files these are.
+        Which files are written of each.
     """
 
-    files: OutputFiles
     outputs: OutputOptions
 
     @property
-    def left(self) -> tuple[Path, ...]:
-        """Files of an earlier run with other options that stay there, although they are not of this one."""
-        return left_files(self.files, (self.photo,))
+    def records(self) -> RecordFile:
+        """The file of records."""
+        return RecordFile(self.out / ESTIMATES)
 
     @property
-    def targets(self) -> tuple[Path, ...]:
-        """Every file except the config."""
-        return self.files.own
+    def choices(self) -> dict[str, Any]:
+        """The options that make two results differ."""
+        return {**super().choices, **asdict(self.outputs)}
 
-    @property
-    def settings(self) -> dict[str, Any]:
-        """Those of the files, too."""
-        return {**super().settings, **asdict(self.outputs)}
+    def files(self, folder: Path, stem: str) -> OutputFiles:
+        """Return the files of one photograph."""
+        return OutputFiles.named(self.out / folder, [Path(f"{stem}.jpg")], self.outputs)
+
+    def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
+        """Return the files of one photograph, except the config."""
+        return self.files(folder, stem).unshared
+
+    def done(self, task: Task) -> PhotographRecord:
+        """Estimate one photograph and write its files."""
+        is_complete = all(path.exists() for path in task.targets)  # as a killed run leaves it before its record
+        estimated = estimate_files([file_source(task.photo)], self.options)
+        light = estimated_light(estimated, self.plates, lut_length=self.outputs.lut_length)
+        files = self.files(task.folder, task.stem)
+        plates = replace(self.plates, overwrite=self.plates.overwrite or is_complete)
+        deliver_estimate(OutputPlan(files, plates, self.outputs.lut_length), estimated, light)
+        return task.record(light, estimated.estimate, lut=files.lut, linear=files.linear)
 
 
-def plan_each(
-    out: Path,
-    photographs: Mapping[Path, Path],
-    options: EstimateOptions,
-    plates: PlateOptions,
-    outputs: OutputOptions,
-) -> tuple[EstimateTask, ...]:
-    """Return what is to be done for each photograph, after checking that no two write the same files; create nothing.
+@dataclass(frozen=True)
+class EachReport:
+    """What became of many photographs.
 
     Parameters
     ----------
-    out : Path
-        The folder to write to; it need not exist yet.
-    photographs : mapping of Path to Path
-        As `find_photographs` returns them. Those in `out` itself are left out, if a folder around it was searched.
-    options, plates, outputs
-        See `EstimateTask`.
-
-    Raises
-    ------
-    PlateError
-        If two photographs would write the same file, one of them would be replaced, or the folder cannot be used.
+    records : tuple of PhotographRecord
+        The record of each, in order.
+    first : OutputFiles or None
+        The files of the first that has any.
+    stale_files : tuple of Path
+        Files of an earlier run with other options that stay there, relative to the output folder.
     """
-    tasks = tuple(
-        EstimateTask(
-            photo=photo,
-            files=OutputFiles.named(out / folder, (photo,), outputs),
-            folder=folder,
-            options=options,
-            plates=plates,
-            outputs=outputs,
-        )
-        for photo, folder in without_outputs(photographs, out).items()
-    )
-    check_tasks(out, tasks, shared=list(dict.fromkeys(task.files.config for task in tasks)))
-    return tasks
+
+    records: tuple[PhotographRecord, ...]
+    first: OutputFiles | None
+    stale_files: tuple[Path, ...]
 
 
 def estimate_each(
-    out: Path,
-    tasks: Sequence[EstimateTask],
+    batch: EstimateBatch,
+    photographs: Mapping[Path, Path],
     *,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
-) -> list[PhotographRecord]:
-    """Estimate and write every photograph that is not done yet; return the records of all, in order.
+) -> EachReport:
+    """Estimate and write every photograph that is not done yet.
 
-    The files of a photograph appear together, and its record stands in the manifest (`ESTIMATES`) as soon as they do.
-    The same call after an interruption goes on; photographs that failed are tried again. At the end each folder gets
-    a config with the colour spaces of its photographs, if there are no more than `MAX_COLOR_SPACES`.
+    The files of a photograph appear together, and its record (in `ESTIMATES`) as soon as they do. The same call after
+    an interruption goes on; photographs that failed are tried again. At the end each folder gets a config with the
+    color spaces of its photographs, if there are no more than `MAX_COLOR_SPACES`.
 
     Parameters
     ----------
-    out : Path
-        The folder of the manifest.
-    tasks : sequence of EstimateTask
-        As `plan_each` returns them; at least one.
+    batch : EstimateBatch
+        What they have in common.
+    photographs : mapping of Path to Path
+        As `find_photographs` returns them.
     workers, scheduler, progress
-        See `crfnet.pipeline.batch.run_tasks`.
+        See `run_tasks`.
 
     Raises
     ------
     CRFNetError
-        If the folder holds estimates of other settings or a process dies; not if a photograph is bad.
+        If the folder holds estimates of other options, cannot be used, or a process dies; not if a photograph is bad.
     """
-    first = tasks[0]
-    if not (out / ESTIMATES).exists() and not first.plates.overwrite:
-        _check_absent([task.files.config for task in tasks])
-    network_and_prior(first.options)  # a bad model, prior or camera is refused before anything is written
-    load_camera(first.options)
-    with output_folder(out):
-        path = out / ESTIMATES
-        manifest = run_tasks(path, tasks, estimate_one, workers=workers, scheduler=scheduler, progress=progress)
-        _write_configs(out, manifest, first.plates.output_space)
-    return manifest.of(task.photo for task in tasks)
+    load_camera(batch.options), load_prior(batch.options), load_network(batch.options)  # what is bad is refused first
+    folders = dict.fromkeys(photographs.values())
+    configs = [batch.files(folder, "any").config for folder in folders]
+    tasks = plan_tasks(batch, photographs, shared=configs)
+    if not batch.records.path.exists() and not batch.plates.overwrite:
+        for config in filter(Path.exists, configs):
+            raise PlateError("file_exists", path=config)
+    stale = [path.relative_to(batch.out) for task in tasks for path in _stale_files(batch, task)]
+    records = run_tasks(batch, tasks, workers=workers, scheduler=scheduler, progress=progress)
+    with batch.records.locked():  # two runs at once: the last that ends knows the records of both
+        damaged = _write_configs(batch)
+    for record in damaged.values():
+        batch.records.append(record)
+    records = [damaged.get(record.photograph, record) for record in records]
+    written = (task for task, record in zip(tasks, records, strict=True) if not record.error)
+    first = next((batch.files(task.folder, task.stem) for task in written), None)
+    return EachReport(tuple(records), first, tuple(stale))
 
 
-def estimate_one(task: EstimateTask) -> PhotographRecord:
-    """Estimate one photograph and write its files.
+def _stale_files(batch: EstimateBatch, task: Task) -> Sequence[Path]:
+    """Return the files of an earlier run with other options that stay beside those of a photograph."""
+    return stale_files(batch.files(task.folder, task.stem), [task.photo])
 
-    Raises
-    ------
-    CRFNetError, OSError, MemoryError
-        What goes wrong.
+
+def _write_configs(batch: EstimateBatch) -> dict[str, PhotographRecord]:
+    """Write a config into each folder, with the color spaces of all its photographs whose LUT is there.
+
+    Return the photographs whose LUT is damaged: the next run estimates them again.
     """
-    # A whole set without a record is that of a run that was killed in between.
-    if not task.plates.overwrite and not all(path.exists() for path in task.targets):
-        _check_absent(task.targets)
-    network, prior = network_and_prior(task.options)
-    estimated = estimate_photographs((task.photo,), network, prior, task.options)
-    light = estimated_light(estimated, task.plates, lut_length=task.outputs.lut_length)
-    folder = task.files.report.parent
-    with output_folder(folder), staged_files(folder) as staged:
-        write_estimate(task.files.in_folder(staged), estimated, light, task.plates)
-    return PhotographRecord.of(task.photo, task.folder, light, estimated.estimate)
-
-
-def _check_absent(paths: Iterable[Path]) -> None:
-    """Refuse to replace files."""
-    for path in paths:
-        if os.path.lexists(path):
-            raise PlateError(f"{path}: exists already; add --overwrite or move it away")
-
-
-def _write_configs(out: Path, manifest: Manifest, output_space: str) -> None:
-    """Write a config into each folder, with the colour spaces of all its photographs whose LUT is there.
-
-    A photograph whose LUT is damaged counts as failed.
-    """
-    damaged: list[PhotographRecord] = []
-    folders: dict[Path, dict[Path, tuple[OutputFiles, PhotographRecord]]] = {}
-    for record in manifest.records.values():
-        folder = out / record.folder
-        own = OutputFiles.named(folder, [Path(record.photograph)])
-        if not record.error and own.lut.exists():
-            folders.setdefault(folder, {}).setdefault(own.lut, (own, record))
-    for written in folders.values():
-        files = [own for own, _ in written.values()]
-        if len(files) > MAX_COLOR_SPACES:
-            files[0].config.unlink(missing_ok=True)
+    damaged: dict[str, PhotographRecord] = {}
+    folders: dict[str, list[PhotographRecord]] = {}
+    for record in batch.records.read().values():
+        if not record.error and (batch.out / record.lut).exists():
+            folders.setdefault(record.folder, []).append(record)
+    for folder, records in folders.items():
+        config = batch.files(Path(folder), records[0].stem).config
+        if len(records) > MAX_COLOR_SPACES:
+            config.unlink(missing_ok=True)
             continue
         spaces, check = [], {}
-        for own, record in written.values():
+        for record in records:
+            space = _color_space(batch, record)
             try:
-                check[own.color_space] = read_lut(own.lut).channels[0]
-                spaces.append(_color_space(own, record, output_space))
-            except LutError as problem:  # damaged since: the next run estimates it again
-                damaged.append(replace(record, error=str(problem)))
-        write_config(files[0].config, portable_config(spaces), check=check, overwrite=True)
-    if damaged:
-        manifest.records |= {record.photograph: record for record in damaged}
-        manifest.rewrite(manifest.records)
+                check[space.name] = read_lut(batch.out / record.lut).channels[0]
+                spaces.append(space)
+            except LutError as problem:
+                damaged[record.photograph] = replace(record, error=str(problem))
+        write_config(config, portable_config(spaces), check=check, overwrite=True)
+    return damaged
 
 
-def _color_space(files: OutputFiles, record: PhotographRecord, output_space: str) -> PlateColorSpace:
-    """Return the colour space of a photograph in the config of its folder."""
+def _color_space(batch: EstimateBatch, record: PhotographRecord) -> PlateColorSpace:
+    """Return the color space of a photograph in the config of its folder."""
+    files = batch.files(Path(record.folder), record.stem)
     space = PlateColorSpace.from_outputs(files, Path(record.photograph))
-    return with_light(space, record.exposure, record.plate, linear_space(record.plate, output_space))
+    return with_light(space, record.exposure, record.plate, linear_space(record.plate, batch.plates.output_space))

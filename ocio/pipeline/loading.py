@@ -1,8 +1,11 @@
-"""What the options name, loaded: the network, the prior and a stored camera."""
+"""The network, the prior and the stored camera that the options name."""
 
 from __future__ import annotations
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from functools import lru_cache
+from pathlib import Path
+
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.library import Camera, camera_estimate, find_camera
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Prior
@@ -11,23 +14,23 @@ from ..options import EstimateOptions
 
 
 def load_network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network that the options name; a caller with several estimates loads it once.
+    """Return the network that the options name; the last one stays loaded.
 
     Raises
     ------
     ModelError
         If the model folder is absent, incomplete or altered.
     """
-    return ResponseNetwork.load(options.model, threads=options.threads)
+    return _network(options.model, options.threads)
 
 
 def load_prior(options: EstimateOptions) -> Prior:
-    """Return the prior that the options name; a caller with several estimates loads it once.
+    """Return the prior that the options name, whose file may change while a process lives.
 
     Raises
     ------
     PriorError
-        If there is no such prior, or the file is none.
+        If there is no such prior, or the file holds none.
     """
     return Prior.load(options.prior)
 
@@ -53,3 +56,9 @@ def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
     """
     camera = load_camera(options)
     return None if camera is None else camera_estimate(camera)
+
+
+@lru_cache(maxsize=1)
+def _network(model: Path | None, threads: int) -> ResponseNetwork:
+    """Return a network."""
+    return ResponseNetwork.load(model, threads=threads)

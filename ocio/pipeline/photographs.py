@@ -1,4 +1,4 @@
-"""Which photographs many are: found in folders, each once, with names of their own for their files."""
+"""The photographs of a batch: found in folders, each once."""
 
 from __future__ import annotations
 
@@ -23,7 +23,7 @@ def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
         Files, and folders that are searched with all their subfolders for `PHOTOGRAPH_SUFFIXES`, except names that
         begin with a dot and the sheets of earlier runs. What belongs to a photograph in a subfolder goes into a
         subfolder of the same name. A subfolder that cannot be read stands among the photographs:
-        `crfnet.pipeline.batch.run_tasks` records why.
+        `run_tasks` records why.
 
     Raises
     ------
@@ -35,16 +35,14 @@ def find_photographs(names: Sequence[Path]) -> dict[Path, Path]:
         if not is_folder(name):
             photographs[name] = Path()
             continue
-        found = _found_below(name)
-        if not found:
-            raise PlateError(
-                f"{name}: the folder holds no photograph ({', '.join(PHOTOGRAPH_SUFFIXES)}); check the name"
-            )
-        photographs |= {path: path.parent.relative_to(name) for path in found}
-    return {photo: photographs[photo] for photo in each_once(photographs)}
+        paths = _photographs_below(name)
+        if not paths:
+            raise PlateError("empty_folder", path=name, suffixes=", ".join(PHOTOGRAPH_SUFFIXES))
+        photographs |= {path: path.parent.relative_to(name) for path in paths}
+    return {photo: photographs[photo] for photo in unique(photographs)}
 
 
-def each_once(photographs: Iterable[Path]) -> list[Path]:
+def unique(photographs: Iterable[Path]) -> list[Path]:
     """Return photographs without those that are given again, perhaps by another way to their folder."""
     first: dict[str, Path] = {}
     for photo in photographs:
@@ -62,30 +60,28 @@ def without_outputs(photographs: Mapping[Path, Path], out: Path) -> dict[Path, P
     PlateError
         If there are no others.
     """
-    own = os.path.realpath(out)
+    output = os.path.realpath(out)
 
     @lru_cache(maxsize=1000)
     def is_within(folder: Path) -> bool:
-        return Path(os.path.realpath(folder)).is_relative_to(own)
+        return Path(os.path.realpath(folder)).is_relative_to(output)
 
     def is_output(photo: Path, folder: Path) -> bool:
         return is_within(photo.parent) and not is_within(photo.parents[len(folder.parts)])
 
-    kept = {photo: folder for photo, folder in photographs.items() if not is_output(photo, folder)}
-    if not kept:
-        raise PlateError(f"{out}: all photographs lie in the output folder; choose another one")
-    return kept
+    others = {photo: folder for photo, folder in photographs.items() if not is_output(photo, folder)}
+    if not others:
+        raise PlateError("all_in_output", path=out)
+    return others
 
 
-def check_distinct(targets: Iterable[tuple[Path, Path]], *, remedy: str) -> None:
+def check_distinct(targets: Iterable[tuple[Path, Path]]) -> None:
     """Check that no two photographs are written to one file, on systems that take `A` and `a` for one name, too.
 
     Parameters
     ----------
     targets : iterable of (Path, Path)
         Files to be written, each with its photograph.
-    remedy : str
-        What to do other than to rename one of the photographs.
 
     Raises
     ------
@@ -96,20 +92,19 @@ def check_distinct(targets: Iterable[tuple[Path, Path]], *, remedy: str) -> None
     for target, photo in targets:
         first, other = sources.setdefault(str(target).casefold(), (target, photo))
         if first == target and other != photo:
-            raise PlateError(f"{other} and {photo} would both be written as {target.name}; rename one, or {remedy}")
+            raise PlateError("one_name", first=other, second=photo, name=target.name)
         if first != target:
-            what = f"{other} and {photo} would be written as {first.name} and {target.name}"
-            raise PlateError(f"{what}, one name on macOS and Windows; rename one, or {remedy}")
+            raise PlateError("one_name_elsewhere", first=other, second=photo, name=first.name, other=target.name)
 
 
-def fault(photo: Path) -> str:
+def unreadable_reason(photo: Path) -> str:
     """Return why a photograph, or a folder in its place, is refused before it is opened; an empty text if it is not."""
     try:
         str(photo).encode()
         if photo.is_dir():
             os.scandir(photo).close()
     except UnicodeEncodeError:
-        return "the name is no valid Unicode; rename it"
+        return "the name is not valid Unicode; rename it"
     except OSError as problem:
         return f"cannot be read ({problem.strerror}); check its permissions"
     return ""
@@ -123,7 +118,7 @@ def is_folder(path: Path) -> bool:
         return False
 
 
-def _found_below(folder: Path) -> list[Path]:
+def _photographs_below(folder: Path) -> list[Path]:
     """Return the photographs in a folder and its subfolders, sorted, and then the subfolders that cannot be read."""
     photographs: list[Path] = []
     failures: list[OSError] = []
@@ -133,7 +128,7 @@ def _found_below(folder: Path) -> list[Path]:
         photographs += [path for path in paths if path.suffix.lower() in PHOTOGRAPH_SUFFIXES and not _is_sheet(path)]
     unread = sorted(Path(failure.filename) for failure in failures)
     if folder in unread:
-        raise PlateError(f"{folder}: {fault(folder)}")
+        raise PlateError("unreadable", path=folder, reason=unreadable_reason(folder))
     return [*sorted(photographs), *unread]
 
 

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+import asyncio
 import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
 from contextlib import contextmanager
 from multiprocessing import get_context
 
-from crfnet_core.errors import CRFNetError
+from ..errors import PlateError
 
 #: Seconds to wait for the answer of a scheduler.
 SCHEDULER_TIMEOUT = 10
@@ -28,7 +29,7 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
 
     Raises
     ------
-    CRFNetError
+    PlateError
         If Dask is not installed, or no scheduler answers at the address.
     """
     if scheduler is not None:
@@ -54,15 +55,16 @@ def _leave_signals_to_the_parent() -> None:
 
 @contextmanager
 def _dask_pool(address: str) -> Iterator[Executor]:
-    """Yield the executor of a Dask cluster."""
+    """Yield the executor of a Dask cluster; Dask's own settings hold the certificates of an encrypted one."""
     try:
         from distributed import Client
     except ImportError as problem:
-        raise CRFNetError("a scheduler needs Dask: pip install 'crfnet[cluster]'") from problem
+        raise PlateError("no_dask") from problem
     try:
+        asyncio.run(asyncio.wait_for(_answer(address), SCHEDULER_TIMEOUT))
         client = Client(address, timeout=SCHEDULER_TIMEOUT)
-    except (OSError, ValueError) as problem:
-        raise CRFNetError(f"{address}: no Dask scheduler answers there ({problem}); check the address") from problem
+    except (OSError, ValueError, TypeError, RuntimeError) as problem:  # TypeError: no certificates for tls://
+        raise PlateError("no_scheduler", address=address, reason=str(problem) or "no answer") from problem
     with client, client.get_executor(pure=False) as pool:
         try:
             yield pool
@@ -70,3 +72,12 @@ def _dask_pool(address: str) -> Iterator[Executor]:
             pool.shutdown(wait=False)
             client.close()
             raise
+
+
+async def _answer(address: str) -> None:
+    """Ask a scheduler who it is: `Client` would wait for ever for a server that never says anything."""
+    from distributed import rpc
+    from distributed.security import Security
+
+    async with rpc(address, connection_args=Security().get_connection_args("client")) as scheduler:
+        await scheduler.identity()

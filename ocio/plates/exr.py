@@ -82,8 +82,13 @@ def linear_header(
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
         else:
-            header.attribute(name, value)
+            header.attribute(name, _text(value))
     return header
+
+
+def _text(value: Any) -> Any:
+    """Return a text without what is not Unicode in it, which OpenImageIO does not take; any other value as it is."""
+    return value.encode(errors="replace").decode() if isinstance(value, str) else value
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:

@@ -1,6 +1,6 @@
-"""What is said of an estimate and of files.
+"""Estimates and files in words, as documents and as pictures.
 
-facts        what is said everywhere, among it the provenance that LUT files carry
+facts        photographs and errors in words, and the provenance that LUT files carry
 words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
 cameras      stored cameras in words and as JSON
@@ -15,7 +15,7 @@ from .calibration import (
 )
 from .cameras import camera_line, camera_summary, offer_lines
 from .documents import estimate_document, lut_document, model_document, plate_document
-from .facts import PhotoFacts, agreeing, basis, curve_error_words, provenance, shape_error_words
+from .facts import PhotoFacts, Phrases, agreeing, basis, curve_error_words, provenance, shape_error_words
 from .words import (
     REMEDIES,
     VERDICTS,
@@ -34,6 +34,7 @@ __all__ = [
     "REMEDIES",
     "VERDICTS",
     "PhotoFacts",
+    "Phrases",
     "agreeing",
     "basis",
     "calibration_document",

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ModelConfig
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.errors import beside_limits
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior.verdict import GOOD_ERROR, GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response.metrics import brightness_percent
@@ -48,10 +48,34 @@ class PhotoFacts:
         return f"{self.name}: {self.width} x {self.height}, {self.bit_depth} bits{base}"
 
 
-def curve_error_words(estimate: ResponseEstimate) -> str:
+@dataclass(frozen=True)
+class Phrases:
+    """The phrases of a face: its remedies in its own terms, and whether it shows the figures of the literature.
+
+    Parameters
+    ----------
+    calibrate : str
+        Behind the advice about an estimate that is not to be trusted.
+    state_device : str
+        The same, if nothing names the camera.
+    has_e_est : bool
+        Whether errors are also given as E_est.
+    """
+
+    calibrate: str = ", or run crfnet calibrate"
+    state_device: str = ", or say with --taken-with which kind of camera took it, if it is a photograph"
+    has_e_est: bool = True
+
+
+#: The phrases of the command.
+COMMAND = Phrases()
+
+
+def curve_error_words(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return in words how far the curve is expected to be off."""
     percent = brightness_percent(estimate.uncertainty)
-    return f"{percent:.1f} % of the brightness range (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})"
+    figure = f" (E_est {beside_limits(estimate.uncertainty, GOOD_ERROR)})" if phrases.has_e_est else ""
+    return f"{percent:.1f} % of the brightness range{figure}"
 
 
 def shape_error_words(estimate: ResponseEstimate) -> str:

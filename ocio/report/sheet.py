@@ -19,7 +19,7 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 from matplotlib.text import Annotation
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import atomic_write
 from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
@@ -125,7 +125,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     figure.add_artist(beside)
     figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
     figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
-    warning_line = ellipsized(DOT.join(estimate.warnings), LONGEST_LINE)
+    warning_line = ellipsized(DOT.join(map(str, estimate.warnings)), LONGEST_LINE)
     figure.text(0.058, 0.026, warning_line, va="center", color=VERDICT_INK[Verdict.USABLE])
 
 

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.posterior import Family, LikelyKind, Verdict
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
 
@@ -16,13 +16,13 @@ from ..output_files import OutputFiles
 from ..plates.frame_numbers import format_frames
 from ..plates.linear import PlateReport
 from .documents import QUARTERS
-from .facts import agreeing, basis, curve_error_words, expected_errors, shape_error_words
+from .facts import COMMAND, Phrases, agreeing, basis, curve_error_words, expected_errors, shape_error_words
 
 #: The verdicts in words for people.
 VERDICTS = {
     Verdict.GOOD: "good",
     Verdict.USABLE: "usable: look at the plate before you rely on it",
-    Verdict.DO_NOT_TRUST: "not to be trusted: give the file that the camera wrote, or run crfnet calibrate",
+    Verdict.DO_NOT_TRUST: "not to be trusted: give the file that the camera wrote",
 }
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
@@ -30,13 +30,10 @@ GRAY_TOLERANCE = 0.0005
 
 #: What to do if a picture is not to be trusted and of such a family.
 REMEDIES = {
-    Family.LINEAR: "it seems to be linear already, so give it a linear colour space",
-    Family.LOG: "it seems to be log footage, so give it the colour space of its log curve",
+    Family.LINEAR: "it seems to be linear already, so give it a linear color space",
+    Family.LOG: "it seems to be log footage, so give it the color space of its log curve",
     Family.UNEXPLAINED: "no camera response explains this picture, so take a photograph as the camera wrote it",
 }
-
-#: What else to do if nothing says what took the picture.
-TELL_DEVICE = ", or say with --taken-with which kind of camera took it, if it is a photograph"
 
 
 def source_line(estimate: ResponseEstimate) -> str:
@@ -47,12 +44,12 @@ def source_line(estimate: ResponseEstimate) -> str:
     return f"Response estimated from {first}" + (f" and {len(others)} more frames." if others else ".")
 
 
-def verdict_lines(estimate: ResponseEstimate) -> list[str]:
+def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
     kind, rests_on = estimate.likely_kind, basis(estimate)
     return [
-        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, kind)}.",
-        _expectation(estimate),
+        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, kind, phrases)}.",
+        _expectation(estimate, phrases),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
         *([f"{agreeing(estimate)}."] if estimate.windows else []),
@@ -171,7 +168,7 @@ def model_lines(document: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
+def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None, phrases: Phrases) -> str:
     """Return the verdict with what to do about it, which of some kinds of pictures is something of its own."""
     if estimate.recognition:
         return f"not to be trusted: {estimate.recognition.advice}"
@@ -179,16 +176,17 @@ def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None) -> str:
     if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
         is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
         is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
-        more = "" if is_known or is_stored else TELL_DEVICE
+        more = "" if is_known or is_stored else phrases.state_device
         return f"not to be trusted: {remedies[0]}{more}"
-    return VERDICTS[estimate.verdict]
+    more = phrases.calibrate if estimate.verdict is Verdict.DO_NOT_TRUST else ""
+    return f"{VERDICTS[estimate.verdict]}{more}"
 
 
-def _expectation(estimate: ResponseEstimate) -> str:
+def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:
     """Return how far the answer is expected to be off, beside gamma 2.2; without stops if they are not known."""
     shape, curve, gamma = (
         shape_error_words(estimate),
-        curve_error_words(estimate),
+        curve_error_words(estimate, phrases),
         f"{brightness_percent(GAMMA_ERROR):.0f} %",
     )
     if not shape:

@@ -8,6 +8,7 @@ import pytest
 from blender_addon.work.job import Anchor, ApplyMode, Estimation, Exposure, Job, Output, Plate
 from crfnet.configs.portable import portable_config
 from crfnet.options import EstimateOptions
+from crfnet_core.estimate.options import AnalysisOptions
 from tests.helpers.images import write_image
 
 
@@ -51,7 +52,9 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
                 folder=path.parent,
             ),
             estimation=Estimation(
-                options=EstimateOptions(model=fixed_model, prior=prior, use_metadata=use_metadata),
+                options=EstimateOptions(
+                    model=fixed_model, prior=prior, analysis=AnalysisOptions(use_metadata=use_metadata)
+                ),
                 is_forced=is_forced,
                 stored=stored,
             ),

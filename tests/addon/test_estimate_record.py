@@ -9,7 +9,7 @@ import pytest
 from blender_addon.work.estimate_record import entries_of, estimate_of
 from crfnet.pipeline import response_lut
 from crfnet.report import verdict_lines
-from crfnet_core.errors import CurveError
+from crfnet_core.errors import CurveError, Notice
 from crfnet_core.estimate.result import CameraAnswer
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.recognition import Kind, Recognition
@@ -28,6 +28,7 @@ SAVED = {
     "recognition": str,
     "camera": str,
     "warnings": str,
+    "notices": str,
     "weights": list,
     "brightness": list,
     "lower": list,
@@ -40,7 +41,7 @@ SAVED = {
 }
 
 #: Entries that layout 1 lacked; it had "spread" instead.
-NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition", "camera")
+NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition", "camera", "notices")
 
 
 @pytest.fixture(scope="module")
@@ -49,7 +50,7 @@ def found(plate, fixed_model):
     from crfnet_core import ResponseNetwork, estimate_response, read_photo
 
     estimate = estimate_response([read_photo(plate)] * 2, network=ResponseNetwork.load(fixed_model))
-    return dataclasses.replace(estimate, warnings=("one thing", "another"))
+    return dataclasses.replace(estimate, warnings=(Notice("edited", {"editor": "Photos"}), Notice("gray")))
 
 
 def test_an_estimate_comes_back_the_same(found):
@@ -58,6 +59,13 @@ def test_an_estimate_comes_back_the_same(found):
     assert again.verdict is found.verdict
     assert {type(family) for family in again.families} == {Family}
     assert [type(origin.device) for origin in again.origins] == [Device, Device]
+
+
+def test_codes_of_warnings_come_back_and_sentences_of_earlier_versions(found):
+    entries = entries_of(found)
+    assert [notice.code for notice in estimate_of(entries).warnings] == ["edited", "gray"]
+    del entries["notices"]
+    assert estimate_of(entries).warnings == found.warnings
 
 
 def test_an_estimate_without_warnings_has_none_afterwards(found):

@@ -12,6 +12,7 @@ from blender_addon.work.errors import AddonError, CancelledError
 from blender_addon.work.job import Anchor, ApplyMode
 from blender_addon.work.run import run
 from crfnet.errors import PlateError
+from crfnet.pipeline import estimates, loading
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
 from crfnet_core.errors import CRFNetError, ModelError, PriorError
 from crfnet_core.network import ResponseNetwork
@@ -61,8 +62,8 @@ def test_pixels_from_blender_have_no_metadata(make_job):
 
 
 def test_a_prior_that_is_absent_is_told_before_the_network_is_loaded(make_job, calls, tmp_path):
-    loads = calls(run_module, "_load_network")
-    with pytest.raises(PriorError, match="there is no prior"):
+    loads = calls(estimates, "load_network")
+    with pytest.raises(PriorError, match="no prior"):
         run(make_job(prior=tmp_path / "none.json"))
     assert loads == []
 
@@ -112,7 +113,7 @@ def test_its_primaries_are_those_of_the_file_or_those_that_are_stored(make_job, 
 
 def test_the_network_is_loaded_once(make_job, calls):
     loads = calls(ResponseNetwork, "load")
-    run_module._load_network.cache_clear()
+    loading._network.cache_clear()
     for _ in range(3):
         run(make_job(mode=ApplyMode.NODES))
     assert len(loads) == 1
@@ -145,7 +146,7 @@ def test_estimate_only_writes_nothing(make_job, tmp_path):
 @pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
 def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
     run(make_job(mode=mode))
-    loads = calls(run_module, "_load_network")
+    loads = calls(estimates, "load_network")
     with pytest.raises(AddonError, match=r"exists already in .*; tick Overwrite or choose another Folder"):
         run(make_job(mode=mode))
     assert loads == []
@@ -153,7 +154,7 @@ def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
 
 
 def test_a_missing_folder_is_told_before_the_estimate(make_job, calls):
-    loads = calls(run_module, "_load_network")
+    loads = calls(estimates, "load_network")
     with pytest.raises(AddonError, match="choose one under Folder"):
         run(make_job(folder=None))
     assert loads == []
@@ -226,7 +227,7 @@ def test_a_linear_plate_is_refused_unless_forced(make_job):
 
 
 def test_a_cancelled_job_ends_before_the_network_is_loaded(make_job, calls):
-    loads = calls(run_module, "_load_network")
+    loads = calls(estimates, "load_network")
     with pytest.raises(CancelledError):
         run(make_job(), cancel)
     assert loads == []
@@ -238,4 +239,4 @@ def test_a_missing_plate_and_a_missing_model_are_told(make_job, tmp_path, plate_
     with pytest.raises(PlateError, match="there is no such file"):
         run(job)
     with pytest.raises(ModelError, match=r"model\.json"):
-        run_module._load_network(type(job.estimation.options)(model=tmp_path))
+        loading.load_network(type(job.estimation.options)(model=tmp_path))

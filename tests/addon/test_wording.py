@@ -1,68 +1,55 @@
-"""What the add-on says: American spelling, one line, the verdict and the first warning by name."""
+"""The add-on's sentences: one line, the verdict and the first warning by name, remedies in Blender's terms."""
 
 import dataclasses
 
 import pytest
 
-from blender_addon.work.wording import american, capitalized, panel_line, report_line
-from crfnet.report.words import TELL_DEVICE
-from crfnet_core.posterior import Verdict
+from blender_addon.work.wording import capitalized, panel_phrases, problem_line, report_line
+from crfnet.errors import PlateError
+from crfnet.report import verdict_lines
+from crfnet_core.errors import Notice
+from crfnet_core.posterior import Family, Verdict
 
 
-@pytest.mark.parametrize(
-    ("british", "expected"),
-    [
-        ("give it a linear colour space", "give it a linear color space"),
-        ("Colours are analysed; linearised, Cancelled", "Colors are analyzed; linearized, Canceled"),
-        ("/plates/grey colour.png: no colour", "/plates/grey colour.png: no color"),
-        ("/colour/plate.png: a colour", "/colour/plate.png: a color"),
-        ('"colour" is no color', '"colour" is no color'),
-    ],
-)
-def test_messages_are_american_and_paths_stay(british, expected):
-    assert american(british) == expected
+@pytest.fixture
+def found(estimate, plate_file):
+    return dataclasses.replace(estimate(plate_file), verdict=Verdict.USABLE, warnings=())
 
 
-def test_the_panel_leaves_the_figure_of_the_papers_out():
-    line = "Expect the curve to be off by 1.9 % of the brightness range (E_est 0.60); gamma 2.2 is off by 10 %."
-    assert panel_line(line) == "Expect the curve to be off by 1.9 % of the brightness range; gamma 2.2 is off by 10 %."
+def test_the_panel_names_its_own_settings_and_no_figure_of_the_papers(found):
+    families = {Family.UNEXPLAINED: 1.0}
+    doubtful = dataclasses.replace(found, verdict=Verdict.DO_NOT_TRUST, families=families, origins=())
+    lines = verdict_lines(doubtful, panel_phrases())
+    end = ", or say with Taken With under Advanced which kind of camera took it, if it is a photograph."
+    assert lines[0].endswith(end)
+    assert not any("E_est" in line or "--" in line or "crfnet" in line for line in lines)
+    assert "E_est" in verdict_lines(doubtful)[1]
+    assert "crfnet" not in verdict_lines(dataclasses.replace(doubtful, families={}), panel_phrases())[0]
 
 
-def test_the_panel_names_its_own_settings():
-    line = panel_line(f"The estimate is not to be trusted{TELL_DEVICE}.")
-    assert line.endswith(", or say with Taken With under Advanced which kind of camera took it, if it is a photograph.")
+def test_an_error_has_the_remedy_in_blender():
+    assert problem_line(PlateError("file_exists", path="a.exr")).endswith("; tick Overwrite")
+    assert problem_line(PlateError("not_a_folder", path="a")) == str(PlateError("not_a_folder", path="a"))
 
 
-def test_a_report_names_the_verdict_and_the_warning(estimate, plate_file):
-    found = dataclasses.replace(estimate(plate_file), verdict=Verdict.USABLE, warnings=())
+def test_a_report_names_the_verdict_and_the_first_warning_in_few_words(found):
     assert report_line("plate", found, "done") == "plate: the response is usable; done"
-    one = dataclasses.replace(found, warnings=("gray photograph",))
+    one = dataclasses.replace(found, warnings=(Notice("gray"),))
     assert report_line("plate", one, "done") == "plate: the response is usable (warning: gray photograph); done"
-    two = dataclasses.replace(found, warnings=("gray photograph", "noise"))
-    assert "(warning: gray photograph, and 1 more)" in report_line("plate", two, "done")
+    two = dataclasses.replace(found, warnings=(Notice("edited", {"editor": "GIMP"}), Notice("gray")))
+    assert "(warning: saved by GIMP, and 1 more)" in report_line("plate", two, "done")
+    other = dataclasses.replace(found, warnings=(Notice.from_text("of {braces}"),))
+    assert "(warning: of {braces})" in report_line("plate", other, "done")
 
 
-def test_a_report_leaves_advice_out_so_that_it_is_not_cut(estimate, plate_file):
-    warning = "no window covers the range of brightness: expect a poor estimate"
-    found = dataclasses.replace(estimate(plate_file), verdict=Verdict.DO_NOT_TRUST, warnings=(warning,))
-    expected = "the response is not to be trusted (warning: no window covers the range of brightness); done"
-    assert report_line("plate", found, "done") == f"plate: {expected}"
-
-
-@pytest.mark.parametrize("verdict", [Verdict.GOOD, Verdict.USABLE])
-def test_a_picture_that_says_nothing_is_not_called_usable(estimate, plate_file, verdict):
-    warning = "no window covers the range of brightness: expect a poor estimate"
-    found = dataclasses.replace(estimate(plate_file), verdict=verdict, warnings=("saved by GIMP", warning))
-    assert report_line("card", found, "done").startswith("card: the response is little more than the mean of cameras (")
+def test_a_picture_that_says_nothing_is_not_called_usable(found):
+    narrow = dataclasses.replace(found, warnings=(Notice("edited", {"editor": "GIMP"}), Notice("narrow_range")))
+    words = "card: the response is little more than the mean of cameras ("
+    assert report_line("card", narrow, "done").startswith(words)
+    untrusted = dataclasses.replace(narrow, verdict=Verdict.DO_NOT_TRUST)
+    assert "is not to be trusted (warning" in report_line("card", untrusted, "done")
 
 
 def test_a_capital_letter_and_no_other_change():
     assert capitalized("no camera of NIKON") == "No camera of NIKON"
     assert capitalized("") == ""
-
-
-def test_a_verdict_is_a_sentence(estimate, plate_file):
-    for verdict in Verdict:
-        found = dataclasses.replace(estimate(plate_file), verdict=verdict, warnings=())
-        assert report_line("plate", found, "done").startswith("plate: the response is ")
-    assert "is not to be trusted; done" in report_line("plate", found, "done")

@@ -21,14 +21,13 @@ def untrusted(image, monkeypatch):
     from blender_addon.work import run
     from crfnet_core.posterior import Verdict
 
-    estimate = run.estimate_frames
-    monkeypatch.setattr(
-        run,
-        "estimate_frames",
-        lambda *arguments, **options: dataclasses.replace(
-            estimate(*arguments, **options), verdict=Verdict.DO_NOT_TRUST
-        ),
-    )
+    estimate_files = run.estimate_files
+
+    def doubtful(*arguments, **options):
+        found = estimate_files(*arguments, **options)
+        return dataclasses.replace(found, estimate=dataclasses.replace(found.estimate, verdict=Verdict.DO_NOT_TRUST))
+
+    monkeypatch.setattr(run, "estimate_files", doubtful)
     return image
 
 
@@ -84,7 +83,7 @@ def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypat
     from crfnet.errors import PlateError
 
     def refuse(*_arguments, **_options):
-        raise PlateError("the disk is full, colour and all")
+        raise PlateError("the disk is full, color and all")
 
     monkeypatch.setattr(writers, "write", refuse)
     before = scene_state()

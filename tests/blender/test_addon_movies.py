@@ -131,7 +131,7 @@ def test_a_movie_is_not_baked(movie, tmp_path):
 
 def test_the_estimate_is_that_of_the_frame(addon, movie, movie_folder):
     from blender_addon.scene.stored_estimate import restored
-    from crfnet_core import ResponseNetwork, estimate_response, read_photo
+    from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
     from crfnet_core.network import DEFAULT_MODEL
 
     if not DEFAULT_MODEL.is_dir():
@@ -141,7 +141,7 @@ def test_the_estimate_is_that_of_the_frame(addon, movie, movie_folder):
     bpy.context.scene.frame_set(7)
     bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES")
     photo = read_photo(movie_folder / "0007.png")
-    expected = estimate_response([photo], network=ResponseNetwork.load(), use_metadata=False)
+    expected = estimate_response([photo], network=ResponseNetwork.load(), options=AnalysisOptions(use_metadata=False))
     assert restored(clip).photos == ("rgb.0007.png",)
     np.testing.assert_allclose(restored(clip).weights, expected.weights, atol=1e-3)
 

@@ -86,7 +86,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
 )
 def test_the_verdict_comes_first_in_a_word_with_an_icon(image, in_editor, verdict, word, icon):
     image["camera_response"]["verdict"] = verdict
-    image["camera_response"]["warnings"] = ""
+    image["camera_response"]["notices"] = "[]"
     image["camera_response"]["lines"] = (
         "The estimate is so: no camera explains it, so take another.\nMost likely a film."
     )

@@ -44,7 +44,7 @@ def test_the_outlines_enclose_the_pixels_of_the_windows(windows, image):
 
 
 def test_windows_that_are_sampled_sparsely_are_as_large_as_what_they_span(windows, image):
-    from crfnet_core import Window
+    from crfnet_core.statistics.windows import Window
 
     image["camera_response"]["window_places"] = [100, 40, 3, 200, 0, 0, 1, 256]
     image["camera_response"]["window_photos"] = [0, 1]

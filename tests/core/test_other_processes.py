@@ -12,6 +12,7 @@ import pytest
 
 from crfnet_core.errors import ModelError
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import DEFAULT_MODEL, ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.response.curve import ResponseCurve
@@ -27,15 +28,16 @@ def test_a_new_process_gives_the_same_estimate(photo, fixed_model, model):
     """By spawn, as on Windows and macOS: the photograph and the network go there, the estimate comes back."""
     network = ResponseNetwork.load(model and fixed_model)
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        found = pool.apply(estimate_response, (photo,), {"network": network, "windows": 3})
-    assert found == estimate_response(photo, network=network, windows=3)
+        found = pool.apply(estimate_response, (photo,), {"network": network, "options": AnalysisOptions(windows=3)})
+    assert found == estimate_response(photo, network=network, options=AnalysisOptions(windows=3))
     assert not found.curve.brightness.flags.writeable
 
 
 def test_threads_share_a_network(photo):
     network = ResponseNetwork.load()
+    options = AnalysisOptions(windows=3)
     with ThreadPoolExecutor(3) as threads:
-        found = list(threads.map(lambda _: estimate_response(photo, network=network, windows=3), range(3)))
+        found = list(threads.map(lambda _: estimate_response(photo, network=network, options=options), range(3)))
     assert found[0] == found[1] == found[2]
 
 
@@ -85,7 +87,7 @@ def test_a_curve_is_sent_without_its_tables():
 
 
 def test_an_estimate_is_sent_whole(photo, fixed_model):
-    estimate = estimate_response(photo, network=ResponseNetwork.load(fixed_model), windows=2)
+    estimate = estimate_response(photo, network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2))
     for again in (pickle.loads(pickle.dumps(estimate)), copy.deepcopy(estimate)):
         assert again == estimate
         assert json.dumps(again.to_dict()) == json.dumps(estimate.to_dict())

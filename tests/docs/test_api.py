@@ -8,7 +8,7 @@ import shutil
 
 import pytest
 
-import crfnet_core
+import crfnet
 
 #: The head of a table of names that one module has.
 HEAD = re.compile(r"^\| `((?:crfnet_core|crfnet)[\w.]*)` \|")
@@ -69,12 +69,12 @@ def test_a_name_or_a_parameter_that_is_not_there_is_found_out(page):
     with pytest.raises(AttributeError):
         found("crfnet_core", "ResponseEstimate.nonesuch")
     assert signature(found("crfnet_core", "read_photo")) == "(path)"
-    assert ("crfnet_core", "read_photo", "(path)") in documented(page)
-    assert ("crfnet_core", "ResponseCurve.inverse", "(brightness)") in documented(page)
+    assert ("crfnet", "read_photo", "(path)") in documented(page)
+    assert ("crfnet", "ResponseCurve.inverse", "(brightness)") in documented(page)
 
 
-def test_it_names_everything_that_the_core_exports(page):
-    assert [name for name in crfnet_core.__all__ if not re.search(rf"`[^`]*\b{name}\b", page)] == []
+def test_it_names_everything_that_is_exported(page):
+    assert [name for name in crfnet.__all__ if not re.search(rf"`[^`]*\b{name}\b", page)] == []
 
 
 def test_its_examples_run(page, plate, tmp_path, monkeypatch):
@@ -83,7 +83,7 @@ def test_its_examples_run(page, plate, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))
     snippets = re.findall(r"^```python\n(.*?)^```", page, re.MULTILINE | re.DOTALL)
-    assert len(snippets) == 5
+    assert len(snippets) == 4
     names: dict[str, object] = {}
     for snippet in snippets:
         exec(snippet, names)

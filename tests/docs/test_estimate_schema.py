@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from crfnet.luts.files import WRITERS
-from crfnet_core import ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+from crfnet_core import AnalysisOptions, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
 from crfnet_core.library import CameraLibrary
@@ -34,7 +34,9 @@ def problems(schema):
 
 @pytest.fixture(scope="module")
 def estimate(plate, fixed_model):
-    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), windows=2)
+    return estimate_response(
+        read_photo(plate), network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2)
+    )
 
 
 @pytest.fixture(scope="module")

@@ -1,19 +1,12 @@
 """The shared constants agree with those of the core and of the formats."""
 
-import inspect
-
 import numpy as np
 
 from crfnet import defaults, report
 from crfnet.plates.exr import SAMPLE_TYPES
-from crfnet_core import estimate_response
 from crfnet_core.photograph.metadata import Device
 from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packaged_priors, verdict
 from crfnet_core.response.metrics import brightness_percent
-
-
-def test_windows_are_those_of_the_core():
-    assert inspect.signature(estimate_response).parameters["windows"].default == defaults.WINDOWS
 
 
 def test_the_lut_length_is_exact_on_8_bit_codes():

@@ -4,21 +4,30 @@ import dataclasses
 import errno
 import json
 import shutil
+import sys
 from pathlib import Path
 
 import numpy as np
+import PyOpenColorIO as OCIO
 import pytest
 
 from crfnet import pipeline
+from crfnet.cli.main import main
+from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.defaults import FRAMES_ANALYZED, LUT_LENGTH
 from crfnet.errors import PlateError
+from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.rgb_lut import RgbLut1D
-from crfnet.options import EstimateOptions, PlateOptions
-from crfnet.pipeline.batch import network_and_prior
+from crfnet.options import EstimateOptions, OutputOptions, PlateOptions
+from crfnet.output_files import OutputFiles
+from crfnet.pipeline import estimates
 from crfnet.plates.frames import FrameSequence, find_frames
-from crfnet.plates.linear import linear_targets, linearize_plates
+from crfnet.plates.light import PlateLight
+from crfnet.plates.linear import linear_targets
 from crfnet_core.errors import CRFNetError, PhotoError, PriorError
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import listed
@@ -42,17 +51,7 @@ def cancel_after(frames):
 
 @pytest.fixture(scope="module")
 def options(fixed_model):
-    return EstimateOptions(model=fixed_model, windows=2)
-
-
-@pytest.fixture(scope="module")
-def network(options):
-    return pipeline.load_network(options)
-
-
-@pytest.fixture(scope="module")
-def prior(options):
-    return pipeline.load_prior(options)
+    return EstimateOptions(model=fixed_model, analysis=AnalysisOptions(windows=2))
 
 
 @pytest.fixture
@@ -64,48 +63,39 @@ def sequence(plate, tmp_path):
 
 
 class TestEstimates:
-    def test_several_frames_stand_for_a_sequence(self, sequence, network, prior, options):
+    def test_several_frames_stand_for_a_sequence(self, sequence, options):
         calls = []
-        estimate = pipeline.estimate_frames(
-            sequence, network, prior, options, progress=lambda *call: calls.append(call)
-        )
-        assert len(estimate.photos) == FRAMES_ANALYZED
-        assert (estimate.photos[0], estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
-        assert len(estimate.windows) == 2 * FRAMES_ANALYZED
+        found = pipeline.estimate_files([sequence], options, progress=lambda *call: calls.append(call))
+        assert len(found.estimate.photos) == len(found.photographs) == FRAMES_ANALYZED
+        assert (found.estimate.photos[0], found.estimate.photos[-1]) == ("shot.0001.jpg", "shot.0012.jpg")
+        assert [facts.plate.paths[0].name for facts in found.firsts] == ["shot.0001.jpg"]
+        assert len(found.estimate.windows) == 2 * FRAMES_ANALYZED
         assert calls[-1][0] == calls[-1][1]
 
-    def test_a_single_file_stands_for_itself(self, plate, network, prior, options):
-        estimate = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
-        assert estimate.photos == ("plate.jpg",)
+    def test_the_facts_of_a_photograph_outlive_its_pixels(self, plate, options):
+        found = pipeline.estimate_files([FrameSequence((plate,))] * 2, options)
+        assert [str(facts.report) for facts in found.photographs] == ["plate.jpg: 672 x 378, 8 bits"] * 2
+        assert (found.photographs[0].preview.shape, found.photographs[0].stride) == ((378, 672, 3), 1)
+        assert found.photographs[1].preview.size == 0
 
-    def test_a_file_and_its_photograph_give_the_same_response(self, plate, network, prior, options):
-        frame = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
-        photograph = pipeline.estimate_photographs([plate], network, prior, options)
-        np.testing.assert_array_equal(photograph.estimate.curve.brightness, frame.curve.brightness)
-        assert [str(facts) for facts in photograph.facts] == ["plate.jpg: 672 x 378, 8 bits"]
-        assert (photograph.preview.shape, photograph.stride) == ((378, 672, 3), 1)
-
-    def test_what_the_callback_raises_ends_the_estimate(self, plate, network, prior, options):
+    def test_what_the_callback_raises_ends_the_estimate(self, plate, options):
         with pytest.raises(CancelledError):
-            pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options, progress=cancel_after(1))
+            pipeline.estimate_files([FrameSequence((plate,))], options, progress=cancel_after(1))
 
-    def test_a_frame_that_has_gone_is_named(self, tmp_path, network, prior, options):
+    def test_a_frame_that_has_gone_is_named(self, tmp_path, options):
         with pytest.raises(PhotoError, match=r"gone\.jpg: there is no such file"):
-            pipeline.estimate_frames(FrameSequence((tmp_path / "gone.jpg",)), network, prior, options)
+            pipeline.estimate_files([FrameSequence((tmp_path / "gone.jpg",))], options)
 
-    def test_the_prior_and_the_metadata_follow_the_options(self, plate, network, options, tmp_path):
+    def test_the_prior_and_the_metadata_follow_the_options(self, plate, options, tmp_path):
         (tmp_path / "film only.json").write_text('{"shares": {"film": 1}, "evidence": 0.5}')
-        asked = dataclasses.replace(options, prior=tmp_path / "film only.json", use_metadata=False)
-        film = pipeline.load_prior(asked)
-        for found in (
-            pipeline.estimate_frames(FrameSequence((plate,)), network, film, asked),
-            pipeline.estimate_photographs([plate], network, film, asked).estimate,
-        ):
-            assert (found.prior, found.origins) == ("film only", ())
-            assert found.families[Family.FILM] == pytest.approx(1)
+        analysis = dataclasses.replace(options.analysis, use_metadata=False)
+        asked = dataclasses.replace(options, prior=tmp_path / "film only.json", analysis=analysis)
+        found = pipeline.estimate_files([FrameSequence((plate,))], asked).estimate
+        assert (found.prior, found.origins) == ("film only", ())
+        assert found.families[Family.FILM] == pytest.approx(1)
 
-    def test_metadata_counts_by_default(self, plate, network, prior, options):
-        found = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
+    def test_metadata_counts_by_default(self, plate, options):
+        found = pipeline.estimate_files([FrameSequence((plate,))], options).estimate
         assert found.prior == "camera"
         assert [origin.jpeg_quality for origin in found.origins] == [95]
 
@@ -126,8 +116,8 @@ class TestEstimates:
             pipeline.load_prior(EstimateOptions(prior=path))
         assert "\n" not in str(told.value)
 
-    def test_the_lut_carries_its_provenance(self, plate, network, prior, options, true_response):
-        found = pipeline.estimate_frames(FrameSequence((plate,)), network, prior, options)
+    def test_the_lut_carries_its_provenance(self, plate, options, true_response):
+        found = pipeline.estimate_files([FrameSequence((plate,))], options).estimate
         lut = pipeline.response_lut(found)
         assert len(lut.values) == LUT_LENGTH
         assert "Photographs: plate.jpg" in lut.comments
@@ -156,12 +146,17 @@ class TestExposure:
             pipeline.anchored_exposure(ResponseCurve.gamma(2.2), gray=0.0)
 
 
+def light_of(lut, **options):
+    return PlateLight.of(ColorTags(), lut, PlateOptions(**options))
+
+
 def bake(sequence, targets, lut, options, *, progress=None):
-    with pipeline.all_or_none(targets, overwrite=options.overwrite) as staged:
-        linearize_plates(sequence, staged, lut, options, progress=progress)
+    files = dataclasses.replace(OutputFiles.named(targets[0].parent, [Path("plate.png")]), linear=tuple(targets))
+    plan = pipeline.OutputPlan(files, options, lut_length=0)
+    pipeline.deliver(plan, light_of(lut), [sequence], progress=progress)
 
 
-class TestAllOrNone:
+class TestLinearFrames:
     def test_writes_every_frame_into_a_new_folder(self, sequence, tmp_path):
         calls = []
         targets = linear_targets(tmp_path / "new" / "deep" / "lin.%04d.exr", sequence)
@@ -218,23 +213,86 @@ class TestAllOrNone:
         assert target.stat().st_size > 1000
 
 
-def test_a_worker_reads_a_prior_anew(fixed_model, tmp_path):
+class TestExport:
+    @pytest.fixture
+    def plan(self, tmp_path):
+        return self.planned(tmp_path / "look")
+
+    def planned(self, folder, *, overwrite=False):
+        outputs = OutputOptions(has_sheet=False, has_linear=False)
+        files = OutputFiles.named(folder, [Path("plate.png")], outputs)
+        space = PlateColorSpace.from_outputs(files, Path("plate.png"), file_pattern="plate.*.png")
+        return pipeline.OutputPlan(files, PlateOptions(overwrite=overwrite), LUT_LENGTH, space)
+
+    def test_writes_the_lut_in_three_formats_and_a_config(self, plan):
+        written = pipeline.deliver(plan, light_of(LUT, exposure=1))
+        assert [path.name for path in written] == ["plate.spi1d", "plate.cube", "plate.clf", "config.ocio"]
+        assert all(read_lut(path) == LUT for path in written[:3])
+        config = OCIO.Config.CreateFromFile(str(plan.files.config))
+        assert config.getColorSpaceFromFilepath("plate.0001.png")[0] == "CRF plate"
+
+    def test_existing_files_are_refused_before_anything_is_written(self, plan, tmp_path):
+        plan.files.config.parent.mkdir()
+        plan.files.config.write_text("mine")
+        with pytest.raises(CRFNetError, match=r"config\.ocio: exists already"):
+            pipeline.deliver(plan, light_of(LUT))
+        assert listed(plan.files.config.parent) == ["config.ocio"]
+        pipeline.deliver(self.planned(tmp_path / "look", overwrite=True), light_of(LUT))
+        assert len(listed(plan.files.config.parent)) == 4
+
+    def test_a_failure_in_the_middle_leaves_earlier_files_as_they_were(self, plan, tmp_path, monkeypatch):
+        earlier = {path: path.read_bytes() for path in pipeline.deliver(plan, light_of(LUT))}
+        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", lambda *arguments, **options: 1 / 0)
+        other = inverse_response_lut(ResponseCurve.gamma(1.5))
+        with pytest.raises(ZeroDivisionError):
+            pipeline.deliver(self.planned(tmp_path / "look", overwrite=True), light_of(other))
+        assert {path: path.read_bytes() for path in plan.files.config.parent.iterdir()} == earlier
+
+    def test_a_folder_in_which_opencolorio_finds_no_lut_is_refused(self, tmp_path):
+        with pytest.raises(PlateError) as caught:
+            pipeline.deliver(self.planned(tmp_path / "projects$"), light_of(LUT))
+        assert caught.value.code == "variables_in_path"
+        assert not (tmp_path / "projects$").exists()
+
+    @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
+    def test_a_failure_in_the_middle_leaves_nothing(self, plan, monkeypatch, problem):
+        def fail(*arguments, **options):
+            raise problem
+
+        monkeypatch.setattr("crfnet.pipeline.delivery.write_config", fail)
+        with pytest.raises(type(problem)):
+            pipeline.deliver(plan, light_of(LUT))
+        assert not plan.files.config.parent.exists()
+
+
+def test_a_process_reads_a_prior_anew_and_a_network_once(fixed_model, tmp_path):
     path = tmp_path / "mine.json"
     shares = dict.fromkeys(Family, 0.125)
-    path.write_text(json.dumps({"shares": shares, "evidence": 1.0}))
     options = EstimateOptions(model=fixed_model, prior=str(path))
-    network, before = network_and_prior(options)
-    path.write_text(json.dumps({"shares": shares, "evidence": 0.5}))
-    again, after = network_and_prior(options)
-    assert again is network
-    assert (before.evidence, after.evidence) == (1.0, 0.5)
+    found = []
+    for evidence in (1.0, 0.5):
+        path.write_text(json.dumps({"shares": shares, "evidence": evidence}))
+        found.append((pipeline.load_network(options), pipeline.load_prior(options).evidence))
+    assert found[0][0] is found[1][0]
+    assert [evidence for _, evidence in found] == [1.0, 0.5]
 
 
-def test_only_the_response_of_a_task_is_read_from_files(plate, tmp_path):
-    lut = tmp_path / "gone.spi1d"
-    (task,) = pipeline.plan_each_linear(
-        tmp_path / "out", {plate: Path()}, EstimateOptions(camera="gone"), PlateOptions(), lut
-    )
-    assert (task.settings["lut"], task.settings["camera"]) == (lut, "gone")
-    with pytest.raises(CRFNetError, match=r"gone\.spi1d"):
-        task.response_identity()
+def test_the_estimate_is_near_the_command(plate, fixed_model, tmp_path, monkeypatch):
+    """A reader who starts at `main` reaches the method in six functions of ours."""
+    frames = []
+    estimate_response = estimates.estimate_response
+
+    def count(*arguments, **options):
+        frame = sys._getframe(1)
+        while frame:
+            frames.append(frame.f_code.co_name)
+            if frame.f_code is main.__code__:
+                break
+            frame = frame.f_back
+        return estimate_response(*arguments, **options)
+
+    monkeypatch.setattr(estimates, "estimate_response", count)
+    arguments = ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model, "--no-sheet", "--no-linear"]
+    assert main(list(map(str, arguments))) == 0
+    assert ["estimate_response", *frames][-1] == "main"
+    assert len(["estimate_response", *frames]) <= 6

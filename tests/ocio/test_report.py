@@ -12,6 +12,7 @@ from crfnet.options import PlateOptions
 from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import PlateReport
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.files import json_text
 from crfnet_core.network import ModelConfig, ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
@@ -25,7 +26,9 @@ CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D
 
 @pytest.fixture(scope="module")
 def found(plate, fixed_model):
-    return estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), windows=2)
+    return estimate_response(
+        read_photo(plate), network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2)
+    )
 
 
 @pytest.fixture

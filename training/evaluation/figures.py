@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from crfnet_core.estimate.estimate import ResponseEstimate
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error

@@ -10,7 +10,9 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata
@@ -170,7 +172,12 @@ def estimates(
     """Return the estimates from photographs of one body of a `RealPhotograph.kind`, in the order of `ways_of`."""
     device, lost = (Device(kind) if kind in set(Device) else None), [without_exif(photo) for photo in photos]
     estimate = partial(estimate_response, network=network, bank=bank)
-    return [estimate(photos), estimate(lost), estimate(lost, device=device), estimate(photos, use_metadata=False)]
+    return [
+        estimate(photos),
+        estimate(lost),
+        estimate(lost, options=AnalysisOptions(device=device)),
+        estimate(photos, options=AnalysisOptions(use_metadata=False)),
+    ]
 
 
 def without_exif(photo: Photo) -> Photo:

@@ -16,7 +16,9 @@ from pathlib import Path
 import numpy as np
 from PIL import Image
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import Kind, Levels, LogCurve, is_limited_range, light_error, log_curves
@@ -111,7 +113,7 @@ def _real(data: Path) -> Iterator[tuple[str, Photo]]:
 
 def _estimate(photo: Photo, network: ResponseNetwork) -> ResponseEstimate:
     """Return the estimate of a photograph by its pixels alone."""
-    return estimate_response(photo, network=network, use_metadata=False, windows=WINDOWS)
+    return estimate_response(photo, network=network, options=AnalysisOptions(use_metadata=False, windows=WINDOWS))
 
 
 def main() -> None:

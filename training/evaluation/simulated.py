@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 from tqdm import tqdm
 
-from crfnet_core.estimate.estimate import ResponseEstimate, estimate_response
+from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork, pooling
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank

@@ -9,6 +9,7 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
@@ -101,7 +102,8 @@ def _verdicts(photo: Photo, kind: UnusualKind, network: ResponseNetwork) -> list
     """Return the verdicts on a picture, in the order of `ways_of`."""
 
     def verdict(metadata: FileMetadata, device: Device | None = None) -> str:
-        return str(estimate_response(photo.with_metadata(metadata), network=network, device=device).verdict)
+        options = AnalysisOptions(device=device)
+        return str(estimate_response(photo.with_metadata(metadata), network=network, options=options).verdict)
 
     stripped = verdict(NO_CAMERA)
     written = verdict(WRITTEN[kind]) if kind in WRITTEN else stripped

@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...defaults import LUT_LENGTH
-from .parts import Commands, add_command, add_json, positive, written_path
+from .parts import Commands, add_command, add_json, written_path
 
 EXAMPLES = """examples:
   crfnet calibrate stack/*.jpg --out camera --name eos20d
@@ -33,9 +32,6 @@ def add(commands: Commands) -> None:
     )
     parser.add_argument(
         "--accept-edited", action="store_true", help="measure what a program makes of its files, not the camera"
-    )
-    parser.add_argument(
-        "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
     )
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     parser.add_argument("--overwrite", action="store_true", help="replace files that are already there")

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from ...defaults import LUT_LENGTH, WINDOWS
 from .parts import (
     Commands,
     add_command,
@@ -12,8 +11,6 @@ from .parts import (
     add_frames,
     add_network,
     add_plate,
-    count,
-    positive,
     written_path,
 )
 
@@ -44,13 +41,6 @@ def add(commands: Commands) -> None:
     parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
     add_frames(parser)
     add_each(parser, "one response per photograph, not one for all; PHOTO may be a folder")
-    parser.add_argument(
-        "--windows", type=positive, default=WINDOWS, metavar="N", help=f"windows per photograph ({WINDOWS})"
-    )
-    parser.add_argument("--seed", type=count, default=0, metavar="N", help="which windows are drawn (0)")
-    parser.add_argument(
-        "--length", type=positive, default=LUT_LENGTH, metavar="N", help=f"entries of the LUTs ({LUT_LENGTH})"
-    )
     parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values, too")
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     parser.add_argument("--no-linear", action="store_true", help="do not write the photographs as linear EXR")

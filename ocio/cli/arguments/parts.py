@@ -11,6 +11,9 @@ from ...defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_S
 #: Exit code of refused arguments and refused files.
 BAD_INPUT = 2
 
+#: Exit code with --strict if a response is not to be trusted; everything is written nevertheless.
+NOT_TRUSTED = 3
+
 
 class Exposure(NamedTuple):
     """The exposure asked for: stops after the anchor, which is white or an encoded brightness of 18 % gray."""
@@ -75,7 +78,7 @@ def add_network(parser: argparse.ArgumentParser) -> None:
         help="leave out what the files say of their camera and of programs that changed them",
     )
     parser.add_argument(
-        "--threads", type=count, default=0, metavar="N", help="threads of the network (0: as many as cores)"
+        "--strict", action="store_true", help=f"end with exit code {NOT_TRUSTED} if a response is not to be trusted"
     )
 
 
@@ -113,7 +116,7 @@ def add_frames(parser: argparse.ArgumentParser) -> None:
 
 
 def add_each(parser: argparse.ArgumentParser, words: str) -> None:
-    """Add --each, of which `words` say what it does, and where it works."""
+    """Add --each, which `words` explain, and where it works."""
     parser.add_argument("--each", action="store_true", help=words)
     parser.add_argument(
         "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
@@ -132,13 +135,6 @@ def positive(text: str) -> int:
     """Return the integer in `text`, which must be 1 or more."""
     if (number := int(text)) < 1:
         raise argparse.ArgumentTypeError(f"{text} is below 1")
-    return number
-
-
-def count(text: str) -> int:
-    """Return the integer in `text`, which must be 0 or more."""
-    if (number := int(text)) < 0:
-        raise argparse.ArgumentTypeError(f"{text} is below 0")
     return number
 
 

@@ -16,9 +16,7 @@ from .printing import prepare_matplotlib, print_earlier, print_json, print_lines
 def run(arguments: argparse.Namespace) -> None:
     """Measure a response; write every file; say what was found, and how far another response is from it."""
     frames: list[Path] = arguments.photos
-    outputs = OutputOptions(
-        lut_length=arguments.length, has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False
-    )
+    outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
     seconds = _seconds(arguments.times, frames) if arguments.times else None
@@ -32,7 +30,7 @@ def run(arguments: argparse.Namespace) -> None:
     print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
-    print_earlier(plan.earlier.document, plan.files.config, "this calibration")
+    print_earlier(plan.earlier, plan.files.config, "this calibration")
 
 
 def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:

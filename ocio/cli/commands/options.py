@@ -4,21 +4,20 @@ from __future__ import annotations
 
 import argparse
 
-from crfnet_core.errors import CRFNetError
+from crfnet_core.estimate.options import AnalysisOptions
 
-from ...options import EstimateOptions, PlateOptions
+from ...options import EstimateOptions, PlateOptions, stated_device
+from ..remedies import CommandError
 
 
-def estimate_options(arguments: argparse.Namespace, **more: int) -> EstimateOptions:
-    """Return how responses are estimated, with the options that not every command has."""
+def estimate_options(arguments: argparse.Namespace) -> EstimateOptions:
+    """Return how responses are estimated."""
+    device = stated_device(arguments.taken_with)
     return EstimateOptions(
         model=arguments.model,
-        threads=arguments.threads,
         prior=arguments.prior,
-        use_metadata=not arguments.ignore_metadata,
-        device=arguments.taken_with,
         camera=arguments.camera,
-        **more,
+        analysis=AnalysisOptions(use_metadata=not arguments.ignore_metadata, device=device),
     )
 
 
@@ -27,12 +26,12 @@ def check_each(arguments: argparse.Namespace) -> None:
 
     Raises
     ------
-    CRFNetError
+    CommandError
         With the option.
     """
     for name in ("workers", "scheduler"):
         if getattr(arguments, name) is not None and not arguments.each:
-            raise CRFNetError(f"--{name} is for --each, one response for each photograph; add it, or drop --{name}")
+            raise CommandError("each_option_alone", name=name)
 
 
 def plate_options(arguments: argparse.Namespace) -> PlateOptions:

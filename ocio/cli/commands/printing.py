@@ -10,12 +10,18 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
 
 from crfnet_core.files import json_text
 from crfnet_core.types import Progress
+
+from ...errors import PlateError
+
+if TYPE_CHECKING:
+    from ...pipeline.delivery import EarlierRun
+    from ...pipeline.records import PhotographRecord
 
 #: Seconds between two lines of progress where there is no terminal.
 LINE_SECONDS = 60
@@ -45,18 +51,31 @@ def print_lines(lines: Iterable[str]) -> None:
     sys.stdout.writelines(f"{line}\n" for line in lines)
 
 
-def print_left(left: Sequence[str], what: str) -> None:
-    """Warn of files of an earlier run that do not belong to what was written; of many, the first are named."""
-    if left:
-        more = f" and {len(left) - MOST_NAMES} more" if len(left) > MOST_NAMES else ""
-        names = ", ".join(left[:MOST_NAMES]) + more
-        print_lines([f"Warning: left from an earlier run, and not part of {what}: {names}; remove them."])
+def check_records(records: Sequence[PhotographRecord]) -> None:
+    """Check that no photograph failed.
+
+    Raises
+    ------
+    PlateError
+        With the number of those that did, and the first of their errors.
+    """
+    if failed := [record for record in records if record.error]:
+        code = "photographs_failed_of_many" if len(failed) < len(records) else "photographs_failed"
+        raise PlateError(code, failed=len(failed), count=len(records), problem=failed[0].error)
 
 
-def print_earlier(earlier: Mapping[str, Sequence[str]], config: Path, what: str) -> None:
-    """Warn of what `EarlierRun.document` names; say how the color spaces of plates come back."""
-    print_left(earlier.get("left", ()), what)
-    if names := earlier.get("dropped"):
+def print_stale(names: Sequence[str], what: str) -> None:
+    """Warn of files of an earlier run that are not part of what was written; of many, the first are named."""
+    if names:
+        more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
+        listed = ", ".join(names[:MOST_NAMES]) + more
+        print_lines([f"Warning: left from an earlier run, and not part of {what}: {listed}; remove them."])
+
+
+def print_earlier(earlier: EarlierRun, config: Path, what: str) -> None:
+    """Warn of the remains of an earlier run; name the command that brings the color spaces of plates back."""
+    print_stale([path.name for path in earlier.stale_files], what)
+    if names := earlier.lost_color_spaces:
         which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
         print_lines(
             [

@@ -6,7 +6,7 @@ import numpy as np
 import OpenImageIO as oiio
 import pytest
 
-from crfnet_core import Photo, ResponseNetwork, estimate_response, read_photo
+from crfnet_core import AnalysisOptions, Photo, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.photograph.metadata.encodings import Encoding
@@ -23,7 +23,7 @@ def network():
 
 def estimated(pixels, network, name="picture.png"):
     photo = Photo(pixels=pixels, bit_depth=8, is_gray=False, path=Path(name))
-    return estimate_response(photo, network=network, windows=4)
+    return estimate_response(photo, network=network, options=AnalysisOptions(windows=4))
 
 
 @pytest.mark.parametrize("name", ["ARRI LogC3", "Canon Log", "Panasonic V-Log", "Sony S-Log3"])
@@ -32,7 +32,7 @@ def test_log_footage_is_not_to_be_trusted(network, name):
     assert found.verdict is Verdict.DO_NOT_TRUST
     assert found.recognition.kind is Kind.LOG_FOOTAGE
     assert found.families[Family.LOG] > 0.5
-    assert found.warnings[0] == found.recognition.reason
+    assert found.warnings[0].code == "recognized"
 
 
 def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
@@ -71,7 +71,7 @@ def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored
         estimate_response(photo, network=network)
     assert says in str(caught.value)
     assert "\n" not in str(caught.value)
-    assert estimate_response(photo, network=network, use_metadata=False).photos == (name,)
+    assert estimate_response(photo, network=network, options=AnalysisOptions(use_metadata=False)).photos == (name,)
 
 
 def test_the_linear_that_programs_write_into_every_dpx_is_not_believed(tmp_path):

@@ -1,28 +1,39 @@
 """`crfnet estimate --each`: many photographs, one response each."""
 
+import dataclasses
 import json
 import shutil
 import signal
+import socket
 import subprocess
 import sys
 import time
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.cli.arguments.parts import BAD_INPUT, NOT_TRUSTED
 from crfnet.defaults import ESTIMATES
-from crfnet.pipeline import each
+from crfnet.errors import PlateError
+from crfnet.pipeline import each, estimates, workers
+from crfnet.pipeline.records import PhotographRecord, RecordFile
 from tests.helpers.folders import listed, tree
+from tests.helpers.footage import log_picture
 from tests.helpers.images import write_image
 from tests.helpers.processes import start_interruptible
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
 
 
-def manifest_lines(tmp_path):
-    settings, *records = map(json.loads, (tmp_path / "out" / ESTIMATES).read_text().splitlines())
-    return settings["settings"], records
+def records(tmp_path):
+    """The last record of each photograph."""
+    lines = map(json.loads, (tmp_path / "out" / ESTIMATES).read_text().splitlines())
+    return list({record["photograph"]: record for record in lines}.values())
+
+
+def without_records(files):
+    return {name: content for name, content in files.items() if name != ESTIMATES}
 
 
 def test_a_folder_is_searched_and_its_subfolders_are_kept(estimate, photographs, tmp_path):
@@ -35,13 +46,12 @@ def test_a_folder_is_searched_and_its_subfolders_are_kept(estimate, photographs,
     assert listed(tmp_path / "out" / "day 2") == ["a.clf", "a.cube", "a.json", "a.spi1d", "config.ocio"]
 
 
-def test_the_manifest_says_what_the_documents_say(estimate, photographs, tmp_path):
+def test_the_records_agree_with_the_documents_and_name_the_lut(estimate, photographs, tmp_path):
     estimate(photographs, *QUICK)
-    _, records = manifest_lines(tmp_path)
-    assert [record["photograph"] for record in records] == [
-        str(photographs / name) for name in ("a.jpg", "b.JPG", "day 2/a.jpg")
-    ]
-    for record in records:
+    names = ("a.jpg", "b.JPG", "day 2/a.jpg")
+    assert [record["photograph"] for record in records(tmp_path)] == [str(photographs / name) for name in names]
+    assert [record["lut"] for record in records(tmp_path)] == ["a.spi1d", "b.spi1d", "day 2/a.spi1d"]
+    for record in records(tmp_path):
         stem = record["photograph"].rpartition("/")[2].partition(".")[0]
         document = json.loads((tmp_path / "out" / record["folder"] / f"{stem}.json").read_text())
         for name in ("weights", "verdict", "uncertainty", "shape_uncertainty_stops", "warnings"):
@@ -49,20 +59,11 @@ def test_the_manifest_says_what_the_documents_say(estimate, photographs, tmp_pat
         assert record["error"] == ""
 
 
-def test_the_manifest_keeps_warnings(estimate, photographs, codes, tmp_path):
-    write_image(photographs / "gray.png", codes[..., :1].repeat(3, axis=2))
-    for _ in range(2):  # and so they are read again
-        estimate(photographs, *QUICK)
-        _, records = manifest_lines(tmp_path)
-        warnings = {Path(record["photograph"]).name: record["warnings"] for record in records}
-        assert ["gray photograph" in " ".join(warnings[name]) for name in ("gray.png", "b.JPG")] == [True, False]
-
-
 def test_processes_write_the_same_bytes_as_one(estimate, crfnet, fixed_model, photographs, tmp_path):
     estimate(photographs, *QUICK)
     arguments = (photographs, "--out", tmp_path / "two", "--model", fixed_model, *QUICK[:-1], "2")
     assert crfnet("estimate", *arguments).code == 0
-    assert tree(tmp_path / "two") == tree(tmp_path / "out")
+    assert without_records(tree(tmp_path / "two")) == without_records(tree(tmp_path / "out"))
 
 
 def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_path):
@@ -72,8 +73,7 @@ def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_pa
     assert "1 of 4 photographs failed and the others are written; the first: " in done.err
     assert done.err.count("\n") == 1
     assert sum(", expected error " in line for line in done.out.splitlines()) == 3
-    _, records = manifest_lines(tmp_path)
-    assert [bool(record["error"]) for record in records] == [False, False, True, False]
+    assert [bool(record["error"]) for record in records(tmp_path)] == [False, False, True, False]
     assert "CRF bad" not in (tmp_path / "out" / "config.ocio").read_text()
 
 
@@ -94,8 +94,10 @@ def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, mo
     shutil.copy(photographs / "a.jpg", photographs / "bad.jpg")
     shutil.copy(photographs / "a.jpg", photographs / "c.jpg")
     worked_on = []
-    estimate_one = each.estimate_one
-    monkeypatch.setattr(each, "estimate_one", lambda task: (worked_on.append(task.photo.name), estimate_one(task))[1])
+    done = each.EstimateBatch.done
+    monkeypatch.setattr(
+        each.EstimateBatch, "done", lambda batch, task: (worked_on.append(task.photo.name), done(batch, task))[1]
+    )
     assert estimate(photographs, *QUICK).code == 0
     assert sorted(worked_on) == ["bad.jpg", "c.jpg"]
     after = tree(tmp_path / "out")
@@ -112,25 +114,61 @@ def test_of_one_photograph_that_failed_no_others_are_said_to_be_written(estimate
     assert done.err.startswith(f"crfnet: error: 1 of 1 photographs failed; the first: {tmp_path / 'bad.jpg'}: is no")
 
 
-def test_other_settings_are_refused(estimate, photographs, tmp_path):
+@pytest.mark.parametrize(
+    "choice", [("--prior", "any"), ("--taken-with", "phone"), ("--exposure", "gray"), ("--forward",)]
+)
+def test_other_options_are_refused(estimate, photographs, tmp_path, choice):
     estimate(photographs, *QUICK)
     before = tree(tmp_path / "out")
-    done = estimate(photographs, *QUICK, "--prior", "any")
+    done = estimate(photographs, *QUICK, *choice)
     assert done.code == BAD_INPUT
-    assert "was begun with another --prior (camera);" in done.err
-    done = estimate(photographs, *QUICK, "--taken-with", "phone")
-    assert "was begun with another --taken-with (none);" in done.err
-    for options, words in (
-        (("--exposure", "gray"), "with another --exposure (0.0)"),
-        (("--length", "256"), "with another --length (4081)"),
-        (("--ignore-metadata",), "without --ignore-metadata"),
-        (("--forward",), "without --forward"),
-    ):
-        assert f"was begun {words}; give the same" in estimate(photographs, *QUICK, *options).err
-    assert "was begun with --no-linear; give" in estimate(photographs, "--each", "--no-sheet", "--workers", "1").err
+    assert "other options or another response; give the same, or choose another folder; or add --overwrite" in done.err
     assert tree(tmp_path / "out") == before
-    assert estimate(photographs, *QUICK, "--prior", "any", "--overwrite").code == 0
-    assert manifest_lines(tmp_path)[0]["prior"] == "any"
+    assert estimate(photographs, *QUICK, *choice, "--overwrite").code == 0
+    assert estimate(photographs, *QUICK, *choice).code == 0
+
+
+def test_any_exception_is_the_record_of_its_photograph(estimate, photographs, tmp_path, monkeypatch):
+    estimate_response = estimates.estimate_response
+
+    def fail_for_b(cut, **options):
+        if cut[0].name == "b.JPG":
+            raise RuntimeError("a bug\nof ours")
+        return estimate_response(cut, **options)
+
+    monkeypatch.setattr(estimates, "estimate_response", fail_for_b)
+    assert estimate(photographs, *QUICK).code == BAD_INPUT
+    errors = {Path(record["photograph"]).name: record["error"] for record in records(tmp_path)}
+    assert errors == {"a.jpg": "", "b.JPG": f"{photographs / 'b.JPG'}: RuntimeError (a bug of ours)"}
+
+
+def test_metadata_that_is_not_utf_8_stops_nothing(estimate, photographs, codes, tmp_path):
+    latin = write_image(photographs / "latin.jpg", codes, Make="Voigtlxnder", Model="Voigtlxnder R")
+    latin.write_bytes(latin.read_bytes().replace(b"Voigtlx", b"Voigtl\xe4"))
+    done = estimate(photographs, "--each", "--no-sheet", "--workers", "1")
+    assert (done.code, [record["error"] for record in records(tmp_path)]) == (0, [""] * 4)
+
+
+def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
+    """The second finds what the first has written meanwhile, and both end well."""
+    arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]
+    command = [sys.executable, "-m", "crfnet", *map(str, arguments)]
+    runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
+    errors = [run.communicate(timeout=100)[1] for run in runs]
+    assert ([run.returncode for run in runs], errors) == ([0, 0], ["", ""])
+    assert [record["error"] for record in records(tmp_path)] == [""] * 3
+    assert all(f"name: CRF {stem}\n" in (tmp_path / "out" / "config.ocio").read_text() for stem in "ab")
+
+
+def test_strict_ends_with_3_if_any_is_not_to_be_trusted(estimate, photographs):
+    assert estimate(photographs, *QUICK, "--strict").code == 0
+    footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
+    write_image(photographs / "log.png", footage)
+    for _ in range(2):
+        done = estimate(photographs, *QUICK, "--strict")
+        assert (done.code, done.err) == (NOT_TRUSTED, "")
+    assert estimate(photographs, *QUICK).code == 0
+    assert estimate(photographs / "log.png", "--no-sheet", "--no-linear", "--overwrite", "--strict").code == NOT_TRUSTED
 
 
 def test_files_of_others_stay(estimate, photographs, tmp_path):
@@ -152,13 +190,14 @@ def test_a_foreign_config_stays(estimate, photographs, tmp_path):
     assert tree(tmp_path / "out") == {"config.ocio": b"mine"}
 
 
-def test_what_is_no_manifest_is_refused(estimate, photographs, tmp_path):
+@pytest.mark.parametrize("text", ["mine", "[]", '{"folder": "a"}', "[" * 200000])
+def test_a_file_of_other_lines_is_refused(estimate, photographs, tmp_path, text):
     (tmp_path / "out").mkdir()
-    (tmp_path / "out" / ESTIMATES).write_text("mine\n")
+    (tmp_path / "out" / ESTIMATES).write_text(f"{text}\n")
     done = estimate(photographs, *QUICK)
-    assert done.code == BAD_INPUT
-    assert "is no manifest" in done.err
-    assert tree(tmp_path / "out") == {ESTIMATES: b"mine\n"}
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
+    assert "holds other lines than records of photographs" in done.err
+    assert tree(tmp_path / "out") == {ESTIMATES: f"{text}\n".encode()}
 
 
 @pytest.mark.parametrize(
@@ -186,34 +225,15 @@ def test_what_is_no_manifest_is_refused(estimate, photographs, tmp_path):
         {"linear": "../elsewhere/a.exr"},
     ],
 )
-def test_a_damaged_manifest_is_refused_in_one_line(estimate, photographs, tmp_path, change):
-    estimate(photographs / "a.jpg", *QUICK)
-    (settings, record), path = (tmp_path / "out" / ESTIMATES).read_text().splitlines(), tmp_path / "out" / ESTIMATES
-    path.write_text(f"{settings}\n{json.dumps(json.loads(record) | change)}\n")
-    before = tree(tmp_path / "out")
-    done = estimate(photographs / "a.jpg", *QUICK)
-    assert done.code == BAD_INPUT
-    assert done.err == f"crfnet: error: {path}: is no manifest; choose another folder, or add --overwrite\n"
-    assert tree(tmp_path / "out") == before
-
-
-@pytest.mark.parametrize("gray", ["x", "x\ny", [0.18], {}, pytest.param(10**400, id="huge"), True])
-def test_damaged_settings_of_a_manifest_are_refused_in_one_line(estimate, photographs, tmp_path, gray):
-    estimate(photographs / "a.jpg", *QUICK)
-    path = tmp_path / "out" / ESTIMATES
-    settings, record = path.read_text().splitlines()
-    path.write_text(json.dumps({"settings": json.loads(settings)["settings"] | {"gray": gray}}) + f"\n{record}\n")
-    done = estimate(photographs / "a.jpg", *QUICK)
-    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
-    assert f"{path}: was begun with another --exposure (gray=" in done.err
-
-
-@pytest.mark.parametrize("text", ["[]", '{"settings": 1}', '{"settings": {}}\n[]', "[" * 200000])
-def test_what_is_another_json_is_no_manifest(estimate, photographs, tmp_path, text):
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out" / ESTIMATES).write_text(f"{text}\n")
-    done = estimate(photographs, *QUICK)
-    assert (done.code, "is no manifest" in done.err, done.err.count("\n")) == (BAD_INPUT, True, 1)
+def test_a_damaged_record_is_refused_in_one_line(tmp_path, change):
+    file = RecordFile(tmp_path / ESTIMATES)
+    file.append(PhotographRecord(photograph="a.jpg"))
+    assert list(file.read()) == ["a.jpg"]
+    with file.path.open("a") as lines:
+        lines.write(json.dumps(dataclasses.asdict(PhotographRecord(photograph="b.jpg")) | change) + "\n")
+    with pytest.raises(PlateError) as caught:
+        file.read()
+    assert caught.value.code == "not_records"
 
 
 def test_a_lut_that_was_damaged_since_is_named_and_estimated_again(estimate, photographs, tmp_path):
@@ -248,18 +268,18 @@ def test_a_folder_without_photographs_is_refused(estimate, tmp_path):
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_run_is_continued(photographs, fixed_model, tmp_path):
     code = (
-        "import sys, time, crfnet.cli.main, crfnet.pipeline.manifest as m;"
-        "add = m.Manifest.add;"
-        "m.Manifest.add = lambda self, record: (add(self, record), print('ready', flush=True), time.sleep(60));"
+        "import sys, time, crfnet.cli.main, crfnet.pipeline.records as r;"
+        "append = r.RecordFile.append;"
+        "r.RecordFile.append = lambda self, record: (append(self, record), print('ready', flush=True), time.sleep(60));"
         "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
     arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]
     with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE) as process:
         process.stdout.readline()
         process.send_signal(signal.SIGKILL)
-    assert len(manifest_lines(tmp_path)[1]) == 1
+    assert len(records(tmp_path)) == 1
     subprocess.run([sys.executable, "-m", "crfnet.cli.main", *arguments], capture_output=True, check=True)
-    assert len(manifest_lines(tmp_path)[1]) == 3
+    assert len(records(tmp_path)) == 3
     assert "config.ocio" in listed(tmp_path / "out")
 
 
@@ -286,11 +306,15 @@ def test_a_dask_worker_that_dies_loses_nothing(photographs, fixed_model, tmp_pat
             kill_a_busy_worker(distributed, cluster)
             _, err = process.communicate(timeout=100)
     assert (process.returncode, err) == (0, "")
-    assert [record["error"] for record in manifest_lines(tmp_path)[1]] == [""] * 6
+    assert [record["error"] for record in records(tmp_path)] == [""] * 6
 
 
-def test_no_scheduler_is_one_line(estimate, photographs):
+@pytest.mark.parametrize("address", ["tcp://127.0.0.1:{silent}", "tls://127.0.0.1:{silent}", "bogus://x", "x y"])
+def test_no_scheduler_is_one_line(estimate, photographs, monkeypatch, address):
+    """Also of a server that takes the connection and says nothing."""
     pytest.importorskip("distributed", reason="Dask is not installed: pip install 'crfnet[cluster]'")
-    done = estimate(photographs, *QUICK, "--scheduler", "tcp://127.0.0.1:1")
-    assert done.code == BAD_INPUT
+    monkeypatch.setattr(workers, "SCHEDULER_TIMEOUT", 0.5)
+    with socket.create_server(("127.0.0.1", 0)) as silent:
+        done = estimate(photographs, *QUICK, "--scheduler", address.format(silent=silent.getsockname()[1]))
+    assert (done.code, done.err.count("\n")) == (BAD_INPUT, 1)
     assert "no Dask scheduler answers there" in done.err

@@ -14,7 +14,6 @@ from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.cli.commands import printing
 from crfnet.errors import ConfigError
 from crfnet.luts.files import WRITERS, read_lut
-from crfnet.pipeline import folders
 from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Verdict
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.folders import listed, tree
@@ -240,7 +239,7 @@ def test_a_refused_config_leaves_nothing(estimate, plate, tmp_path, monkeypatch)
     def refuse(*arguments, **options):
         raise ConfigError("refused")
 
-    monkeypatch.setattr(folders, "write_config", refuse)
+    monkeypatch.setattr("crfnet.pipeline.delivery.write_config", refuse)
     assert estimate(plate).code == BAD_INPUT
     assert not (tmp_path / "out").exists()
 

@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from crfnet.cli.commands.printing import print_left
+from crfnet.cli.commands.printing import print_stale
 from tests.helpers.configs import loaded
 from tests.helpers.folders import listed
 
@@ -77,7 +77,7 @@ def test_a_config_with_names_that_are_not_utf_8_is_replaced(estimate, plate, tmp
 
 
 def test_of_many_files_that_no_longer_fit_the_first_are_named(capsys):
-    print_left([f"{number}.exr" for number in range(25)], "these estimates")
+    print_stale([f"{number}.exr" for number in range(25)], "these estimates")
     out = capsys.readouterr().out
     assert out.startswith("Warning: left from an earlier run, and not part of these estimates: 0.exr, 1.exr, ")
     assert out.endswith(", 19.exr and 5 more; remove them.\n")

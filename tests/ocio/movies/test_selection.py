@@ -3,14 +3,14 @@
 import numpy as np
 import pytest
 
-from crfnet.defaults import FRAMES_ANALYZED, PRIORS
+from crfnet.defaults import FRAMES_ANALYZED
 from crfnet.movies.frames import MovieFrames
 from crfnet.movies.selection import chosen_photos
+from crfnet.movies.source import file_source
 from crfnet.options import EstimateOptions
-from crfnet.pipeline import estimate_photographs
+from crfnet.pipeline import estimate_files
 from crfnet_core.errors import PhotoError
-from crfnet_core.network import ResponseNetwork
-from crfnet_core.posterior import Prior
+from crfnet_core.estimate.options import AnalysisOptions
 from tests.helpers.movies import pictures, write_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
@@ -63,7 +63,8 @@ def test_frames_have_names_bits_and_metadata(tmp_path):
 
 def test_a_published_curve_is_answered_with_its_color_space_unless_metadata_is_ignored(tmp_path, fixed_model):
     path = write_movie(tmp_path / "a.mp4", size=(320, 240), tags={"color_trc": 18})
-    network, prior = ResponseNetwork.load(fixed_model), Prior.load(PRIORS[0])
-    with pytest.raises(PhotoError, match="HLG"):
-        estimate_photographs([path], network, prior, EstimateOptions())
-    assert estimate_photographs([path], network, prior, EstimateOptions(use_metadata=False)).movies
+    with pytest.raises(PhotoError) as caught:
+        estimate_files([file_source(path)], EstimateOptions(model=fixed_model))
+    assert caught.value.code == "tagged_color_space"
+    options = EstimateOptions(model=fixed_model, analysis=AnalysisOptions(use_metadata=False))
+    assert estimate_files([file_source(path)], options).movies

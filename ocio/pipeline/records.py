@@ -1,0 +1,200 @@
+"""The file of records: one JSON line for each photograph of a batch, appended when its files are whole.
+
+Nothing is ever rewritten, so several runs may append to one file at once, and a killed run loses one line at most. Of
+several records of one photograph, the last holds.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+from collections.abc import Iterator, Mapping
+from contextlib import contextmanager
+from dataclasses import asdict, dataclass, fields
+from pathlib import Path, PurePosixPath
+from typing import Any, BinaryIO
+
+import numpy as np
+
+from crfnet_core.colorimetry import Primaries
+from crfnet_core.files import parse_json
+
+from ..errors import PlateError
+from ..plates.primaries import PlatePrimaries
+
+
+@dataclass(frozen=True, kw_only=True)
+class PhotographRecord:
+    """What became of one photograph.
+
+    Parameters
+    ----------
+    photograph : str
+        The file, as it was given.
+    options : str
+        A digest of the options and of a response that all photographs share: equal for equal ones.
+    folder : str
+        The folder of its files, relative to that of the records.
+    lut, linear : str
+        The LUT and the linear EXR, relative to the folder of the records; empty for one that is not written.
+    weights : tuple of float
+        Eleven EMoR weights of the response; empty if it was given as a LUT, and so is the rest up to the exposure.
+    family : str
+        The most probable kind of response, in words.
+    verdict : str
+        "good", "usable" or "do not trust".
+    uncertainty, shape_uncertainty_stops : float
+        The expected E_est, and the expected shape error in stops.
+    warnings : tuple of str
+        What makes a poor estimate likely.
+    exposure : float
+        Stops added after the inverse response.
+    primaries : mapping, optional
+        The fields of the photograph's `Primaries`; None if they are unknown.
+    primaries_source : str
+        Who says so.
+    summary : str
+        The result in one line of words.
+    error : str
+        Why there is no result; empty if there is one.
+    """
+
+    photograph: str
+    options: str = ""
+    folder: str = ""
+    lut: str = ""
+    linear: str = ""
+    weights: tuple[float, ...] = ()
+    family: str = ""
+    verdict: str = ""
+    uncertainty: float | None = None
+    shape_uncertainty_stops: float | None = None
+    warnings: tuple[str, ...] = ()
+    exposure: float = 0.0
+    primaries: Mapping[str, Any] | None = None
+    primaries_source: str = ""
+    summary: str = ""
+    error: str = ""
+
+    @classmethod
+    def from_entry(cls, entry: Mapping[str, Any]) -> PhotographRecord:
+        """Return the record of a line; entries that this version does not know are left out.
+
+        Raises
+        ------
+        ArithmeticError, AttributeError, KeyError, TypeError, ValueError
+            If it is not a record, or leads to files in other folders.
+        """
+        known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
+        known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
+        record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
+        paths = [record.folder, record.lut, record.linear]
+        if not all(isinstance(text, str) for text in (*paths, record.photograph, record.error, record.plate.name)):
+            raise TypeError("a name is not a text")
+        if any(path.is_absolute() or ".." in path.parts for path in map(PurePosixPath, paths)):
+            raise ValueError("a path leads elsewhere")  # files there might be replaced
+        if (primaries := record.plate.primaries) and not np.isfinite(np.linalg.inv(primaries.to_xyz())).all():
+            raise ValueError("these are not primaries")
+        return record
+
+    @property
+    def plate(self) -> PlatePrimaries:
+        """The primaries of the photograph."""
+        if self.primaries is None:
+            return PlatePrimaries(None, self.primaries_source)
+        corners: dict[str, Any] = {
+            name: tuple(map(float, value)) if isinstance(value, list) else value
+            for name, value in self.primaries.items()
+        }
+        return PlatePrimaries(Primaries(**corners), self.primaries_source)
+
+    @property
+    def stem(self) -> str:
+        """The name of its files, without folder and suffix; empty if there are none."""
+        return PurePosixPath(self.lut or self.linear).stem
+
+
+class RecordFile:
+    """A file of records, which need not exist yet.
+
+    Parameters
+    ----------
+    path : Path
+        The file; its folder must exist before a record is appended.
+    """
+
+    def __init__(self, path: Path) -> None:
+        self.path = path
+
+    def read(self) -> dict[str, PhotographRecord]:
+        """Return the last record of each photograph; a line that a killed run cut short is left out.
+
+        Raises
+        ------
+        PlateError
+            If the file holds something else.
+        """
+        if not self.path.exists():
+            return {}
+        *lines, _ = self.path.read_bytes().split(b"\n")
+        try:
+            records = [PhotographRecord.from_entry(parse_json(line)) for line in lines]
+        except (ArithmeticError, AttributeError, KeyError, TypeError, ValueError) as problem:
+            raise PlateError("not_records", path=self.path) from problem
+        return {record.photograph: record for record in records}
+
+    def append(self, record: PhotographRecord) -> None:
+        """Append a record, and see that it is on the disk."""
+        text = json.dumps(asdict(record), ensure_ascii=False) + "\n"
+        with self.locked() as file:
+            _drop_cut_line(file)
+            file.write(text.encode(errors="backslashreplace"))  # as JSON escapes what is not text in a file's name
+            file.flush()
+            os.fsync(file.fileno())
+
+    @contextmanager
+    def locked(self) -> Iterator[BinaryIO]:
+        """Open the file for appending, with no other process in such a block meanwhile."""
+        with self.path.open("a+b") as file:
+            _lock(file)
+            try:
+                yield file
+            finally:
+                _unlock(file)
+
+
+def _drop_cut_line(file: BinaryIO) -> None:
+    """Remove what a killed run has written of its last line."""
+    if file.seek(0, os.SEEK_END) == 0:
+        return
+    file.seek(-1, os.SEEK_END)
+    if file.read() != b"\n":
+        file.seek(0)
+        file.truncate(file.read().rfind(b"\n") + 1)
+
+
+if sys.platform == "win32":
+    import msvcrt
+
+    #: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
+    _LOCKED_BYTE = 1 << 30
+
+    def _lock(file: BinaryIO) -> None:
+        file.seek(_LOCKED_BYTE)
+        msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
+
+    def _unlock(file: BinaryIO) -> None:
+        file.flush()
+        file.seek(_LOCKED_BYTE)
+        msvcrt.locking(file.fileno(), msvcrt.LK_UNLCK, 1)
+
+else:
+    import fcntl
+
+    def _lock(file: BinaryIO) -> None:
+        fcntl.flock(file, fcntl.LOCK_EX)
+
+    def _unlock(file: BinaryIO) -> None:
+        file.flush()
+        fcntl.flock(file, fcntl.LOCK_UN)
