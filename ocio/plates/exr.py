@@ -14,7 +14,7 @@ from crfnet_core.photograph.image_io import first_line, oiio_message
 
 from ..errors import PlateError
 
-#: Metadata that still holds for the linear plate, by OpenImageIO's names. Colour profiles do not.
+#: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
 KEPT_METADATA = (
     "DateTime",
     "Exif:ExposureBiasValue",
@@ -43,7 +43,7 @@ STANDARD_NAMES = {
     "isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings"),
 }
 
-#: Those of them that are numbers, in millimetres and as ISO arithmetic speed.
+#: The numbers among them, in millimeters and as ISO arithmetic speed.
 STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 
 #: NumPy's types of the two depths.
@@ -74,7 +74,10 @@ def linear_header(
         if attribute.name in KEPT_METADATA:
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
             kind = "int" if isinstance(attribute.value, int) else attribute.type
-            header.attribute(attribute.name, kind, attribute.value)
+            value = attribute.value
+            if isinstance(value, str):
+                value = value.encode(errors="replace").decode()  # bytes that are not UTF-8 come as surrogates
+            header.attribute(attribute.name, kind, value)
     header.attribute("compression", "zips")
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
