@@ -166,7 +166,7 @@ def atomic_write_text(
 
 
 def cut_to_bytes(name: str, most: int) -> str:
-    """Return a file's name cut to at most `most` bytes, between two characters; bytes that are no text are left out."""
+    """Return a file's name cut to at most `most` bytes, between two characters; other bytes are left out."""
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")
 
 

@@ -22,7 +22,7 @@ MOST_ERROR = 0.1
 def forward_lut(lut: AnyLut) -> AnyLut:
     """Return the response, from light to code values, of a LUT of its inverse.
 
-    The inputs are uniform from the light of code 0 to that of the largest code; light beyond is clipped to these codes.
+    The inputs are uniform from the light of code 0 to the light of the largest code; other light is clipped to these.
     An estimated response is linear between 1024 samples, so 1024 entries hold it. A response that is steeper in the
     blacks, as a power function is, needs more: the length is the first of `LENGTHS` whose `round_trip_error` at 10 bits
     is at most `MOST_ERROR`, or the last.
@@ -35,7 +35,7 @@ def forward_lut(lut: AnyLut) -> AnyLut:
     Returns
     -------
     Lut1D or RgbLut1D
-        The response, with two comments of its own before those of `lut`: the direction, and the error.
+        The response, with two comments before the comments of `lut`: the direction, and the error.
     """
     for length in LENGTHS:
         forward = _sampled(lut, length)

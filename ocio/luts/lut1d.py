@@ -213,7 +213,7 @@ def inverse_response_lut(
 
 
 def strictly_increasing(values: ArrayLike) -> Float64Array:
-    """Return `values` rounded to float32, with equal neighbours moved apart by units in the last place.
+    """Return `values` rounded to float32, with equal neighbors moved apart by units in the last place.
 
     Parameters
     ----------

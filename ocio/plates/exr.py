@@ -44,7 +44,7 @@ STANDARD_NAMES = {
     "isoSpeed": ("Exif:PhotographicSensitivity", "Exif:ISOSpeedRatings"),
 }
 
-#: Those of them that are numbers, in millimetres and as ISO arithmetic speed.
+#: The numbers among them, in millimeters and as ISO arithmetic speed.
 STANDARD_NUMBERS = ("nominalFocalLength", "isoSpeed")
 
 #: NumPy's types of the two depths.

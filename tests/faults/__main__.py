@@ -14,6 +14,7 @@ from tests.helpers.folders import tree
 
 DATA = Path(__file__).parents[1] / "data"
 FAULTS = {"EIO": errno.EIO, "ENOSPC": errno.ENOSPC, "SIGKILL": None}
+COMMAND = ("estimate", str(DATA / "plate.jpg"), "--model", str(DATA / "fixed_model"), "--out")
 
 
 def run(out, injector=None, *more):
@@ -25,55 +26,52 @@ def run(out, injector=None, *more):
         os.dup2(os.open(os.devnull, os.O_WRONLY), 1)
         if injector:
             injector.install()
-        code = main(
-            ["estimate", str(DATA / "plate.jpg"), "--model", str(DATA / "fixed_model"), "--out", str(out), *more]
-        )
-        if injector and injector.fault is None:
-            calls.write_text("\n".join(injector.calls))
+        code = main([*COMMAND, str(out), *more])
+        calls.write_text("\n".join(injector.calls if injector else []))
         os._exit(code)
     code = os.waitstatus_to_exitcode(os.waitpid(process, 0)[1])
     return code, stderr.read_text(), calls.read_text().split() if calls.exists() else []
 
 
-def problem_of(out, expected, fault, number):
-    """Return what is wrong after a fault at a call; an empty text if nothing is."""
-    code, stderr, _ = run(out, Injector(out, number=number, fault=fault))
-    found = tree(out) if out.exists() else {}
+def final_files(out):
+    """Return the files that have their names."""
+    return {name: content for name, content in tree(out).items() if not name.startswith(".")} if out.exists() else {}
+
+
+def problem_of(out, expected, fault, call):
+    """Return the first thing that is wrong after a fault at a call, or an empty text."""
+    code, stderr, _ = run(out, Injector(out, call=call, fault=fault))
+    found = final_files(out)
     if fault is None:
-        final = {name: content for name, content in found.items() if not name.startswith(".")}
         again = run(out, None, "--overwrite")[0]
-        if again or {name: found for name, found in tree(out).items() if not name.startswith(".")} != expected:
-            return f"the run after it ends with {again}"
-        return "a damaged file" if not final.items() <= expected.items() else ""
+        if not found.items() <= expected.items():
+            return "a damaged file"
+        return "" if again == 0 and final_files(out) == expected else f"the next run ends with {again}"
     if code == 0:
         return "" if found == expected else "exit code 0 without the whole set"
     if code != 2 or stderr.count("\n") != 1:
         return f"exit code {code}, stderr {stderr!r}"
-    return f"left behind: {sorted(found)}" if found else ""
+    return "files are left" if out.exists() and any(out.iterdir()) else ""
 
 
-def failures(folder, most=0):
-    """Yield the failures, and in the end the number of cases; `most` cases, evenly over all, if it is above 0."""
-    clean = folder / "clean" / "out"
-    clean.parent.mkdir()
-    code, stderr, calls = run(clean, Injector(clean))
-    assert code == 0, stderr
-    expected, cases = tree(clean), [(number, name) for number in range(len(calls)) for name in FAULTS]
-    step = max(1, len(cases) // most) if most else 1
-    chosen = cases[::step]
-    for case, (number, name) in enumerate(chosen):
-        out = folder / str(case) / "out"
-        out.parent.mkdir()
-        if problem := problem_of(out, expected, FAULTS[name], number):
-            yield f"{name} at call {number} ({calls[number]}): {problem}"
+def failures(folder, most):
+    """Yield the failures of `most` cases, evenly over all (0: all), and in the end the number of cases."""
+    (clean := folder / "clean" / "out").parent.mkdir()
+    _, _, calls = run(clean, Injector(clean))
+    numbered = [(name, 1 + calls[:number].count(name)) for number, name in enumerate(calls)]
+    expected, cases = final_files(clean), [(call, fault) for call in numbered for fault in FAULTS]
+    chosen = cases[:: max(1, len(cases) // most) if most else 1]
+    for case, (call, fault) in enumerate(chosen):
+        (out := folder / str(case) / "out").parent.mkdir()
+        if problem := problem_of(out, expected, FAULTS[fault], call):
+            yield f"{fault} at {call[0]} {call[1]}: {problem}"
     yield f"{len(chosen)} of {len(cases)} cases"
 
 
 if __name__ == "__main__":
     parser = argparse.ArgumentParser(prog="python -m tests.faults", description=__doc__)
     parser.add_argument("--most", type=int, default=0, metavar="N", help="cases, evenly over all; all by default")
-    options = parser.parse_args()
     with tempfile.TemporaryDirectory() as name:
-        lines = list(failures(Path(name), options.most))
+        lines = list(failures(Path(name), parser.parse_args().most))
     sys.stdout.write("".join(f"{line}\n" for line in lines))
     sys.exit(len(lines) > 1)

@@ -8,62 +8,47 @@ from pathlib import Path
 
 import OpenImageIO as oiio
 
-#: The calls of the module `os` that are counted, and whether their first argument is an open file.
-CALLS = {"fsync": True, "close": True, "rename": False, "replace": False}
-
 
 class Injector:
-    """Counts the calls below a folder and lets the one of a number fail: with an errno, or with SIGKILL."""
+    """Counts the calls below a folder and lets one, such as ("write", 3), fail: with an errno, or with SIGKILL."""
 
-    def __init__(self, folder: Path, *, number: int = -1, fault: int | None = None) -> None:
-        self.folder, self.number, self.fault = str(folder), number, fault
-        self.calls: list[str] = []
-        self._real = {name: getattr(os, name) for name in CALLS}
+    def __init__(self, folder, *, call=None, fault=None):
+        self.folder, self.call, self.fault, self.calls = str(folder), call, fault, []
 
-    def count(self, name: str, path: object) -> None:
+    def count(self, name, path):
         """Count a call; fail if it is the chosen one."""
         if not str(path).startswith(self.folder):
             return
         self.calls.append(name)
-        if len(self.calls) - 1 == self.number:
+        if (name, self.calls.count(name)) == self.call:
             if self.fault is None:
                 os.kill(os.getpid(), signal.SIGKILL)
-            raise OSError(self.fault, os.strerror(self.fault or 0), str(path))
+            raise OSError(self.fault, os.strerror(self.fault), str(path))
 
-    def install(self) -> None:
+    def install(self):
         """Replace the calls in this process, for good."""
-        for name, takes_descriptor in CALLS.items():
-            setattr(os, name, self._counted(name, takes_descriptor))
-        opened = io.open
-        injector = self
+        for name in ("fsync", "close", "rename", "replace"):
+            setattr(os, name, self._counted(name, getattr(os, name)))
+        opened, create = io.open, oiio.ImageOutput.create
 
         def open_counted(file, mode="r", *arguments, **options):
-            if not set(mode) & set("wax+") or isinstance(file, int):
+            if not set(mode) & set("wax") or isinstance(file, int):
                 return opened(file, mode, *arguments, **options)
-            raw = _Raw(os.fspath(file), mode.replace("b", "").replace("t", ""))
-            raw.injector = injector
-            buffered = io.BufferedRandom(raw) if "+" in mode else io.BufferedWriter(raw)
+            raw = _Raw(self, os.fspath(file), mode.replace("b", "").replace("t", ""))
+            buffered = (io.BufferedRandom if "+" in mode else io.BufferedWriter)(raw)
             text = {name: value for name, value in options.items() if name in ("encoding", "errors", "newline")}
             return buffered if "b" in mode else io.TextIOWrapper(buffered, **text)
 
         io.open = builtins.open = open_counted
-        create = oiio.ImageOutput.create
-        setattr(oiio.ImageOutput, "create", staticmethod(lambda path: _Output(create(path), path, injector)))  # noqa: B010
+        setattr(oiio.ImageOutput, "create", staticmethod(lambda path: _Output(self, create(path), path)))  # noqa: B010
 
-    def _counted(self, name, takes_descriptor):
-        real, readlink = self._real[name], os.readlink
-
+    def _counted(self, name, real):
         def call(first, *arguments, **options):
-            path = first
-            if takes_descriptor:
-                try:
-                    path = readlink(f"/proc/self/fd/{first}")
-                except OSError:
-                    path = ""
+            link = f"/proc/self/fd/{first}"
             try:
-                self.count(name, path)
+                self.count(name, Path(link).readlink() if os.path.lexists(link) else first)
             except OSError:
-                if name == "close":  # as Linux does: the file is closed whatever it says
+                if name == "close":  # as Linux does: the file is closed whatever the error
                     real(first)
                 raise
             return real(first, *arguments, **options)
@@ -73,6 +58,10 @@ class Injector:
 
 class _Raw(io.FileIO):
     """A file whose writes and close are counted."""
+
+    def __init__(self, injector, path, mode):
+        self.injector = injector
+        super().__init__(path, mode)
 
     def write(self, content):
         self.injector.count("write", self.name)
@@ -86,19 +75,18 @@ class _Raw(io.FileIO):
 
 
 class _Output:
-    """OpenImageIO's output of a file: a failure cuts the last page off, of which OpenImageIO says nothing."""
+    """OpenImageIO's output of a file: a failure cuts the last page off, and OpenImageIO reports none."""
 
-    def __init__(self, output, path, injector):
-        self._output, self._path, self._injector = output, path, injector
+    def __init__(self, injector, output, path):
+        self.injector, self.output, self.path = injector, output, Path(path)
 
     def __getattr__(self, name):
-        return getattr(self._output, name)
+        return getattr(self.output, name)
 
     def close(self):
-        """Close the file."""
-        is_closed = self._output.close()
+        is_closed = self.output.close()
         try:
-            self._injector.count("flush", self._path)
+            self.injector.count("flush", self.path)
         except OSError:
-            os.truncate(self._path, max(Path(self._path).stat().st_size - 4096, 0))
+            os.truncate(self.path, max(self.path.stat().st_size - 4096, 0))
         return is_closed

@@ -85,7 +85,7 @@ class TestForward:
         assert direction.startswith("Camera response: relative scene-linear irradiance in")
         assert photographs == "Photographs: a.jpg"
 
-    def test_directions_are_told_apart(self, true_response, rgb_lut):
+    def test_directions_are_distinguished(self, true_response, rgb_lut):
         for lut in (inverse_response_lut(true_response), rgb_lut):
             assert not is_forward(lut)
             assert is_forward(forward_lut(lut))

@@ -26,7 +26,7 @@ def codes(bits):
 def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
     """Values through OpenColorIO's own 1D LUT.
 
-    Each LUT gets a config of its own, because a config mixes up LUTs in its cache. Nothing is optimised, because
+    Each LUT gets a config of its own, because a config mixes up LUTs in its cache. Nothing is optimized, because
     OpenColorIO would replace a LUT within 1e-5 of the identity by the identity.
     """
     table = OCIO.Lut1DTransform(length=lut.values.size, inputHalfDomain=False)

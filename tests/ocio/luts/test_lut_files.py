@@ -67,7 +67,7 @@ class TestRoundTrip:
         path = tmp_path / f"a{suffix}"
         write_lut(path, inverse_response_lut(CURVES[name], length=length))
         linear = ocio_applied(path, codes(bits))
-        # Hosts use the default optimisation, whose inverse is approximate; it must still give every code back.
+        # Hosts use the default optimization, whose inverse is approximate; it must still give every code back.
         for optimization in (OCIO.OPTIMIZATION_LOSSLESS, OCIO.OPTIMIZATION_DEFAULT):
             back = ocio_applied(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)
             assert np.rint(back * (2**bits - 1)).tolist() == list(range(2**bits))

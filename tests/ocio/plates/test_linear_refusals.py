@@ -2,6 +2,7 @@
 
 import os
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import OpenImageIO as oiio
@@ -141,3 +142,13 @@ def test_a_file_whose_last_page_is_lost_is_refused(tmp_path, monkeypatch, kept):
             tmp_path / "a.exr", oiio.ImageSpec(90, 70, 4, "half"), SMALL.astype(np.float16), name=Path("a.exr")
         )
     assert caught.value.code == "exr_not_written"
+
+
+def test_metadata_that_is_not_utf_8_is_kept_in_part():
+    """Makers write their names in Latin-1, Shift-JIS and GBK."""
+    source = oiio.ImageSpec(4, 4, 3, "uint8")
+    make = SimpleNamespace(name="Make", type=oiio.TypeDesc("string"), value="Voigtl\udce4nder")
+    names = ("width", "height", "x", "y", "full_x", "full_y", "full_width", "full_height")
+    plate = SimpleNamespace(extra_attribs=[make], **{name: getattr(source, name) for name in names})
+    header = exr.linear_header(plate, channels=3, depth="half", attributes={})
+    assert header.getattribute("Make") == header.getattribute("cameraMake") == "Voigtl?nder"
