@@ -74,7 +74,7 @@ SENTENCES: Mapping[str, str] = {
     "lut_unreadable": "{path}: cannot be read ({reason}); check the name of the LUT",
     # configs
     "base_folder_is_variable": "{path}: OpenColorIO takes $ and % for variables; move the config that you build on",
-    "base_would_be_replaced": "{path}: is the config that you build on, which stays as it is; choose another folder",
+    "base_would_change": "{path}: is the folder of the config that you build on, which stays as it is; choose another",
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",
     "color_space_refused": "{name}: cannot be added to the config ({reason})",

@@ -2,7 +2,7 @@
 
 Everything else of the base stays: its profile version, roles, displays, views, looks and rules. Its files are found
 where they lie: the search path of the new config names the folders of the base in full. The LUTs of the new plates lie
-beside the new config. Nothing of the base is changed, nothing is deleted.
+next to the new config. Nothing of the base is changed, nothing is deleted.
 """
 
 from __future__ import annotations
@@ -59,7 +59,7 @@ def write_derived_config(
     others: Mapping[str, Lut1D] | None = None,
     overwrite: bool = False,
 ) -> DerivedConfig:
-    """Write a config with plates' color spaces and file rules added to a base, and the plates' LUTs beside it.
+    """Write a config with plates' color spaces and file rules added to a base, and the plates' LUTs next to it.
 
     A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". Names that cameras
     give again and again ("IMG_0001.JPG") get no file rule: it would catch files of others.
@@ -75,7 +75,7 @@ def write_derived_config(
     others : mapping of str to Lut1D, optional
         Further LUT files, by their names.
     overwrite : bool
-        Whether existing files may be replaced; those of the base never are.
+        Whether existing files may be replaced; it is never the folder of the base.
 
     Raises
     ------
@@ -83,20 +83,14 @@ def write_derived_config(
         If the folder cannot be written to, a file exists and may not be replaced, the base cannot be built on, or
         OpenColorIO refuses the config or converts otherwise than the LUTs. The folder is as it was then.
     """
-    target = folder / CONFIG_NAME
     check_config_folder(folder)
-    if target.resolve() == base.path:
-        raise ConfigError("base_would_be_replaced", path=target)
-    config, luts, check = _relocated(base), dict(others or {}), dict[str, Lut1D]()
-    spaces, common = list[PlateColorSpace](), list[str]()
-    for look in looks:
-        space = _free_space(base, look, check, luts)
-        counters = tuple(filter(is_counter_name, space.file_patterns))
-        patterns = tuple(pattern for pattern in space.file_patterns if pattern not in counters)
-        spaces.append(replace(space, file_patterns=patterns))
-        common += counters
-        luts[space.lut_file] = check[space.name] = look.lut
+    if base.path is not None and folder.is_dir() and folder.samefile(base.path.parent):
+        raise ConfigError("base_would_change", path=folder)
+    config, target = _relocated(base), folder / CONFIG_NAME
+    spaces, common = _new_spaces(base, looks, others or {})
     shared = add_plate_color_spaces(config, spaces)
+    check = {space.name: look.lut for space, look in zip(spaces, looks, strict=True)}
+    luts = {**(others or {}), **{space.lut_file: check[space.name] for space in spaces}}
     files = (target, *(folder / name for name in luts))
     if not overwrite and (existing := [path for path in files if os.path.lexists(path)]):
         raise ConfigError("output_exists", path=existing[0])
@@ -106,6 +100,21 @@ def write_derived_config(
         write_config(staged / CONFIG_NAME, config, check=check)
     plates = tuple(plate for plate in plates_in_config(config) if plate.name in check)
     return DerivedConfig(target, files, plates, tuple(dict.fromkeys((*common, *shared))))
+
+
+def _new_spaces(
+    base: ConfigSource, looks: Sequence[Look], others: Collection[str]
+) -> tuple[list[PlateColorSpace], list[str]]:
+    """Return the color spaces of looks under names that are free, and the file patterns that make no rule."""
+    spaces, common = list[PlateColorSpace](), list[str]()
+    for look in looks:
+        names, lut_files = [space.name for space in spaces], [*others, *(space.lut_file for space in spaces)]
+        space = _free_space(base, look, names, lut_files)
+        counters = [pattern for pattern in space.file_patterns if is_counter_name(pattern)]
+        patterns = tuple(pattern for pattern in space.file_patterns if pattern not in counters)
+        spaces.append(replace(space, file_patterns=patterns))
+        common += counters
+    return spaces, common
 
 
 def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:

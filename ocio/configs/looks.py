@@ -33,7 +33,7 @@ class Look:
     Parameters
     ----------
     space : PlateColorSpace
-        The plate's color space; its LUT is a .spi1d file beside the config.
+        The plate's color space; its LUT is a .spi1d file next to the config.
     lut : Lut1D
         The inverse response.
     folder : str

@@ -49,11 +49,11 @@ class PlateColorSpace:
     exposure : float
         Stops added after the response. They stand in the config as a transform of their own, to be edited there.
     primaries : Primaries
-        In which the plate is encoded.
+        The primaries in which the plate is encoded.
     linear_patterns : tuple of str
         The names of the plate's linear OpenEXR files, for a file rule of their own.
     linear_primaries : Primaries or None
-        In which those are. None if they are not known: then there is no rule.
+        The primaries of those files. None if they are not known: then there is no rule.
 
     Raises
     ------
@@ -88,7 +88,7 @@ class PlateColorSpace:
     def from_outputs(
         cls, files: OutputFiles, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
     ) -> PlateColorSpace:
-        """Return the color space of a photograph, for a config beside the LUTs that an estimate writes.
+        """Return the color space of a photograph, for a config next to the LUTs that an estimate writes.
 
         Parameters
         ----------

@@ -171,7 +171,7 @@ def test_an_export_is_built_on_the_running_config(make_job, running_config):
 def test_the_running_config_is_never_replaced(make_job, running_config):
     with pytest.raises(ConfigError) as caught:
         write(make_job(mode=ApplyMode.EXPORT, folder=running_config.parent, overwrite=True))
-    assert caught.value.code == "base_would_be_replaced"
+    assert caught.value.code == "base_would_change"
 
 
 def test_the_file_rule_is_for_every_frame(make_job, sequence_file, tmp_path):

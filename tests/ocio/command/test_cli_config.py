@@ -92,7 +92,10 @@ def test_the_merge_line_of_the_documents_works(folder, root, tmp_path):
         ),
         (("add", "--base", STUDIO, "--out", "", "{look}"), "is empty; give a name, or . for the current folder"),
         (("add", "--base", STUDIO, "--out", "{out}", "{out}"), "is not the document of an estimate"),
-        (("add", "--base", "{look}", "--out", "{look}", "{look}", "--overwrite"), "is the config that you build on"),
+        (
+            ("add", "--base", "{look}", "--out", "{look}", "{look}", "--overwrite"),
+            "is the folder of the config that you build on",
+        ),
         (("add", "{look}", "--out", "{out}"), "the following arguments are required: --base"),
         (("list", "nowhere.ocio"), "nowhere.ocio: there is no such config; check the name"),
         ((), "the following arguments are required: ACTION"),

@@ -188,11 +188,12 @@ class TestAgain:
 
 
 class TestFolder:
-    def test_the_base_is_never_replaced(self, studio, small_look):
-        base = studio.rename(studio.with_name("config.ocio"))
-        with pytest.raises(ConfigError) as caught:
-            add(base, base.parent, small_look, overwrite=True)
-        assert caught.value.code == "base_would_be_replaced"
+    def test_that_of_the_base_is_refused(self, studio, small_look, tmp_path):
+        (tmp_path / "link").symlink_to(studio.parent)
+        for folder in (studio.parent, tmp_path / "link"):
+            with pytest.raises(ConfigError) as caught:
+                add(studio, folder, small_look, overwrite=True)
+            assert caught.value.code == "base_would_change"
 
     @pytest.mark.parametrize("name", ["config.ocio", "plate01.spi1d"])
     def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
