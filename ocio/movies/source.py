@@ -1,4 +1,4 @@
-"""What plates come from: the frames of a movie, or image files."""
+"""The sources of plates: the frames of a movie, or image files."""
 
 from __future__ import annotations
 

@@ -3,11 +3,11 @@
 frames        the frames that a name stands for: find the files, choose some of them
 frame_pattern names with a placeholder for the frame number
 frame_numbers ranges of frame numbers, read and written
-frame_files   read one frame: its encoded samples, its alpha and its header; what a source of frames is
+frame_files   read one frame: its encoded samples, its alpha and its header; the protocol of frame sources
 first_frame   the first frame of a source that can be read
 primaries     the primaries of an encoded plate: by its tags, as given, or by convention
 linear_space  the space of the linear values, and the matrix that leads there
-light         what the numbers of a linear plate mean, and whether finished frames mean the same
+light         the meaning of a linear plate's numbers, and whether finished frames have the same
 linear        linearize frames through a LUT, several at a time
 parallel      jobs in several threads, with bounded memory
 exr           the header and the file of a linear plate

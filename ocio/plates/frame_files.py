@@ -42,7 +42,7 @@ class EncodedFrame:
     header : OpenImageIO.ImageSpec
         The header of the file.
     color : ColorTags
-        What the file says of its primaries.
+        Its tags of primaries.
     is_coverage : bool
         Whether alpha is coverage, by which linear colors are multiplied; otherwise it is data, a channel of its own.
     """
@@ -110,7 +110,7 @@ def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | No
 
 
 def read_color_tags(path: Path, *, is_encoded: bool = False) -> ColorTags:
-    """Return what the header of a frame says of its colors; it takes and refuses what `read_frame` does."""
+    """Return the color tags in the header of a frame; it accepts and refuses the same files as `read_frame`."""
     if path.suffix.lower() != ".exr":
         return read_metadata(path).color
     with _opened_exr(path, is_encoded=is_encoded) as source:

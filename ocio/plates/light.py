@@ -1,4 +1,4 @@
-"""What the numbers of a linear plate mean, and whether frames that are there already mean the same."""
+"""The meaning of the numbers in a linear plate, and a check that finished frames have the same."""
 
 from __future__ import annotations
 
@@ -32,7 +32,7 @@ SAME_EXPOSURE = 1e-3
 
 @dataclass(frozen=True)
 class PlateLight:
-    """What the numbers of a linear plate mean.
+    """The meaning of the numbers in a linear plate.
 
     Parameters
     ----------
@@ -53,7 +53,7 @@ class PlateLight:
 
     @classmethod
     def of(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
-        """Return what the options make of a plate with these tags.
+        """Return the light that a plate with these tags has under the options.
 
         Raises
         ------
@@ -124,7 +124,7 @@ def _difference(written: dict[str, Any], light: PlateLight, depth: str, size: tu
 
 
 def _attributes(path: Path) -> dict[str, Any]:
-    """Return what the header of an OpenEXR file holds, by name, its type and size; nothing if it cannot be read."""
+    """Return the attributes of an OpenEXR header by name, with its type and size; nothing if it cannot be read."""
     source = oiio.ImageInput.open(str(path))
     if source is None:
         oiio_message()

@@ -184,7 +184,7 @@ def linearize_plates(
 
 @dataclass(frozen=True, eq=False)
 class _Conversion:
-    """What is the same for every frame: what its light means, the factor of the exposure, the options, the first."""
+    """The facts that all frames share: the meaning of their light, the factor of the exposure, the options."""
 
     light: PlateLight
     scale: float
