@@ -118,7 +118,7 @@ class _OpenFile:
 
     def metadata(self) -> FileMetadata:
         """Return the metadata of the upright picture."""
-        jpeg = self.jpeg.header if self.jpeg else None
+        jpeg = self.jpeg.metadata if self.jpeg else FileMetadata()
         metadata = metadata_of_header(self._upright_header(), self.kind, jpeg)
         return replace(metadata, is_turned=self.turn != UPRIGHT)
 
