@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import mmap
 import struct
+import warnings
 from functools import cache
 from typing import Any
 
@@ -35,7 +36,10 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
     """Return the metadata in the segments up to the first scan that OpenImageIO leaves out; empty if damaged."""
     file: Any = io.BytesIO(content) if isinstance(content, bytes) else content
     try:
-        image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of damaged EXIF
+            image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
+            interop_index = _interop_index(image)
     except _DAMAGE:
         return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
@@ -46,7 +50,7 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
         subsampling=_subsampling([(across, down) for _, across, down, _ in image.layer]),
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
-        interop_index=_interop_index(image),
+        interop_index=interop_index,
         has_gain_map=any(mark in payload for name, payload in segments for mark in _GAIN_MAPS),
     )
 
