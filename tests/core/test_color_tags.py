@@ -154,6 +154,14 @@ class TestIccProfiles:
         for length in range(len(whole)):
             read_icc(whole[:length])
 
+    def test_damage_anywhere_in_a_profile_is_no_error(self):
+        rng = np.random.default_rng(0)
+        whole = np.frombuffer(matrix_profile(DISPLAY_P3), np.uint8)
+        for _ in range(300):
+            damaged = whole.copy()
+            damaged[rng.integers(0, len(whole), 4)] = rng.integers(0, 256, 4)
+            read_icc(damaged.tobytes())
+
     @pytest.mark.parametrize("version", [2, 4])
     @pytest.mark.parametrize(
         ("curve", "is_linear"),

@@ -48,9 +48,13 @@ def read_icc(profile: bytes) -> ColorTags:
     the adaptation to D50 is undone, by the tag `chad`, or in version 2 from the media white.
     """
     try:
-        opened = ImageCms.ImageCmsProfile(io.BytesIO(profile))
-    except (OSError, ImageCms.PyCMSError):
+        return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
+    except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):  # damaged names are a ValueError
         return ColorTags()
+
+
+def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
+    """Return the tags of a profile."""
     tags, facts = _tags(profile), cast(Any, opened.profile)
     space = facts.xcolor_space.strip()
     is_linear = space in _MODES and _is_linear(opened, _MODES[space])
