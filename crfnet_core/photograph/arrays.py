@@ -139,7 +139,7 @@ def _checked_order(values: NDArray[Any], order: ColorOrder | None, name: str) ->
 
 
 def _checked_bits(values: NDArray[Any], bit_depth: int | None, name: str) -> int:
-    """Return the bits per sample: as stated, else those of the type; uint16 needs a statement."""
+    """Return the bits per sample: as stated, else as the type has; uint16 needs a statement."""
     bits = 8 * values.dtype.itemsize
     if bit_depth is None and values.dtype.kind == "u" and bits == 16:
         raise PhotoError("array_without_bit_depth", path=name)

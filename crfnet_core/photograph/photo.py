@@ -37,7 +37,7 @@ class Photo:
     pixels : ndarray, float32, shape (H, W, 3), or CodeValues
         Code values divided by the largest code, in [0, 1]; upright, as EXIF asks. Or the codes of a file.
     bit_depth : int
-        Bits per sample of the file: 8, 10, 12 or 16; of an array of floating-point numbers, those of its type.
+        Bits per sample of the file: 8, 10, 12 or 16; of floating-point numbers, the bits of their type.
     is_gray : bool
         Whether the three channels are equal everywhere.
     path : Path

@@ -26,8 +26,8 @@ from crfnet_core.colorimetry import (
 )
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
-from crfnet_core.photograph.metadata.header_colors import TABLES, header_color_tags
-from crfnet_core.photograph.metadata.icc import SAME_COLORANTS, read_icc
+from crfnet_core.photograph.metadata.header_colors import header_color_tags
+from crfnet_core.photograph.metadata.icc import SAME_COLORANTS, TABLES, read_icc
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.color_profiles import exif_segment, matrix_profile, numbers, profile, write_tagged
 from tests.helpers.crafted_files import with_jpeg_segment
@@ -143,16 +143,24 @@ class TestIccProfiles:
         assert read_icc(icc).primaries is None
 
     def test_a_gray_profile_says_nothing_of_primaries(self):
-        assert not read_icc(profile({}, color=b"GRAY")).is_rgb
+        assert read_icc(profile({}, color=b"GRAY")) == ColorTags()
 
     @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp"])
     def test_other_bytes_are_no_profile(self, icc):
-        assert read_icc(icc) is None
+        assert read_icc(icc) == ColorTags()
 
     def test_any_part_of_a_profile_is_read_without_an_error(self):
         whole = matrix_profile(DISPLAY_P3)
         for length in range(len(whole)):
             read_icc(whole[:length])
+
+    def test_damage_anywhere_in_a_profile_is_no_error(self):
+        rng = np.random.default_rng(0)
+        whole = np.frombuffer(matrix_profile(DISPLAY_P3), np.uint8)
+        for _ in range(300):
+            damaged = whole.copy()
+            damaged[rng.integers(0, len(whole), 4)] = rng.integers(0, 256, 4)
+            read_icc(damaged.tobytes())
 
     @pytest.mark.parametrize("version", [2, 4])
     @pytest.mark.parametrize(
@@ -168,7 +176,7 @@ class TestIccProfiles:
     )
     def test_a_linear_curve_is_seen(self, version, curve, is_linear):
         curves = {f"{name}TRC": curve for name in "rgb"}
-        assert read_icc(matrix_profile(REC2020, version=version, **curves)).is_linear is is_linear
+        assert read_icc(matrix_profile(REC2020, version=version, **curves)).transfer == ("linear" if is_linear else "")
 
     def test_a_file_with_a_linear_profile_is_tagged_linear(self, tmp_path):
         icc = matrix_profile(REC709, **{f"{name}TRC": b"curv" + bytes(8) for name in "rgb"})

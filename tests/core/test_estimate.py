@@ -164,7 +164,7 @@ def test_photographs_of_one_camera_are_pooled(bank):
 def test_the_same_photograph_twice_says_no_more_than_once(bank):
     network = FakeNetwork([evidence_for(bank.weights[3], precision=0.7)] * 2)
     dark = photo()
-    dark = replace(dark, pixels=dark.pixels * np.float32(0.5))
+    dark = Photo(dark.pixels * np.float32(0.5), dark.bit_depth, dark.is_gray, dark.path, dark.metadata)
     once, twice = asked(photo(), network), asked([photo(), dark], network)
     assert twice.uncertainty == pytest.approx(once.uncertainty)
     assert twice.families == pytest.approx(once.families)

@@ -8,7 +8,7 @@ from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, fi
 from crfnet_core.photograph.metadata.color_tags import profile_transfer
 from crfnet_core.photograph.metadata.encodings import Encoding
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_LUMA, scaled_table
-from crfnet_core.photograph.metadata.origin import picture_shape
+from crfnet_core.photograph.metadata.origin import ADOBE, picture_shape
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
@@ -238,3 +238,13 @@ def test_a_copy_of_what_is_known_is_not_refused():
 def test_what_is_no_device_is_refused():
     with pytest.raises(ValueError, match="other"):
         with_stated_device(origin(), "other")
+
+
+def test_dng_converter_keeps_the_cameras_picture():
+    found = origin(**OWN_CAMERA, software="Adobe DNG Converter 15.0 (Macintosh)", raw_file="DSC_0001.NEF")
+    assert (found.is_developed, found.editor) == (False, ADOBE)
+
+
+@pytest.mark.parametrize(("size", "is_scaled"), [((493, 328), True), ((640, 480), False), ((4000, 3001), False)])
+def test_a_program_that_scales_may_rewrite_the_size_in_exif(size, is_scaled):
+    assert origin(**OWN_CAMERA, width=size[0], height=size[1], exif_size=size).is_scaled is is_scaled

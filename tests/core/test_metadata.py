@@ -8,11 +8,10 @@ import pytest
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_metadata, read_photo
-from crfnet_core.photograph.metadata import file_origin
+from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.jpeg import (
     ANNEX_K_CHROMA,
     ANNEX_K_LUMA,
-    JpegHeader,
     ijg_quality,
     read_jpeg_header,
     scaled_table,
@@ -191,7 +190,7 @@ def test_tables_of_16_bits():
 def test_the_header_is_read_from_a_mapped_file(tmp_path):
     content = jpeg(tmp_path / "a.jpg")
     with (tmp_path / "a.jpg").open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
-        assert read_jpeg_header(mapped) == read_jpeg_header(content) != JpegHeader()
+        assert read_jpeg_header(mapped) == read_jpeg_header(content) != FileMetadata()
 
 
 @pytest.mark.parametrize("quality", [1, 25, 50, 75, 95, 100])

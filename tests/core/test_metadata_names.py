@@ -16,6 +16,8 @@ PHONES = [
     ("Panasonic", "DMC-CM1"),
     ("samsung", "SM-G960U"),
     ("SAMSUNG", "GT-I9300"),
+    ("samsung", "SAMSUNG-SM-G920A"),
+    ("SAMSUNG", "SAMSUNG-SGH-I747"),
     ("Sony", "D6503"),
     ("Sony", "G8341"),
     ("Sony", "SO-01J"),

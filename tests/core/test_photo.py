@@ -262,12 +262,6 @@ def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed
     np.testing.assert_array_equal(photo[index], before)
 
 
-def test_a_name_that_is_not_there_is_an_attribute_error(tmp_path):
-    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
-    with pytest.raises(AttributeError, match="nonesuch"):
-        _ = photo.nonesuch
-
-
 def test_the_words_for_a_photograph_compute_no_pixels(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.png", CODES8))
     assert repr(photo).startswith("Photo(")

@@ -68,8 +68,8 @@ def test_a_name_or_a_parameter_that_is_not_there_is_found_out(page):
     """Otherwise the test above could not fail."""
     with pytest.raises(AttributeError):
         found("crfnet_core", "ResponseEstimate.nonesuch")
-    assert signature(found("crfnet_core", "read_photo")) == "(path)"
-    assert ("crfnet", "read_photo", "(path)") in documented(page)
+    assert signature(found("crfnet_core", "read_photo")) == "(source)"
+    assert ("crfnet", "read_photo", "(source)") in documented(page)
     assert ("crfnet", "ResponseCurve.inverse", "(brightness)") in documented(page)
 
 

@@ -12,24 +12,16 @@ import numpy as np
 from PIL import Image
 from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
-from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, Table
-from crfnet_core.types import Float32Array, Float64Array, Uint8Array
+from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA
+from crfnet_core.types import Float32Array, Uint8Array
 from training.synthesis.sensor import Planes
 
 #: Weights of red, green and blue in the luma of JPEG (ITU-R BT.601).
 LUMA = (0.299, 0.587, 0.114)
 
 
-def _in_rows(table: Table) -> Float64Array:
-    """Return the 64 divisors of a table row by row: a JPEG file holds them in zigzags between two sides."""
-    zigzag = sorted(np.ndindex(8, 8), key=lambda place: (sum(place), place[0] if sum(place) % 2 else place[1]))
-    rows = np.empty((8, 8))
-    rows[tuple(zip(*zigzag, strict=True))] = table
-    return rows.ravel()
-
-
 #: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
-STANDARD_TABLES = tuple(_in_rows(table) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA))
+STANDARD_TABLES = tuple(np.array(table, np.float64) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA))
 
 
 @dataclass(frozen=True)

@@ -31,8 +31,8 @@ RAW_SUFFIXES = (
 #: How raw files begin that are not plain TIFF: Fujifilm, Olympus, Panasonic, Minolta, Sigma; the brand of Canon's CR3.
 RAW_SIGNATURES, _RAW_BRAND = (b"FUJIFILMCCD", b"IIRO", b"IIRS", b"MMOR", b"IIU\0", b"\0MRM", b"FOVb"), b"crx "
 
-#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType, whose bit 0 marks a reduced picture; SubIFDs; DNGVersion.
-_SUBFILE_TYPE, _SUB_DIRECTORIES, _DNG_VERSION = 254, 330, 50706
+#: Tags of TIFF (TIFF 6.0, DNG 1.7): NewSubfileType (bit 0 marks a reduced picture), SubIFDs, ExtraSamples, DNGVersion.
+_SUBFILE_TYPE, _SUB_DIRECTORIES, EXTRA_SAMPLES, _DNG_VERSION = 254, 330, 338, 50706
 
 #: Directories longer than this are damaged.
 _MOST_ENTRIES = 4096
@@ -112,18 +112,20 @@ def _is_raw(path: Path, head: bytes) -> bool:
         return True
     if not head.startswith((b"II*\0", b"MM\0*")):
         return False
-    entries = _first_directory(path, "little" if head.startswith(b"II") else "big")
+    entries = tiff_directory(path)
     is_reduced = bool(entries.get(_SUBFILE_TYPE, 0) & 1)
     return _DNG_VERSION in entries or (is_reduced and _SUB_DIRECTORIES in entries)
 
 
-def _first_directory(path: Path, order: Literal["little", "big"]) -> dict[int, int]:
+def tiff_directory(path: Path) -> dict[int, int]:
     """Return tag -> value, or where the values stand, of a TIFF's first directory; empty if it is damaged.
 
     Pillow's reader loads all values of a directory, each of which may claim the whole file.
     """
     with path.open("rb") as file:
-        file.seek(int.from_bytes(file.read(8)[4:], order))
+        head = file.read(8)
+        order: Literal["little", "big"] = "little" if head.startswith(b"II") else "big"
+        file.seek(int.from_bytes(head[4:], order))
         content = file.read(12 * min(int.from_bytes(file.read(2), order), _MOST_ENTRIES))
     entries = (content[at : at + 12] for at in range(0, len(content) - 11, 12))
     return {int.from_bytes(each[:2], order): _value(each, order) for each in entries}

@@ -12,7 +12,8 @@ from pathlib import Path
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.header_checks import check_size
-from crfnet_core.photograph.metadata.jpeg import JpegHeader, read_jpeg_header
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata
+from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
 #: A marker with its length, behind bytes that belong to no segment, which decoders skip.
 _SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
@@ -22,17 +23,17 @@ _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 @dataclass(frozen=True)
 class JpegFile:
-    """A JPEG file whose header is checked.
+    """A JPEG file with a checked header.
 
     Parameters
     ----------
-    header : JpegHeader
+    metadata : FileMetadata
         The metadata in its segments.
     warnings : frozenset of str
         Messages of libjpeg about stray bytes between the segments of the header, which touch no pixel.
     """
 
-    header: JpegHeader
+    metadata: FileMetadata
     warnings: frozenset[str]
 
     def damage(self, problem: str) -> str:

@@ -15,10 +15,10 @@ import OpenImageIO as oiio
 #: The color type of IHDR whose pixels are the numbers of colors in a table.
 _PALETTE = 3
 
-#: Chunks that are read, the header and those of color -> the size of their content, in bytes; a profile has any.
+#: Chunks that are read, of the header and of color -> the size of their content, in bytes; a profile has any.
 _CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
 
-#: Chunks beside which cHRM and gAMA do not count.
+#: Chunks that override cHRM and gAMA.
 _BEFORE_CHROMATICITIES = {b"cICP", b"iCCP", b"sRGB"}
 
 #: cHRM and gAMA hold 100 000 times their numbers.

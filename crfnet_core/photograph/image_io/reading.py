@@ -17,7 +17,7 @@ from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.file_kinds import file_kind
+from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, file_kind, tiff_directory
 from crfnet_core.photograph.image_io.header_checks import (
     WHITE_IS_ZERO,
     check_is_encoded,
@@ -124,7 +124,7 @@ class _OpenFile:
 
     def metadata(self) -> FileMetadata:
         """Return the metadata of the upright picture."""
-        jpeg = self.jpeg.header if self.jpeg else None
+        jpeg = self.jpeg.metadata if self.jpeg else FileMetadata()
         metadata = metadata_of_header(self._upright_header(), self.kind, jpeg)
         return replace(metadata, is_turned=self.turn != UPRIGHT)
 
@@ -199,6 +199,8 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         if kind == "TIFF":
             _seek_picture(source)
         header = with_plain_texts(source.spec())
+        if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
+            header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
         yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()

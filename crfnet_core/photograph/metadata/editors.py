@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Sequence
 
-#: Programs that develop raw files to tones of their own; those of camera makers imitate the camera.
+#: Programs that develop raw files to tones of their own; programs of camera makers imitate the camera.
 DEVELOPERS = (
     *("lightroom", "camera raw", "capture one", "captureone", "darktable", "rawtherapee", "ufraw", "dcraw", "dxo"),
     *("photolab", "iridient", "aperture ", "phocus", "rawpower", "raw power"),

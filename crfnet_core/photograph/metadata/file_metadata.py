@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 from crfnet_core.errors import one_line
 from crfnet_core.photograph.metadata.color_tags import ColorTags, dpx_transfer, with_named_transfer
 from crfnet_core.photograph.metadata.header_colors import header_attribute, header_color_tags
-from crfnet_core.photograph.metadata.jpeg import JpegHeader, Table
+
+#: A quantization table: 64 divisors, row by row.
+Table = tuple[int, ...]
 
 #: Longest text that is kept, in characters: names of programs are shorter, and a file may hold anything.
 LONGEST_TEXT = 200
@@ -47,7 +49,10 @@ class FileMetadata:
     subsampling : str
         Chroma subsampling of a JPEG file, such as "4:2:0".
     has_jfif, has_adobe : bool
-        Whether a JPEG file has a JFIF segment, and an Adobe segment: see `JpegHeader`.
+        Whether a JPEG file has a JFIF segment, which libraries write (cameras begin with EXIF instead), and an Adobe
+        segment, which the programs of Adobe write, and other encoders for CMYK and RGB.
+    interop_index : str
+        EXIF InteroperabilityIndex of a JPEG file, such as "R98".
     profile : str
         Description of the ICC profile; of DPX its transfer characteristic.
     file_format : str
@@ -77,6 +82,7 @@ class FileMetadata:
     subsampling: str = ""
     has_jfif: bool = False
     has_adobe: bool = False
+    interop_index: str = ""
     profile: str = ""
     file_format: str = ""
     has_gain_map: bool = False
@@ -90,7 +96,11 @@ class FileMetadata:
         return bool(self.make or self.model)
 
 
-def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = None) -> FileMetadata:
+#: The metadata of a file that states nothing.
+EMPTY = FileMetadata()
+
+
+def metadata_of_header(header: Any, file_format: str, jpeg: FileMetadata = EMPTY) -> FileMetadata:
     """Return the metadata in an open file's header; what is damaged stays empty.
 
     Parameters
@@ -99,15 +109,15 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         Of the picture that is read.
     file_format : str
         "JPEG", "HEIC", "DPX" and so on, as `image_io.file_kinds` names them.
-    jpeg : JpegHeader, optional
-        The segments of a JPEG file.
+    jpeg : FileMetadata, optional
+        The metadata in the segments of a JPEG file, by `read_jpeg_header`.
     """
-    jpeg = jpeg or JpegHeader()
     sides = _number(header, "Exif:PixelXDimension"), _number(header, "Exif:PixelYDimension")
     history = _text(header, "stEvt:softwareAgent", longest=10 * LONGEST_TEXT)
     profile = _text(header, "ICCProfile:profile_description")
     dpx = dpx_transfer(_text(header, "dpx:Transfer"))
-    return FileMetadata(
+    return replace(
+        jpeg,
         width=header.width,
         height=header.height,
         make=_text(header, "Make"),
@@ -118,14 +128,8 @@ def metadata_of_header(header: Any, file_format: str, jpeg: JpegHeader | None = 
         renderer=next((name for entry, name in RENDERERS.items() if _text(header, entry)), ""),
         iso=_number(header, "Exif:PhotographicSensitivity"),
         exif_size=(sides[0], sides[1]) if sides[0] and sides[1] else None,
-        luma_table=jpeg.luma_table,
-        chroma_table=jpeg.chroma_table,
-        subsampling=jpeg.subsampling,
-        has_jfif=jpeg.has_jfif,
-        has_adobe=jpeg.has_adobe,
         profile=profile or dpx,
         file_format=file_format,
-        has_gain_map=jpeg.has_gain_map,
         alpha=_alpha(header),
         color=with_named_transfer(header_color_tags(header, file_format, jpeg.interop_index), dpx, profile),
     )

@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, PHOTOGRAPHIC, REC709, REC2020, Primaries
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags, cicp_tags
-from crfnet_core.photograph.metadata.icc import read_icc
+from crfnet_core.photograph.metadata.icc import TABLES, read_icc
 
 #: EXIF ColorSpace: 1 is sRGB; 2, of no standard, is written for Adobe RGB; 65535 leaves it to the next.
 EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
@@ -18,23 +18,13 @@ EXIF_PRIMARIES = {1: REC709, 2: ADOBE_RGB}
 DCF_PRIMARIES = {"R98": REC709, "R03": ADOBE_RGB}
 
 #: The part of a Color Interop Forum name, such as "srgb_p3d65_scene", that stands for the primaries.
-INTEROP_PRIMARIES = {
-    "rec709": REC709,
-    "p3d65": DISPLAY_P3,
-    "adobergb": ADOBE_RGB,
-    "rec2020": REC2020,
-    "ap0": AP0,
-    "ap1": AP1,
-}
+_INTEROP = {"rec709": REC709, "p3d65": DISPLAY_P3, "adobergb": ADOBE_RGB, "rec2020": REC2020, "ap0": AP0, "ap1": AP1}
 
 #: Largest difference from named primaries by which chromaticities count as theirs: they are written with four digits.
 SAME_CHROMATICITIES = 2e-4
 
 #: Least area of the triangle of primaries in x and y, doubled; Rec.709 has 0.22.
 LEAST_AREA = 0.01
-
-#: The source of tags from an ICC profile without primaries.
-TABLES = "ICC profile of tables"
 
 
 def header_color_tags(header: Any, file_format: str, interop_index: str = "") -> ColorTags:
@@ -54,7 +44,8 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     interop_index : str
         EXIF InteroperabilityIndex, which OpenImageIO does not read.
     """
-    icc, codes = _icc_tags(header), cicp_tags(_sequence(header, "CICP"))
+    icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
+    codes = cicp_tags(_sequence(header, "CICP"))
     first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
     others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
     tags = [each for each in (*first, *others) if each.source]
@@ -69,17 +60,6 @@ def header_attribute(header: Any, name: str) -> Any:
         return header.getattribute(name)
     except (RuntimeError, TypeError, ValueError):
         return None
-
-
-def _icc_tags(header: Any) -> ColorTags:
-    """Return the tags of the ICC profile; one of gray has no primaries."""
-    profile = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
-    if profile is None or not (profile.is_rgb or profile.is_linear):
-        return ColorTags()
-    codes = cicp_tags(profile.cicp)
-    primaries = profile.primaries or codes.primaries
-    transfer = codes.transfer or ("linear" if profile.is_linear else "")
-    return ColorTags(primaries, transfer, "ICC profile" if primaries or not profile.is_rgb else TABLES)
 
 
 def _png_tags(header: Any) -> tuple[ColorTags, ...]:
@@ -101,7 +81,7 @@ def _interop_tags(header: Any) -> ColorTags:
     """Return the tags of the Color Interop Forum's name of the encoding: "lin_ap1_scene" is linear."""
     name = header_attribute(header, "colorInteropID")
     parts = name.split("_") if isinstance(name, str) else []
-    primaries = next((INTEROP_PRIMARIES[part] for part in parts if part in INTEROP_PRIMARIES), None)
+    primaries = next((_INTEROP[part] for part in parts if part in _INTEROP), None)
     transfer = "linear" if parts[:1] == ["lin"] else ""
     return ColorTags(primaries, transfer, "colorInteropID") if primaries or transfer else ColorTags()
 

@@ -7,14 +7,17 @@ Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, 
 from __future__ import annotations
 
 import io
-from dataclasses import dataclass
-from typing import Any
+from typing import Any, cast
 
 import numpy as np
 from PIL import Image, ImageCms
 
 from crfnet_core.colorimetry import D50, PHOTOGRAPHIC, Primaries, adaptation, chromaticity_of
+from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.types import Float64Array
+
+#: The source of tags from an ICC profile, and from one without primaries.
+SOURCE, TABLES = "ICC profile", "ICC profile of tables"
 
 #: XYZ of the profile connection space's white, D50 (7.2.16 of the specification).
 PCS_WHITE = np.array([0.9642, 1.0, 0.8249])
@@ -38,47 +41,30 @@ _MODES = {"RGB": "RGB", "GRAY": "L"}
 _TAG_TABLE, _MAX_TAGS = 132, 200
 
 
-@dataclass(frozen=True)
-class IccProfile:
-    """The parts of a profile that are read.
-
-    Parameters
-    ----------
-    is_rgb : bool
-        Whether it is a profile of RGB; one of gray has no primaries.
-    primaries : Primaries, optional
-        None if it works by tables, or is damaged.
-    is_linear : bool
-        Whether equal codes of its channels are proportional to light.
-    cicp : tuple of int
-        Primaries, transfer, matrix and range as codes of ITU-T H.273, from the tag `cicp`; empty if it has none.
-    """
-
-    is_rgb: bool
-    primaries: Primaries | None
-    is_linear: bool
-    cicp: tuple[int, ...]
-
-
-def read_icc(profile: bytes) -> IccProfile | None:
-    """Return the parts of an ICC profile; None if it cannot be read.
+def read_icc(profile: bytes) -> ColorTags:
+    """Return the tags of an ICC profile; empty if it cannot be read, or is of gray and not linear.
 
     Primaries are recognized by their matrix, not by the profile's description, which is free text. Of an unnamed matrix
     the adaptation to D50 is undone, by the tag `chad`, or in version 2 from the media white.
     """
     try:
-        opened = ImageCms.ImageCmsProfile(io.BytesIO(profile))
-    except (OSError, ImageCms.PyCMSError):
-        return None
-    facts: Any = opened.profile
+        return _color_tags(profile, ImageCms.ImageCmsProfile(io.BytesIO(profile)))
+    except (OSError, ImageCms.PyCMSError, np.linalg.LinAlgError, ValueError):  # damaged names are a ValueError
+        return ColorTags()
+
+
+def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
+    """Return the tags of a profile."""
+    tags, facts = _tags(profile), cast(Any, opened.profile)
     space = facts.xcolor_space.strip()
-    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in _tags(profile)
-    return IccProfile(
-        is_rgb=space == "RGB",
-        primaries=_primaries(facts) if space == "RGB" and is_matrix else None,
-        is_linear=space in _MODES and _is_linear(opened, _MODES[space]),
-        cicp=tuple(_tags(profile).get(b"cicp", b"")[8:12]),
-    )
+    is_linear = space in _MODES and _is_linear(opened, _MODES[space])
+    if space != "RGB":
+        return ColorTags(transfer="linear", source=SOURCE) if is_linear else ColorTags()
+    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in tags
+    codes = cicp_tags(tags.get(b"cicp", b"")[8:12])
+    primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
+    transfer = codes.transfer or ("linear" if is_linear else "")
+    return ColorTags(primaries, transfer, SOURCE if primaries else TABLES)
 
 
 def _tags(profile: bytes) -> dict[bytes, bytes]:

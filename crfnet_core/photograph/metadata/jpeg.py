@@ -5,15 +5,14 @@ from __future__ import annotations
 import io
 import mmap
 import struct
-from dataclasses import dataclass
+import warnings
 from functools import cache
 from typing import Any
 
 from PIL import ExifTags
 from PIL.JpegImagePlugin import JpegImageFile
 
-#: A quantization table: 64 divisors, row by row.
-Table = tuple[int, ...]
+from crfnet_core.photograph.metadata.file_metadata import FileMetadata, Table
 
 #: The tables of ITU-T T.81, Annex K, which the IJG library scales by a quality. The rest of the second is 99.
 ANNEX_K_LUMA: Table = (
@@ -33,51 +32,25 @@ _SUBSAMPLING = {(1, 1): "4:4:4", (2, 1): "4:2:2", (2, 2): "4:2:0", (1, 2): "4:4:
 _DAMAGE = (IndexError, KeyError, OSError, SyntaxError, TypeError, ValueError, ZeroDivisionError, struct.error)
 
 
-@dataclass(frozen=True)
-class JpegHeader:
-    """The metadata of a JPEG file that OpenImageIO leaves out.
-
-    Parameters
-    ----------
-    luma_table, chroma_table : tuple of int
-        The quantization tables, 64 divisors each, row by row; empty where there is none.
-    subsampling : str
-        "4:4:4", "4:2:2", "4:2:0", "4:4:0" or "4:1:1"; empty if gray or of another kind.
-    has_jfif : bool
-        Whether it has a JFIF segment: libraries write one, cameras begin with EXIF instead.
-    has_adobe : bool
-        Whether it has an Adobe segment, which the programs of Adobe write, and other encoders for CMYK and RGB.
-    interop_index : str
-        EXIF InteroperabilityIndex, such as "R98"; empty if there is none.
-    has_gain_map : bool
-        Whether a gain map follows the picture, to make an HDR picture of both (Ultra HDR, ISO 21496-1).
-    """
-
-    luma_table: Table = ()
-    chroma_table: Table = ()
-    subsampling: str = ""
-    has_jfif: bool = False
-    has_adobe: bool = False
-    interop_index: str = ""
-    has_gain_map: bool = False
-
-
-def read_jpeg_header(content: mmap.mmap | bytes) -> JpegHeader:
-    """Return the metadata in the segments up to the first scan; empty if they are damaged."""
+def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
+    """Return the metadata in the segments up to the first scan that OpenImageIO leaves out; empty if damaged."""
     file: Any = io.BytesIO(content) if isinstance(content, bytes) else content
     try:
-        image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore")  # of damaged EXIF
+            image = JpegImageFile(file)  # not Image.open, which refuses 200 megapixels
+            interop_index = _interop_index(image)
     except _DAMAGE:
-        return JpegHeader()
+        return FileMetadata()
     tables = [tuple(image.quantization.get(table, ())) for _, _, _, table in image.layer]
     segments = [(name, bytes(payload)) for name, payload in image.applist]
-    return JpegHeader(
+    return FileMetadata(
         luma_table=tables[0] if tables else (),
         chroma_table=tables[1] if len(tables) > 1 else (),
         subsampling=_subsampling([(across, down) for _, across, down, _ in image.layer]),
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
-        interop_index=_interop_index(image),
+        interop_index=interop_index,
         has_gain_map=any(mark in payload for name, payload in segments for mark in _GAIN_MAPS),
     )
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, fields, replace
 from typing import Any
 
 from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
@@ -104,26 +104,9 @@ class FileOrigin:
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
         """Return the origin that `dataclasses.asdict` made an entry of, also after JSON; other entries are left out."""
-        quality = entry["jpeg_quality"]
-        return cls(
-            device=Device(entry["device"]),
-            camera=str(entry["camera"]),
-            editor=str(entry["editor"]),
-            is_scaled=_known(entry["is_scaled"]),
-            is_resaved=_known(entry["is_resaved"]),
-            jpeg_quality=None if quality is None else int(quality),
-            picture_shape=str(entry["picture_shape"]),
-            encoding=Encoding(entry["encoding"]),
-            words=tuple(map(str, entry["words"])),
-            renderer=str(entry.get("renderer", "")),  # the first documents have neither this nor the next two
-            is_developed=bool(entry.get("is_developed", False)),
-            is_told=bool(entry.get("is_told", False)),
-        )
-
-
-def _known(entry: object) -> bool | None:
-    """Return an entry as True or False; None if unknown."""
-    return None if entry is None else bool(entry)
+        known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
+        kinds = {"device": Device(entry["device"]), "encoding": Encoding(entry["encoding"])}
+        return cls(**{**known, **kinds, "words": tuple(map(str, entry["words"]))})
 
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:

@@ -57,11 +57,10 @@ class NearCurve:
 
 
 def log_factor(levels: Levels) -> float:
-    """Return the likelihood of the levels of log footage, relative to that of ordinary photographs: Eq. 40.
+    """Return the likelihood ratio of the levels under log footage and under ordinary photographs: Eq. 40.
 
     It is 1 if black is not lifted, which proves nothing: log footage whose legal range was stretched when it was
-    decoded has a low black too. It is also 1 if black lies too high, or the picture spans too little of the range to
-    tell.
+    decoded has a low black too. It is also 1 if black lies too high, or the picture spans too little of the range.
     """
     is_lifted = LIFTED_BLACK <= levels.black <= HIGHEST_BLACK
     if not is_lifted or levels.white - levels.black < LEAST_SPAN:
@@ -72,8 +71,8 @@ def log_factor(levels: Levels) -> float:
 def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCurve, ...]:
     """Return up to four published curves that explain the levels best, the likeliest first: Eq. 41.
 
-    Only where black and the middle lie is compared, so curves of nearly the same black and gray cannot be told apart.
-    All are taken for equally frequent.
+    Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
+    count as equally frequent.
 
     Parameters
     ----------

@@ -26,6 +26,7 @@ from crfnet_core.photograph.recognition import (
     recognize,
     refuse_tagged,
 )
+from crfnet_core.photograph.recognition.limited_range import BEYOND, BLACKS, WHITES
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
@@ -225,3 +226,14 @@ def test_a_flat_frame_is_recognized(codes):
     noise = np.random.default_rng(0).integers(0, 2, (64, 64, 1))
     levels = Levels.from_pixels(quantized((np.array(codes) + noise) / 256))
     assert recognize(levels, log_probability=0.9).kind is Kind.FLAT
+
+
+def test_warm_photographs_are_not_limited_range():
+    """Their luma ends where white of video lies, but channels go on to 255."""
+    codes = np.random.default_rng(0).normal(120, 50, (400, 400, 1)).clip(10, 235)
+    warm = np.concatenate([codes * 255 / 235, codes, codes * 215 / 235], axis=2)
+    warm[..., 0][codes[..., 0] > 200] = 255
+    levels = Levels.from_pixels(quantized(warm / 255))
+    assert BLACKS[0] <= levels.luma_quantile(BEYOND) <= BLACKS[1]
+    assert WHITES[0] <= levels.luma_quantile(1 - BEYOND) <= WHITES[1]
+    assert not is_limited_range(levels)

@@ -18,7 +18,7 @@ def test_log_footage_is_answered_with_the_curves_that_fit(crfnet, tmp_path):
     path = as_file(tmp_path / "vlog.png", log_picture("Panasonic V-Log"), Make="Panasonic", Model="DC-S5")
     done = crfnet("estimate", path, "--out", tmp_path / "look", "--no-sheet")
     assert done.code == 0
-    assert "The estimate is not to be trusted: give it the colour space of the log curve" in done.out
+    assert "The estimate is not to be trusted: give it the color space of the log curve" in done.out
     assert 'in ACES configs "V-Log V-Gamut"' in done.out
     assert "Warning: log footage: black lies at code" in done.out
     found = json.loads((tmp_path / "look" / "vlog.json").read_text(encoding="utf-8"))
@@ -30,7 +30,7 @@ def test_limited_range_is_answered_with_the_option_of_ffmpeg(crfnet, tmp_path):
     limited = (16 + 219 * ordinary_picture().astype(float)) / 255
     done = crfnet("estimate", as_file(tmp_path / "a.png", limited), "--out", tmp_path / "look", "--no-sheet")
     assert "The estimate is not to be trusted: expand the range first" in done.out
-    assert "-vf scale=in_range=limited:out_range=full" in done.out
+    assert "scale=in_range=limited:out_range=full" in done.out
     found = json.loads((tmp_path / "look" / "a.json").read_text(encoding="utf-8"))
     assert found["recognition"]["kind"] == "limited range"
 

@@ -146,7 +146,7 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
     assert found["compression"] == "zips"
     assert found["colorInteropID"] == "lin_rec709_scene"
     assert found["crfnet:response"] == "photograph plate.jpg | model test"
-    assert (found["Make"], found["Orientation"], found["DateTime"]) == ("Canon", 6, "2001:02:03 04:05:06")
+    assert (found["Make"], found["Orientation"], found["DateTime"]) == ("Canon", 1, "2001:02:03 04:05:06")
     assert found["FNumber"] == pytest.approx(2.8)
     assert found["ExposureTime"] == pytest.approx(0.02)
     assert found["crfnet:exposure"] == 0

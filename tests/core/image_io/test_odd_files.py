@@ -1,0 +1,86 @@
+"""Sound files that decoders often get wrong."""
+
+import io
+import struct
+
+import numpy as np
+import pytest
+from PIL import Image
+
+from crfnet.plates.exr import linear_header
+from crfnet_core.photograph.image_io import read_codes, read_metadata
+from tests.helpers.crafted_files import jpeg, tiff
+from tests.helpers.images import write_image
+
+
+@pytest.mark.parametrize("bits", [8, 16])
+def test_white_is_zero(tmp_path, bits):
+    codes = np.array([[0, 1], [2 ** (bits - 1), 2**bits - 1]], f"<u{bits // 8}")
+    (tmp_path / "a.tif").write_bytes(tiff(2, 2, samples=1, photometric=0, bits=bits, content=codes.tobytes()))
+    np.testing.assert_array_equal(read_codes(tmp_path / "a.tif").codes[..., 0], 2**bits - 1 - codes.astype(int))
+
+
+def test_channels_of_unknown_use_are_not_alpha(tmp_path):
+    codes = np.arange(20, dtype=np.uint8).reshape(2, 2, 5)
+    (tmp_path / "a.tif").write_bytes(tiff(2, 2, samples=5, content=codes.tobytes()))
+    values = read_codes(tmp_path / "a.tif")
+    assert values.alpha is None
+    np.testing.assert_array_equal(values.codes, codes[..., :3])
+
+
+@pytest.mark.parametrize("kinds", [(1, 0), (1, 1, 0), (0, 1)])
+def test_the_first_page_that_is_not_reduced_is_read(tmp_path, kinds):
+    pages = [Image.new("RGB", (8 + 8 * (kind == 0), 8), (9, 90, 200)) for kind in kinds]
+    for page, kind in zip(pages, kinds, strict=True):
+        page.encoderinfo = {"tiffinfo": {254: kind}}
+    pages[0].save(tmp_path / "a.tif", save_all=True, append_images=pages[1:], tiffinfo={254: kinds[0]})
+    assert read_codes(tmp_path / "a.tif").codes.shape == (8, 16, 3)
+    assert read_metadata(tmp_path / "a.tif").width == 16
+
+
+def test_planes_apart_in_one_long_strip(tmp_path):
+    codes = np.random.default_rng(0).integers(0, 256, (600, 16, 3), np.uint8)
+    path = write_image(tmp_path / "a.tif", codes, planarconfig="separate", compression="lzw", tiff__RowsPerStrip=600)
+    np.testing.assert_array_equal(read_codes(path).codes, codes)
+
+
+@pytest.mark.parametrize("masks", [(0xFF0000, 0xFF00, 0xFF), (0xFF000000, 0xFF0000, 0xFF00)])
+def test_masks_of_bmp(tmp_path, masks):
+    codes = np.arange(12, dtype=np.uint32).reshape(2, 2, 3) * 20
+    shifts = [(mask & -mask).bit_length() - 1 for mask in masks]
+    pixels = sum(codes[..., channel] << shift for channel, shift in enumerate(shifts))
+    header = struct.pack("<IiiHHIIiiII", 40, 2, -2, 1, 32, 3, 16, 0, 0, 0, 0) + struct.pack("<3I", *masks)
+    start = struct.pack("<2sIHHI", b"BM", 66 + 16, 0, 0, 66)
+    (tmp_path / "a.bmp").write_bytes(start + header + pixels.astype("<u4").tobytes())
+    np.testing.assert_array_equal(read_codes(tmp_path / "a.bmp").codes, codes)
+
+
+def test_stray_bytes_between_segments_of_a_jpeg(tmp_path):
+    whole, path = jpeg(tmp_path / "a.jpg"), tmp_path / "a.jpg"
+    expected = read_codes(path).codes
+    for stray in (b"\0\0", b"\0\1\2", b"\xff\0\7"):
+        path.write_bytes(whole.replace(b"\xff\xdb", stray + b"\xff\xdb", 1))
+        np.testing.assert_array_equal(read_codes(path).codes, expected)
+
+
+def test_a_later_jfif(tmp_path):
+    path = tmp_path / "a.jpg"
+    path.write_bytes(jpeg(path).replace(b"JFIF\0\1", b"JFIF\0\2", 1))
+    assert read_codes(path).metadata.has_jfif
+
+
+def test_names_that_are_not_utf8(tmp_path):
+    file, exif = io.BytesIO(), Image.Exif()
+    exif[0x010F], exif[0x0110] = "Voigtl_nder", "Model"
+    Image.new("RGB", (16, 16)).save(file, "JPEG", exif=exif)
+    (tmp_path / "a.jpg").write_bytes(file.getvalue().replace(b"l_n", b"l\xe4n"))
+    values = read_codes(tmp_path / "a.jpg")
+    assert (values.metadata.make, values.metadata.model) == ("Voigtl?nder", "Model")
+    header = linear_header(values.header, channels=3, depth="half", attributes={})
+    assert header.getattribute("Make") == "Voigtl?nder"
+    assert all(value.value.isprintable() for value in values.header.extra_attribs if isinstance(value.value, str))
+
+
+def test_lines_of_a_text_become_one(tmp_path):
+    path = write_image(tmp_path / "a.tif", np.zeros((4, 4, 3), np.uint8), Software="a\x1b[2J\nb\u202e")
+    assert read_metadata(path).software == "a?[2J b?"
