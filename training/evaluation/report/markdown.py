@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 from crfnet_core.files import atomic_write_text
-from training.evaluation import paper
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
-from training.evaluation.figures import ERRORS
-from training.evaluation.report import Report, ReportRow, value
+from training.evaluation.measure.figures import ERRORS
+from training.evaluation.report import paper
+from training.evaluation.report.document import Report, ReportRow, value
 
 
 @dataclass(frozen=True)
@@ -49,6 +50,9 @@ class Section:
     text: str
     tables: tuple[Listed | Crossed, ...]
 
+
+#: The most characters of a line of text.
+WIDTH = 120
 
 #: Figures that are shown with their interval, by the end of their names.
 WITH_INTERVAL = ("mean", "difference", "correlation")
@@ -165,10 +169,11 @@ def report_text(report: Report) -> str:
     """Return report.md."""
     settings = ", ".join(f"{name.replace('_', ' ')} {setting}" for name, setting in report.settings.items())
     models = ", ".join(f"{name} (`{sha256[:12]}`)" for name, sha256 in report.models.items())
-    parts = [INTRODUCTION, f"Models: {models}. Settings: {settings}.\n", *(f"- {note}\n" for note in report.notes)]
+    measured = fill(f"Models: {models}. Settings: {settings}.", WIDTH)
+    parts = [INTRODUCTION, measured + "\n", *(f"- {note}\n" for note in report.notes)]
     for section in SECTIONS:
         tables = [text for table in section.tables if (text := _table(report, table))]
-        parts += [f"## {section.title}\n", f"{section.text}\n", *tables] if tables else []
+        parts += [f"## {section.title}\n", fill(section.text, WIDTH) + "\n", *tables] if tables else []
     return "\n".join(parts)
 
 
@@ -185,14 +190,23 @@ def _table(report: Report, table: Listed | Crossed) -> str:
 
 
 def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
-    """Return a table with a row for each estimator that has the first figure."""
+    """Return a table with a row for each estimator that has the first figure; its head names what all rows share."""
     first = next(iter(table.figures.values()))
     rows = [row for row in rows if first in row and (not table.groups or row["group"] in table.groups)]
+    places = [f"{_name(row)}: {_counts(row)}" for row in rows]
+    is_one = len(set(places)) == 1
+    header = (
+        [places[0] if is_one else "estimator", *([] if is_one else ["photographs"]), *table.figures] if rows else []
+    )
     cells = [
-        [_name(row), row["estimator"], _counts(row), *(_cell(name, row.get(name)) for name in table.figures.values())]
-        for row in rows
+        [
+            row["estimator"],
+            *([] if is_one else [place]),
+            *(_cell(name, row.get(name)) for name in table.figures.values()),
+        ]
+        for row, place in zip(rows, places, strict=True)
     ]
-    return markdown_table(["", "estimator", "photographs", *table.figures], cells) if cells else ""
+    return markdown_table(header, cells) if cells else ""
 
 
 def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...]) -> str:
@@ -203,10 +217,10 @@ def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...])
     for row in rows:
         groups.setdefault(_name(row), {})[row["estimator"]] = row
     cells = [
-        [name, _counts(next(iter(group.values()))), *(_means(group.get(each), table) for each in estimators)]
+        [f"{name}: {_counts(next(iter(group.values())))}", *(_means(group.get(each), table) for each in estimators)]
         for name, group in groups.items()
     ]
-    return markdown_table(["", "photographs", *estimators], cells) if cells else ""
+    return markdown_table(["", *estimators], cells) if cells else ""
 
 
 def _means(row: ReportRow | None, table: Crossed) -> str:
@@ -221,7 +235,8 @@ def _name(row: ReportRow) -> str:
 
 def _counts(row: ReportRow) -> str:
     """Return the number of photographs, and of bodies."""
-    return f"{row['photographs']} of {row['bodies']}" if "bodies" in row else str(row["photographs"])
+    bodies = f" of {row['bodies']} bodies" if "bodies" in row else ""
+    return f"{row['photographs']} photographs{bodies}"
 
 
 def _cell(name: str, figure: Any) -> str:

@@ -8,10 +8,11 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
-from training.evaluation.bootstrap import Resampling
-from training.evaluation.real import POOLED
-from training.evaluation.report import ReportRow
-from training.evaluation.summary import (
+from training.evaluation.measure.real import POOLED
+from training.evaluation.measure.table import Cases
+from training.evaluation.report.bootstrap import Resampling
+from training.evaluation.report.document import ReportRow
+from training.evaluation.report.summary import (
     Figures,
     change_figures,
     difference_figures,
@@ -24,7 +25,6 @@ from training.evaluation.summary import (
     verdict_figures,
     weight_figures,
 )
-from training.evaluation.table import Cases
 
 #: Group of bodies, by how many photographs of each were estimated together -> the least number of photographs.
 POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
