@@ -92,7 +92,7 @@ def test_the_report_shows_every_table(stressed):
         assert title in text
     assert "## P4" not in text
     mean, low, high = stressed[1].row("P0", "fixed_model")["E_est mean"]
-    assert "| P0: 15 photographs | E_est | median |" in text
+    assert "| P0: 15 photographs | E_est | ratio |" in text
     assert f"| fixed_model | {mean:.2f} [{low:.2f}, {high:.2f}] |" in text
     assert "| noise variance 4: 3 photographs |" in text
 

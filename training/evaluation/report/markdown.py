@@ -36,10 +36,14 @@ class Listed:
 
 @dataclass(frozen=True)
 class Crossed:
-    """A table with a row for each group, and a column for each estimator whose cells hold some figures."""
+    """A table with a row for each group, and a column for each estimator whose cells hold some figures.
+
+    With `has_ways` every way of asking a model has a column.
+    """
 
     tables: tuple[str, ...]
     figures: tuple[str, ...] = ("E_est mean", "shape mean")
+    has_ways: bool = False
 
 
 @dataclass(frozen=True)
@@ -55,12 +59,13 @@ class Section:
 WIDTH = 120
 
 #: Figures that are shown with their interval, by the end of their names.
-WITH_INTERVAL = ("mean", "difference", "correlation")
+WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "correlation")
+
+#: Estimators that report.json has and these tables have not.
+HIDDEN = ("oracle: EMoR, 2 components", "oracle: EMoR, 5 components")
 
 ERROR_FIGURES = {
     "E_est": "E_est mean",
-    "median": "E_est median",
-    "p90": "E_est p90",
     "ratio": "E_est ratio",
     "wins": "E_est win rate",
     "E_lin": "E_lin mean",
@@ -86,10 +91,10 @@ FOLDERS = ("real", "real_bodies", "both")
 INTRODUCTION = """# How accurate the models are
 
 E_est, E_lin (x 1e-2) and the shape error in stops are defined in `docs/METHOD.md` (Eq. 32 to 34), the protocols in
-`training/README.md`. "p90" is the 90th percentile, "ratio" the mean divided by that of gamma 2.2 on the same
-photographs, "wins" the fraction of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals
-over scenes and responses together, on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group
-give E_est, shape. The paper is Li & Peers, 2017, on photographs of its own.
+`training/README.md`. "Ratio" is the mean divided by the mean of gamma 2.2 on the same photographs, "wins" the fraction
+of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals over scenes and responses together,
+on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group give E_est, shape. The
+paper is Li & Peers, 2017, on photographs of its own.
 """
 
 SECTIONS = (
@@ -129,19 +134,19 @@ SECTIONS = (
     Section(
         "P4: differences",
         "The first model, as users ask it, less each other row.",
-        (Listed(("P4 both", "P4 both, with caution"), {error: f"{error} difference" for error in ERRORS}),),
+        (Listed(("P4 both",), {error: f"{error} difference" for error in ERRORS}),),
     ),
     Section(
         "P4: several photographs of one body",
         "Up to four photographs estimated together, and the same photographs one by one, with caution included.",
-        (Listed(("P4 both, pooled",), MEANS),),
+        (Listed(("P4 both, pooled",), MEANS, ("4 photographs",)),),
     ),
     Section(
         "P4: verdicts and weights",
-        'Accepted are the verdicts "good" and "usable"; far off is an E_est above 3 or a shape error above 0.4 stop.'
-        " Then the correlation over bodies of the true and the estimated EMoR weights.",
+        'Refused is the verdict "do not trust"; far off is an accepted answer with an E_est above 3'
+        " or a shape error above 0.4 stop. Weights: the correlation over bodies of true and estimated EMoR weights.",
         (
-            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("accepted", "refused", "far off")}),
+            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("refused", "far off")}),
             Listed(("P4 both",), {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}),
         ),
     ),
@@ -155,7 +160,7 @@ SECTIONS = (
         "P6: pictures that no response explains",
         "Accepted, of all and by kind. Files name no camera; renders and messengers' copies have the metadata that"
         " their programs write, unless a column excludes it.",
-        (Crossed(("P6", "P6 by kind"), ("accepted",)),),
+        (Crossed(("P6", "P6 by kind"), ("accepted",), has_ways=True),),
     ),
 )
 
@@ -190,28 +195,22 @@ def _table(report: Report, table: Listed | Crossed) -> str:
 
 
 def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
-    """Return a table with a row for each estimator that has the first figure; its head names what all rows share."""
+    """Return tables, one for each group, with a row for each estimator that has the first figure."""
     first = next(iter(table.figures.values()))
-    rows = [row for row in rows if first in row and (not table.groups or row["group"] in table.groups)]
-    places = [f"{_name(row)}: {_counts(row)}" for row in rows]
-    is_one = len(set(places)) == 1
-    header = (
-        [places[0] if is_one else "estimator", *([] if is_one else ["photographs"]), *table.figures] if rows else []
-    )
-    cells = [
-        [
-            row["estimator"],
-            *([] if is_one else [place]),
-            *(_cell(name, row.get(name)) for name in table.figures.values()),
-        ]
-        for row, place in zip(rows, places, strict=True)
-    ]
-    return markdown_table(header, cells) if cells else ""
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        if first in row and row["estimator"] not in HIDDEN and (not table.groups or row["group"] in table.groups):
+            cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
+            groups.setdefault(f"{_name(row)}: {_counts(row)}", []).append(cells)
+    return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())
 
 
 def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...]) -> str:
-    """Return a table with a row for each group and a column for each model, way of asking it, and shown baseline."""
-    rows = [row for row in rows if row["estimator"].startswith(models) or row["estimator"] in SHOWN_BASELINES]
+    """Return a table with a row for each group and a column for each model and shown baseline."""
+    shown = {*models, *SHOWN_BASELINES}
+    rows = [
+        row for row in rows if row["estimator"] in shown or (table.has_ways and row["estimator"].startswith(models))
+    ]
     estimators = list(dict.fromkeys(row["estimator"] for row in rows))
     groups: dict[str, dict[str, ReportRow]] = {}
     for row in rows:
