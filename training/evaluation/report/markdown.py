@@ -82,8 +82,8 @@ STATED = {
     "gain": "gain",
 }
 
-#: The baselines that tables by group show.
-SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES)
+#: The estimators that tables by group show beside the models.
+SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
 
 #: The folders of real photographs.
 FOLDERS = ("real", "real_bodies", "both")
