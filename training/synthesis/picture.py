@@ -1,4 +1,4 @@
-"""What a camera or an editor does to an encoded picture: noise reduction, colour, sharpening, JPEG, scaling.
+"""What a camera or an editor does to an encoded picture: noise reduction, color, sharpening, JPEG, scaling.
 
 Pictures are three planes, red, green and blue, each float32 (N, S, S) in [0, 1], of N frames.
 """
@@ -28,7 +28,7 @@ def _in_rows(table: Table) -> Float64Array:
     return rows.ravel()
 
 
-#: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
+#: The tables of quantization of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
 STANDARD_TABLES = tuple(_in_rows(table) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA))
 
 
@@ -52,7 +52,7 @@ class Jpeg:
 
     @property
     def tables(self) -> list[list[int]]:
-        """The two tables of quantisation, 64 integers each, row by row."""
+        """The two tables of quantization, 64 integers each, row by row."""
         bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in STANDARD_TABLES]
         return [np.clip(np.rint(table * self.scale), 1, 255).astype(int).tolist() for table in bent]
 

@@ -20,7 +20,7 @@ GAMMA = PaperFigures(3.132, 5.821)
 #: The fractions of photographs on which the network wins against gamma 2.2.
 WIN_RATE = PaperFigures(0.78, 0.86)
 
-#: Table 2 and its neighbours: by the name of our condition.
+#: Table 2 and its neighbors: by the name of our condition.
 STRESS = {
     "clean": OVERALL,
     "exposure 0.6": PaperFigures(1.621, 2.551),
