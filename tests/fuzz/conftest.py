@@ -1,11 +1,12 @@
-"""Fuzzing: every test tries damaged files for a while, from seed 0 on, and names the seeds that found something.
+"""Fuzzing: every test tries damaged files for a while, from a random seed on, and names the seeds of failures.
 
-`CRFNET_FUZZ_SECONDS` says how long each test goes on; `make fuzz` gives them an hour together. `CRFNET_FUZZ_SEED` is
-another seed to begin with, to try one again. A single case that hangs ends everything with a traceback.
+`CRFNET_FUZZ_SECONDS` is the time of each test; `make fuzz` gives them an hour together. The first seed is printed at
+the end; `CRFNET_FUZZ_SEED` sets it, to repeat a failure. A single case that hangs ends everything with a traceback.
 """
 
 import faulthandler
 import os
+import secrets
 import sys
 import time
 import traceback
@@ -18,12 +19,17 @@ import pytest
 from crfnet_core.errors import CRFNetError
 
 #: The first seed; seconds of each test, and of a single case.
-FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED", "0"))
-SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "6"))
+FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED") or secrets.randbelow(2**31))
+SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "5"))
 MOST_SECONDS = 20.0
 
 #: Bytes of memory beyond those at the start.
 MOST_MEMORY = 2 * 2**30
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Print the first seed."""
+    terminalreporter.write_line(f"fuzzing began with seed {FIRST_SEED}: CRFNET_FUZZ_SEED={FIRST_SEED} repeats it")
 
 
 @pytest.fixture

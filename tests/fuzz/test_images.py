@@ -14,7 +14,10 @@ from tests.helpers.mutations import mutated
 SEEDS = {
     "plain.jpg": (8, {}),
     "progressive.jpg": (8, {"jpeg__progressive": 1}),
-    "exif.jpg": (8, {"Make": "A", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "ImageDescription": "x"}),
+    "exif.jpg": (
+        8,
+        {"Make": "MAKER", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "ImageDescription": "x"},
+    ),
     "gray.jpg": (8, {}),
     "8.png": (8, {"Comment": "text"}),
     "16.png": (16, {}),
@@ -52,7 +55,8 @@ def seeds(tmp_path_factory, root):
     write_image(folder / "ultra_hdr.jpg", ultra, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
     for path in (root / "tests" / "data" / "heif").glob("*.[ah][ve]i[fc]"):
         shutil.copy(path, folder)
-    return {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+    content = {path.name: path.read_bytes() for path in sorted(folder.iterdir())}
+    return content | {"latin1.jpg": content["exif.jpg"].replace(b"MAKER", b"M\xe4\xff\x80R")}
 
 
 def read_encoded(path):

@@ -31,7 +31,7 @@ def random_lut(generator, *, most=4096):
 
 
 def assert_opencolorio_agrees(path, lut):
-    """The two agree on colours within and beyond the domain, but for float32's rounding of the place in the table."""
+    """The two agree on colors within and beyond the domain, but for float32's rounding of the place in the table."""
     OCIO.ClearAllCaches()
     processor = OCIO.Config.CreateRaw().getProcessor(OCIO.FileTransform(src=str(path)))
     low, high = lut.domain

@@ -103,7 +103,7 @@ def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
 
 
 def fold_normalization(network: CRFNet) -> CRFNet:
-    """Return the network itself, ready to infer, with each normalisation folded into the convolution before it."""
+    """Return the network itself, ready to infer, with each normalization folded into the convolution before it."""
     network.eval()
     for layers in _sequences(network):
         for index, layer in enumerate(layers):
@@ -116,7 +116,7 @@ def fold_normalization(network: CRFNet) -> CRFNet:
 def unfold_normalization(network: CRFNet, windows: Tensor) -> None:
     """Give a folded network its normalizations back, in place, without changing its outputs.
 
-    Folding loses the mean and the variance that a normalisation needs in training; those of `windows` take their place.
+    Folding loses the mean and the variance that a normalization needs in training; those of `windows` take their place.
 
     Parameters
     ----------
@@ -136,7 +136,7 @@ def unfold_normalization(network: CRFNet, windows: Tensor) -> None:
 
 
 def _take_statistics(layer: nn.Module, inputs: tuple[Tensor]) -> None:
-    """Give a normalisation the statistics of its input, and a scale and a bias that undo them, its own bias aside."""
+    """Give a normalization the statistics of its input, and a scale and a bias that undo them, its own bias aside."""
     variance, mean = torch.var_mean(inputs[0], dim=(0, 2, 3), correction=0)
     layer.running_mean.copy_(mean)
     layer.running_var.copy_(variance)

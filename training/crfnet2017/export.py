@@ -60,7 +60,7 @@ class ShippedCRFNet(nn.Module):
 
 
 def load_network(run: Path) -> WindowAnswers:
-    """Return the best network of a run, ready to infer, with its normalisations folded.
+    """Return the best network of a run, ready to infer, with its normalizations folded.
 
     Raises
     ------

@@ -88,6 +88,6 @@ class CRFNet(nn.Module):
 
 
 def _normalized(channels: int, outputs: int, size: int, stride: int) -> tuple[nn.Module, nn.Module]:
-    """Return a convolution that keeps the side at stride 1, and the normalisation of its outputs."""
+    """Return a convolution that keeps the side at stride 1, and the normalization of its outputs."""
     convolution = nn.Conv2d(channels, outputs, size, stride=stride, padding=size // 2, bias=False)
     return convolution, nn.BatchNorm2d(outputs)

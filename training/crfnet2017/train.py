@@ -29,7 +29,7 @@ from training.provenance import data_record, record_run
 #: Validation windows, the same for every run on a pack.
 VALIDATION_WINDOWS = 2000
 
-#: Training windows that give the normalisations of a model folder their statistics back.
+#: Training windows that give the normalizations of a model folder their statistics back.
 STATISTICS_WINDOWS = 32
 
 

@@ -77,7 +77,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
     """Return a developed camera raw file, uint16 (H, W, 3), linear, Rec.709 primaries, the sensor's white at 65535.
 
     The white balance is the camera's, the demosaicing AHD. Rows and columns are as stored, whatever the orientation.
-    Negative values, which are colours outside the primaries, become 0.
+    Negative values, which are colors outside the primaries, become 0.
 
     Raises
     ------

@@ -10,9 +10,11 @@ from pathlib import Path
 from crfnet_core.errors import CRFNetError
 from training.data.real.photographs import RealPhotograph, real_photographs
 from training.data.response_bank import make_bank
-from training.evaluation import sums, unusual
 from training.evaluation.baselines import GAMMA
-from training.evaluation.markdown import write_markdown
+from training.evaluation.measure import unusual
+from training.evaluation.measure.real import POOLED, measure_pooled, measure_real, pooled_groups, ways_of
+from training.evaluation.measure.simulated import Job, measure_simulated
+from training.evaluation.measure.table import TABLE_FILE, Cases, Table, code_digest
 from training.evaluation.models import Model
 from training.evaluation.plan import (
     CLEAN,
@@ -26,11 +28,10 @@ from training.evaluation.plan import (
     clean_photographs,
     stress_photographs,
 )
-from training.evaluation.real import POOLED, measure_pooled, measure_real, pooled_groups, ways_of
-from training.evaluation.report import Report, ReportRow, write_report
-from training.evaluation.simulated import Job, measure_simulated
-from training.evaluation.summary import rounded
-from training.evaluation.table import TABLE_FILE, Cases, Table, code_digest
+from training.evaluation.report import sums
+from training.evaluation.report.document import Report, ReportRow, write_report
+from training.evaluation.report.markdown import write_markdown
+from training.evaluation.report.summary import rounded
 from training.evaluation.test_sets import TestSet
 from training.synthesis.unusual import UnusualKind
 

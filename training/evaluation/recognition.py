@@ -26,7 +26,7 @@ from crfnet_core.posterior import Verdict
 from crfnet_core.types import Float32Array, Uint8Array
 from training.data.real.photographs import real_photographs
 from training.data.scenes import Scene, read_scenes
-from training.evaluation.real import read_real_photo
+from training.evaluation.measure.real import read_real_photo
 from training.synthesis.unusual.encodings import saturated
 
 #: Log footage: stops of the scene's geometric mean above middle gray, stops of the sensor's clipping above it, the

@@ -15,9 +15,9 @@ from crfnet_core.files import atomic_write_text
 from crfnet_core.network import ModelConfig
 from crfnet_core.statistics import LENGTH
 from training.data.scenes import VALIDATION_SCENES
-from training.evaluation import paper
-from training.evaluation.card import accuracy, accuracy_table, bodies_table
-from training.evaluation.report import Report, read_report
+from training.evaluation.report import paper
+from training.evaluation.report.card import accuracy, accuracy_table, bodies_table
+from training.evaluation.report.document import Report, read_report
 
 #: The introductions of the cards, one for each input of networks; the names in braces are filled in.
 TEMPLATES = Path(__file__).with_name("model_card_templates")

@@ -31,5 +31,5 @@ def conjugate_gradients(matrix: Tensor, right: Tensor, *, steps: int) -> Tensor:
 
 
 def _safe_ratio(part: Tensor, whole: Tensor, chosen: Tensor) -> Tensor:
-    """Return part / whole where chosen, else 0; adding a tiny number would not do: graph optimisers drop these."""
+    """Return part / whole where chosen, else 0; adding a tiny number would not do: graph optimizers drop these."""
     return torch.where(chosen, part, 0) / torch.where(chosen, whole, 1)

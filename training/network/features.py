@@ -113,6 +113,6 @@ def candidate_features(parts: dict[str, Tensor]) -> Tensor:
 
 
 def _second_differences() -> Tensor:
-    """Return D' D, shape (EQUATION_LEVELS, EQUATION_LEVELS), for the second differences D of neighbouring levels."""
+    """Return D' D, shape (EQUATION_LEVELS, EQUATION_LEVELS), for the second differences D of neighboring levels."""
     differences = torch.diff(torch.eye(EQUATION_LEVELS), n=2, dim=0)
     return differences.T @ differences

@@ -17,7 +17,7 @@ from training.network.features import (
     Features,
 )
 
-#: Standard deviations to which normalised features are clipped: a photograph may be unlike all training photographs.
+#: Standard deviations to which normalized features are clipped: a photograph may be unlike all training photographs.
 LARGEST_FEATURE = 6
 
 #: Units of the first EMoR weights, about their standard deviations over the training responses.
@@ -54,7 +54,7 @@ KINDS = ("levels", "edges", "equations", "candidates")
 
 
 class KindLayer(nn.Module):
-    """One kind of features to a vector: normalisation, kind dropout in training, and a dense layer.
+    """One kind of features to a vector: normalization, kind dropout in training, and a dense layer.
 
     Parameters
     ----------

@@ -1,4 +1,4 @@
-"""Augmentation: other light, colours and compositions for the linear windows of the few scenes that there are."""
+"""Augmentation: other light, colors and compositions for the linear windows of the few scenes that there are."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
 from training.data.scenes import LUMINANCE
 
-#: Fractions of photographs: without colour, under an illumination gradient, with another large-scale contrast, and
+#: Fractions of photographs: without color, under an illumination gradient, with another large-scale contrast, and
 #: with a power law on the irradiance.
 GRAY, GRADIENT, CONTRAST, POWER = 0.25, 0.3, 0.2, 0.3
 
@@ -21,7 +21,7 @@ TEXTURE = (0.05, 0.7)
 def recolor(light: Float32Array, rng: np.random.Generator, *, cast: float = 0.4) -> Float32Array:
     """Return windows (N, S, S, 3) rotated and mirrored alike, under another illuminant and with other primaries.
 
-    A fraction `GRAY` of them loses all colour instead. The illuminant's gains on the channels have a standard deviation
+    A fraction `GRAY` of them loses all color instead. The illuminant's gains on the channels have a standard deviation
     of `cast` stops.
     """
     turned = np.rot90(light, int(rng.integers(4)), axes=(1, 2))
@@ -84,8 +84,8 @@ def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
 def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[float, float]) -> Float32Array:
     """Return windows (N, S, S, 3) with weaker texture, as of walls and skies, and the same edges.
 
-    The neighbourhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
-    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighbourhood is
+    The neighborhood of a sample reaches as far as a random distance in `reach`, in units of a 227th of the side. A
+    gain takes the variation of the logarithm of the luminance out where its standard deviation in the neighborhood is
     below a random one (the local filter of Lee, 1980); at edges it is 1, so they mix light as before.
     """
     size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1

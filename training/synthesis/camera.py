@@ -25,7 +25,7 @@ TARGET_BRIGHTNESS = 0.45
 #: Factors on the automatic exposure of a test photograph (CRF-net paper, Sec. 3.3: s_crf +- 0.4).
 EXPOSURE_FACTORS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
-#: Rows captured at a time where no step looks at neighbouring samples: the largest photographs then fit into memory.
+#: Rows captured at a time where no step looks at neighboring samples: the largest photographs then fit into memory.
 ROWS_AT_A_TIME = 512
 
 
@@ -74,10 +74,10 @@ class Capture:
 
     @property
     def splits_into_rows(self) -> bool:
-        """Whether rows captured one after the other equal the whole: no neighbours, and one noise at most."""
-        uses_neighbours = self.blur or self.sharpening or self.jpeg_quality is not None
+        """Whether rows captured one after the other equal the whole: no neighbors, and one noise at most."""
+        uses_neighbors = self.blur or self.sharpening or self.jpeg_quality is not None
         noises = bool(self.shot_noise or self.read_noise) + bool(self.grain)
-        return not uses_neighbours and noises < 2
+        return not uses_neighbors and noises < 2
 
 
 def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:

@@ -1,6 +1,6 @@
 """A camera that develops: from exposed light to the file, with what real files went through.
 
-In this order: lens, sensor with mosaic, white balance and colour matrix (`sensor`), local tone mapping, the response,
+In this order: lens, sensor with mosaic, white balance and color matrix (`sensor`), local tone mapping, the response,
 noise reduction, chroma and sharpening of the encoded picture, JPEG (`picture`), then scaling with another JPEG, or
 point sampling of a frame larger than the window. The label of a photograph is the response, the tone curve alone.
 """
@@ -92,7 +92,7 @@ class Development:
     glare : float
         Part of the frame's mean irradiance that the lens spreads over all of it.
     sensor : Sensor
-        Noise, clipping, mosaic, colours.
+        Noise, clipping, mosaic, colors.
     tone_mapping : ToneMapping, optional
         Local tone mapping.
     keeps_hue : bool
@@ -134,7 +134,7 @@ def develop(
     ----------
     irradiance : ndarray, float32, shape (N, S, S, 3)
         Exposed light of frames, of S >= 227 samples along each side; not changed. Irradiance above 1 clips. Where all
-        channels are equal the photograph is gray too: its noise has no colour.
+        channels are equal the photograph is gray too: its noise has no color.
     curve : ndarray, shape (1024,)
         The response.
     development : Development

@@ -40,7 +40,7 @@ REACH = ((2, 8), (2, 12))
 #: Fraction of the photographs of cameras that develop in which parts are out of focus.
 DEFOCUSED = 0.35
 
-#: Fraction of the plain captures of a scene without colour whose file has none either: its channels are equal, also
+#: Fraction of the plain captures of a scene without color whose file has none either: its channels are equal, also
 #: where noise would have made them differ. Cameras that develop always write such files.
 ONE_CHANNEL = 0.7
 

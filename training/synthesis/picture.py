@@ -1,4 +1,4 @@
-"""What a camera or an editor does to an encoded picture: noise reduction, colour, sharpening, JPEG, scaling.
+"""What a camera or an editor does to an encoded picture: noise reduction, color, sharpening, JPEG, scaling.
 
 Pictures are three planes, red, green and blue, each float32 (N, S, S) in [0, 1], of N frames.
 """
@@ -44,7 +44,7 @@ class Jpeg:
 
     @property
     def tables(self) -> list[list[int]]:
-        """The two tables of quantisation, 64 integers each, row by row."""
+        """The two tables of quantization, 64 integers each, row by row."""
         bent = [table[0] * (table / table[0]) ** (1 - self.flatness) for table in STANDARD_TABLES]
         return [np.clip(np.rint(table * self.scale), 1, 255).astype(int).tolist() for table in bent]
 

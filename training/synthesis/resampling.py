@@ -38,7 +38,7 @@ class AffineResampling:
     matrix : ndarray, shape (2, 2)
         From samples to pixels of the scene.
     center : ndarray, shape (2,)
-        Row and column of the scene at the centre of the window.
+        Row and column of the scene at the center of the window.
     side : int
         Samples along each side.
     """
@@ -84,7 +84,7 @@ class AffineResampling:
                 light = gaussian_filter1d(light, PREFILTER * self.scale, axis=axis, truncate=2)
         start = self.center - first - self.matrix @ np.full(2, self.side / 2)
         side = (self.side - 1) // step + 1
-        (a, b), (c, d) = (self.matrix * step)[::-1, ::-1]  # Pillow has columns before rows, and pixel centres at 0.5
+        (a, b), (c, d) = (self.matrix * step)[::-1, ::-1]  # Pillow has columns before rows, and pixel centers at 0.5
         x, y = start[::-1] + 0.5 - (self.matrix * step)[::-1].sum(axis=1) / 2
         affine = (Image.Transform.AFFINE, (a, b, x, c, d, y), Image.Resampling.BILINEAR)
         channels = [Image.fromarray(light[:, :, k]).transform((side, side), *affine) for k in range(3)]

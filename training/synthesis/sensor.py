@@ -1,4 +1,4 @@
-"""The sensor of a camera: noise, clipping of its channels, mosaic and demosaicing, and the colour matrix.
+"""The sensor of a camera: noise, clipping of its channels, mosaic and demosaicing, and the color matrix.
 
 Pictures are three planes, red, green and blue, each float32 (N, S, S), of N frames.
 """
@@ -23,7 +23,7 @@ NOISE_SAMPLES = 1 << 22
 
 
 class Demosaicing(StrEnum):
-    """How a colour is found where the sensor did not measure it: from its neighbours, or with the other channels."""
+    """How a color is found where the sensor did not measure it: from its neighbors, or with the other channels."""
 
     BILINEAR = "bilinear"
     GRADIENT_CORRECTED = "gradient-corrected"
@@ -48,10 +48,10 @@ class Sensor:
     crosstalk : float
         Part of each of the sensor's channels, in [0, 1), that is the mean of all three; the matrix takes it out again.
     saturation : float
-        Factor of the matrix on the distance of a colour from its luminance. Above 1 it makes saturated colours
+        Factor of the matrix on the distance of a color from its luminance. Above 1 it makes saturated colors
         negative, and these are clipped.
     demosaicing : Demosaicing, optional
-        How the mosaic is filled; None for a sensor that measures all colours everywhere.
+        How the mosaic is filled; None for a sensor that measures all colors everywhere.
     """
 
     shot_noise: float = 0.0
@@ -86,7 +86,7 @@ class Sensor:
 
 
 def mixed(planes: Planes, matrix: Float64Array) -> Planes:
-    """Return planes with the colours matrix @ (red, green, blue); new ones."""
+    """Return planes with the colors matrix @ (red, green, blue); new ones."""
     if np.allclose(matrix, np.eye(3)):
         return [plane.copy() for plane in planes]
     rows = matrix.astype(np.float32)

@@ -41,9 +41,9 @@ def test_kinds_have_their_own_centers_and_spread(bodies):
     found = InCameraResponses.of(bodies)
     assert set(found.centers) == set(KINDS)
     drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in KINDS}
-    centres = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
-    assert centres == sorted(centres)
-    assert centres == pytest.approx([0.36, 0.42, 0.48], abs=0.02)
+    centers = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
+    assert centers == sorted(centers)
+    assert centers == pytest.approx([0.36, 0.42, 0.48], abs=0.02)
     assert 0.003 < drawn["phone"].std() < 0.04
 
 

@@ -29,10 +29,10 @@ def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
 
 @pytest.mark.parametrize("camera", ["one", "two"])
 def test_raw_colors_are_the_scene_in_rec709(tmp_path, out, camera):
-    colours = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
-    scene = chart(colours)
-    import_scene(write_dng(tmp_path / "colours.dng", scene, camera=camera), out)
-    means = swatch_means(read_image(out / "colours.exr"), SWATCH)
+    colors = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
+    scene = chart(colors)
+    import_scene(write_dng(tmp_path / "colors.dng", scene, camera=camera), out)
+    means = swatch_means(read_image(out / "colors.exr"), SWATCH)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
 
 

@@ -10,7 +10,7 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.network import ModelConfig
 from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, Settings
-from training.evaluation.report import write_report
+from training.evaluation.report.document import write_report
 from training.evaluation.test_sets import bundled_test_set
 from training.export import model_card
 

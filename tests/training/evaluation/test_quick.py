@@ -9,13 +9,13 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
-from training.evaluation import simulated
 from training.evaluation.__main__ import main, parsed
+from training.evaluation.measure import simulated
+from training.evaluation.measure.simulated import Job
 from training.evaluation.models import Model
 from training.evaluation.plan import CLEAN, Condition, Query
 from training.evaluation.protocols import Evaluation, Settings
-from training.evaluation.report import read_report
-from training.evaluation.simulated import Job
+from training.evaluation.report.document import read_report
 from training.evaluation.test_sets import bundled_test_set
 
 #: Mean figures of `python -m training.evaluation --quick --protocol p0 --photographs 10`, by the head of the packaged
@@ -92,8 +92,10 @@ def test_the_report_shows_every_table(stressed):
         assert title in text
     assert "## P4" not in text
     mean, low, high = stressed[1].row("P0", "fixed_model")["E_est mean"]
-    assert f"| P0 | fixed_model | 15 | {mean:.2f} [{low:.2f}, {high:.2f}] |" in text
-    assert "| noise variance 4 | 3 |" in text
+    assert "| P0: 15 photographs | E_est | ratio |" in text
+    assert f"| fixed_model | {mean:.2f} [{low:.2f}, {high:.2f}] |" in text
+    (line,) = (line for line in text.splitlines() if line.startswith("| noise variance 4: 3 photographs |"))
+    assert line.endswith("| 6.07, 3.78 |")  # the paper
 
 
 def test_an_interrupted_evaluation_goes_on_and_ends_the_same(stressed, fixed_model, tmp_path, monkeypatch):

@@ -17,10 +17,16 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from training.data.real.photographs import real_photographs
 from training.data.response_bank import COUNTS
-from training.evaluation.card import accuracy, bodies_table
+from training.evaluation.measure.real import (
+    bank_without_fold,
+    mean_of_other_bodies,
+    pooled_groups,
+    ways_of,
+    without_exif,
+)
 from training.evaluation.models import Model
 from training.evaluation.protocols import Evaluation, Settings
-from training.evaluation.real import bank_without_fold, mean_of_other_bodies, pooled_groups, ways_of, without_exif
+from training.evaluation.report.card import accuracy, bodies_table
 from training.evaluation.test_sets import bundled_test_set
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -206,7 +212,9 @@ def test_model_json_gets_the_figures_of_every_set(measured_once):
 
 def test_real_photographs_are_measured_once(model, tmp_path, data, monkeypatch):
     report = measured(model, tmp_path / "out", data)
-    monkeypatch.setattr("training.evaluation.real.read_photo", lambda path: pytest.fail(f"{path} was read again"))
+    monkeypatch.setattr(
+        "training.evaluation.measure.real.read_photo", lambda path: pytest.fail(f"{path} was read again")
+    )
     assert measured(model, tmp_path / "out", data) == report
 
 

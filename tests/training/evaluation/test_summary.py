@@ -6,8 +6,9 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.response.metrics import peak_signal_to_noise
-from training.evaluation.bootstrap import Resampling
-from training.evaluation.summary import (
+from training.evaluation.measure.table import Cases
+from training.evaluation.report.bootstrap import Resampling
+from training.evaluation.report.summary import (
     difference_figures,
     error_figures,
     of_scenes,
@@ -16,7 +17,6 @@ from training.evaluation.summary import (
     verdict_figures,
     weight_figures,
 )
-from training.evaluation.table import Cases
 
 
 @pytest.fixture

@@ -9,8 +9,8 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
-from training.evaluation.figures import curve_figures, fitted_weights
-from training.evaluation.table import Cases, Table, code_digest
+from training.evaluation.measure.figures import curve_figures, fitted_weights
+from training.evaluation.measure.table import Cases, Table, code_digest
 
 SETTINGS = {"seed": 1, "test_set": "abc"}
 

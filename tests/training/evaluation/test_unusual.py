@@ -7,10 +7,10 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.posterior import Verdict
+from training.evaluation.measure.table import Cases, Table
+from training.evaluation.measure.unusual import WRITTEN, label, measure_unusual, unusual_photographs, ways_of
 from training.evaluation.models import Model
-from training.evaluation.sums import unusual_rows
-from training.evaluation.table import Cases, Table
-from training.evaluation.unusual import WRITTEN, label, measure_unusual, unusual_photographs, ways_of
+from training.evaluation.report.sums import unusual_rows
 from training.synthesis.unusual import UnusualKind
 
 
@@ -48,9 +48,9 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
 
     def estimate(photo, *, network, device):
         asked.append((photo.metadata, device))
-        return SimpleNamespace(verdict=Verdict.GOOD if "solarised" in str(photo.path) else Verdict.DO_NOT_TRUST)
+        return SimpleNamespace(verdict=Verdict.GOOD if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
-    monkeypatch.setattr("training.evaluation.unusual.estimate_response", estimate)
+    monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)
     kinds, scenes = (UnusualKind.SOLARIZED, UnusualKind.MESSENGER), [File(scene, "a"), File(scene, "b")]
     model, table = Model.find(str(fixed_model)), Table(tmp_path / "table", {}, "c")
     measure_unusual(scenes, [model], table, kinds=kinds)

@@ -15,7 +15,7 @@ CURVE = np.linspace(0, 1, 1024) ** 0.45
 
 @pytest.fixture
 def light():
-    """Exposed light of two frames of 454 x 454 samples, in colour."""
+    """Exposed light of two frames of 454 x 454 samples, in color."""
     rng, (y, x) = np.random.default_rng(5), np.mgrid[:454, :454] / 150
     frame = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.1 * rng.standard_normal((454, 454)))[:, :, None] * [0.3, 0.2, 0.15]
     return np.stack([frame, frame[:, ::-1]]).astype(np.float32)

@@ -66,7 +66,7 @@ def test_most_photographs_of_gray_scenes_have_equal_channels_also_with_noise(sou
 
 
 def test_a_photograph_shows_scenes_of_its_fold_only(scene):
-    """Scenes of one colour each, by fold; the augmentation keeps which is the brightest channel as a rule."""
+    """Scenes of one color each, by fold; the augmentation keeps which is the brightest channel as a rule."""
     colors = np.eye(3, dtype=np.float32) * 0.9 + 0.1
     scenes = [Scene(str(n), scene.pixels[:, :, :1] * colors[n % FOLDS], False) for n in range(2 * FOLDS)]
     sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_fraction=0, plain_fraction=1),)

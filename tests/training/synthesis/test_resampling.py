@@ -9,7 +9,7 @@ from training.synthesis.resampling import AffineResampling
 
 @pytest.fixture
 def scene():
-    """A smooth ramp along rows, with columns of another colour."""
+    """A smooth ramp along rows, with columns of another color."""
     y, x = np.mgrid[:300, :500].astype(np.float32)
     return Scene("made", np.stack([1 + y, 1 + x, 2 + np.sin(y / 9) + np.cos(x / 9)], axis=-1), False)
 

@@ -5,7 +5,7 @@ encodings        log, near-linear and limited range, messengers; the ordinary pi
 tone_mapping     local and global operators on high-dynamic-range light
 view_transforms  Blender's Filmic and AgX
 film_scan        negatives with grain and dust
-filters          artistic filters, solarisation, palettes, false colour
+filters          artistic filters, solarization, palettes, false color
 graphics         screenshots and drawings
 kinds            the list of kinds, each with its reason; windows and whole frames of a kind
 """

@@ -24,7 +24,7 @@ SRGB = srgb_encode(IRRADIANCE)
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
 ROLL_OFF, CONTRAST = (1.0, 3.5), (0.4, 1.0)
 
-#: Stops that log footage is exposed above light whose white is 1, and the part of its colour that wide primaries
+#: Stops that log footage is exposed above light whose white is 1, and the part of its color that wide primaries
 #: take away.
 LOG_STOPS, WIDE_GAMUT = (-1.0, 2.5), (0.05, 0.3)
 

@@ -1,4 +1,4 @@
-"""Pictures of a camera changed beyond recognition: artistic filters, solarisation, palettes, false colour."""
+"""Pictures of a camera changed beyond recognition: artistic filters, solarization, palettes, false color."""
 
 from __future__ import annotations
 
@@ -65,7 +65,7 @@ def _curves(nodes: Float64Array) -> Float64Array:
 
 
 def solarized(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return a camera's pictures inverted, or solarised: brightness above a threshold falls again."""
+    """Return a camera's pictures inverted, or solarized: brightness above a threshold falls again."""
     pictures = camera_rendering(irradiance, rng)
     if rng.random() < 0.4:
         return 1 - pictures

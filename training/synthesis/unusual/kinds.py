@@ -42,7 +42,7 @@ class UnusualKind(StrEnum):
     FILM_SCAN = "film scan"
     MESSENGER = "messenger"
     ARTISTIC_FILTER = "artistic filter"
-    SOLARIZED = "solarised or inverted"
+    SOLARIZED = "solarized or inverted"
     PALETTE = "palette"
     LINE_ART = "line art"
     FALSE_COLOR = "false color"
@@ -85,7 +85,7 @@ RECIPES: dict[UnusualKind, Recipe] = {
         "the same light has another code in another place: there is no response", local_tone_mapping
     ),
     UnusualKind.GLOBAL_TONE_MAPPING: Recipe(
-        "the operator maps luminance and keeps or bends colour ratios: no curve holds for every channel",
+        "the operator maps luminance and keeps or bends color ratios: no curve holds for every channel",
         global_tone_mapping,
     ),
     UnusualKind.SCREENSHOT: Recipe(
@@ -116,12 +116,12 @@ RECIPES: dict[UnusualKind, Recipe] = {
     ),
     UnusualKind.SOLARIZED: Recipe("brightness falls where light grows: it has no response that rises", solarized),
     UnusualKind.PALETTE: Recipe(
-        "a few dozen colours are left, and dither mixes them: codes no longer measure light",
+        "a few dozen colors are left, and dither mixes them: codes no longer measure light",
         palette,
         is_compressed=False,
     ),
     UnusualKind.LINE_ART: Recipe("no light was recorded at all", line_art, is_recorded=False),
-    UnusualKind.FALSE_COLOR: Recipe("colours are a legend: the channels rise and fall along one scale", false_color),
+    UnusualKind.FALSE_COLOR: Recipe("colors are a legend: the channels rise and fall along one scale", false_color),
 }
 
 

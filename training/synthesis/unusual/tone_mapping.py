@@ -18,7 +18,7 @@ DARKEST = np.float32(1e-4)
 BRIGHTEST = 99.8
 
 #: Side of the guided filter's box, in samples of a window; the factor on the contrast of the base layer, and on that of
-#: the details; the power on the ratios of colour. Phones do so too, but far less.
+#: the details; the power on the ratios of color. Phones do so too, but far less.
 BOX, COMPRESSION, DETAIL, COLOR_POWER = (11, 61), (0.15, 0.45), (1.2, 2.5), (1.0, 1.7)
 
 #: Stops that a global operator exposes above the light whose white is 1.
@@ -29,7 +29,7 @@ def local_tone_mapping(irradiance: Float32Array, rng: np.random.Generator) -> Fl
     """Return pictures of a local operator: contrast of the base layer compressed, details kept or raised.
 
     After Durand and Dorsey, "Fast Bilateral Filtering for the Display of High-Dynamic-Range Images" (2002), with the
-    guided filter of He, Sun and Tang (2013) in the place of the bilateral one. Colour ratios are raised to a power.
+    guided filter of He, Sun and Tang (2013) in the place of the bilateral one. Color ratios are raised to a power.
     """
     luminance = np.maximum(irradiance @ LUMINANCE, DARKEST)
     stops = np.log2(luminance)
@@ -74,6 +74,6 @@ def drago(luminance: Float32Array, white: float, bias: float) -> Float32Array:
 
 
 def _recolored(light: Float32Array, luminance: Float32Array, mapped: Float32Array, power: float) -> Float32Array:
-    """Return the sRGB encoding of mapped luminance in the light's colours, their ratios raised to a power."""
+    """Return the sRGB encoding of mapped luminance in the light's colors, their ratios raised to a power."""
     ratios = (np.maximum(light, 0) / luminance[..., None]) ** np.float32(power)
     return apply_response((ratios * mapped[..., None]).astype(np.float32, copy=False), SRGB)

@@ -52,7 +52,7 @@ def test_a_rendering_stays_in_range_in_darkness_and_in_the_sun(kind, light, rng)
 
 
 @pytest.mark.parametrize("kind", UnusualKind)
-def test_a_photograph_is_a_whole_frame_that_can_be_analysed(kind, scene):
+def test_a_photograph_is_a_whole_frame_that_can_be_analyzed(kind, scene):
     photo = unusual_photo(kind, scene, np.random.default_rng(3))
     assert photo.pixels.dtype == np.float32
     assert photo.bit_depth == 8

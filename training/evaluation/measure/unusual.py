@@ -14,8 +14,8 @@ from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.metadata import Device, FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.photo import Photo
+from training.evaluation.measure.table import Table
 from training.evaluation.models import Model
-from training.evaluation.table import Table
 from training.evaluation.test_sets import SceneFile
 from training.synthesis.unusual import UnusualKind, unusual_photo
 from training.synthesis.unusual.encodings import MESSENGER_QUALITY

@@ -8,10 +8,12 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
-from training.evaluation.bootstrap import Resampling
-from training.evaluation.real import POOLED
-from training.evaluation.report import ReportRow
-from training.evaluation.summary import (
+from training.evaluation.measure.real import POOLED
+from training.evaluation.measure.table import Cases
+from training.evaluation.report import paper
+from training.evaluation.report.bootstrap import Resampling
+from training.evaluation.report.document import ReportRow
+from training.evaluation.report.summary import (
     Figures,
     change_figures,
     difference_figures,
@@ -24,7 +26,6 @@ from training.evaluation.summary import (
     verdict_figures,
     weight_figures,
 )
-from training.evaluation.table import Cases
 
 #: Group of bodies, by how many photographs of each were estimated together -> the least number of photographs.
 POOLED_GROUPS = {"4 photographs": 4, "2 to 4 photographs": 2}
@@ -41,7 +42,7 @@ def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int)
 
 
 def stress_rows(conditions: dict[str, Cases], queries: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of P3 under every condition, the first of which is clean, and query."""
+    """Yield the figures of P3 under every condition, the first of which is clean, and query, and the paper's."""
     clean = next(iter(conditions.values()))
     weights = of_scenes(clean, seed=seed)
     for table, groups in (("P3", conditions), ("P3 queries", queries)):
@@ -50,6 +51,10 @@ def stress_rows(conditions: dict[str, Cases], queries: dict[str, Cases], *, seed
                 figures = error_figures(cases, weights, name, reference=cases if GAMMA in cases.rows else clean)
                 figures |= change_figures(cases, clean, weights, name)
                 yield _row(table, group, name, cases, figures | partial_figures(cases, weights, name))
+            if group in paper.STRESS:
+                error = paper.STRESS[group].estimation
+                figures = {"E_est mean": error, "E_est x clean": error / paper.OVERALL.estimation}
+                yield _row(table, group, paper.PAPER, cases, figures)
 
 
 def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:

@@ -31,9 +31,9 @@ from training.evaluation.baselines import (
     oracle_curves,
     with_best_headroom,
 )
-from training.evaluation.figures import curve_figures, estimate_figures, first_weights
+from training.evaluation.measure.figures import curve_figures, estimate_figures, first_weights
+from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model
-from training.evaluation.table import Row, Table
 from training.evaluation.test_sets import TestSet
 from training.synthesis.camera import code_counts
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
-from training.evaluation.figures import ERRORS
-from training.evaluation.markdown import markdown_table
-from training.evaluation.report import Report, value
+from training.evaluation.measure.figures import ERRORS
+from training.evaluation.report.document import Report, value
+from training.evaluation.report.markdown import markdown_table
 
 #: The baselines in model.json, and in the table of bodies.
 CARD_BASELINES, BODY_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES), (GAMMA, OTHER_BODIES)

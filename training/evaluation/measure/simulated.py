@@ -23,10 +23,10 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float32Array
 from training.evaluation.baselines import GAMMA, oracle_curves
-from training.evaluation.figures import curve_figures, estimate_figures
+from training.evaluation.measure.figures import curve_figures, estimate_figures
+from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model
 from training.evaluation.plan import PLAIN, Condition, Query, TestPhotograph
-from training.evaluation.table import Row, Table
 from training.evaluation.test_sets import SceneFile, TestSet
 from training.synthesis.camera import code_counts, render_photo, sensor_light
 

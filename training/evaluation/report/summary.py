@@ -12,9 +12,9 @@ from crfnet_core.posterior import Verdict
 from crfnet_core.response.metrics import peak_signal_to_noise
 from crfnet_core.types import Float64Array
 from training.evaluation.baselines import GAMMA
-from training.evaluation.bootstrap import Interval, Resampling, interval
-from training.evaluation.figures import ERRORS, WEIGHTS
-from training.evaluation.table import Cases
+from training.evaluation.measure.figures import ERRORS, WEIGHTS
+from training.evaluation.measure.table import Cases
+from training.evaluation.report.bootstrap import Interval, Resampling, interval
 
 #: Name of a figure -> its value, with or without an interval.
 Figures = dict[str, Any]

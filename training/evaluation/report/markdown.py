@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from textwrap import fill
 from typing import Any
 
 from crfnet_core.files import atomic_write_text
-from training.evaluation import paper
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
-from training.evaluation.figures import ERRORS
-from training.evaluation.report import Report, ReportRow, value
+from training.evaluation.measure.figures import ERRORS
+from training.evaluation.report import paper
+from training.evaluation.report.document import Report, ReportRow, value
 
 
 @dataclass(frozen=True)
@@ -35,10 +36,14 @@ class Listed:
 
 @dataclass(frozen=True)
 class Crossed:
-    """A table with a row for each group, and a column for each estimator whose cells hold some figures."""
+    """A table with a row for each group, and a column for each estimator whose cells hold some figures.
+
+    With `has_ways` every way of asking a model has a column.
+    """
 
     tables: tuple[str, ...]
     figures: tuple[str, ...] = ("E_est mean", "shape mean")
+    has_ways: bool = False
 
 
 @dataclass(frozen=True)
@@ -50,13 +55,17 @@ class Section:
     tables: tuple[Listed | Crossed, ...]
 
 
+#: The most characters of a line of text.
+WIDTH = 120
+
 #: Figures that are shown with their interval, by the end of their names.
-WITH_INTERVAL = ("mean", "difference", "correlation")
+WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "correlation")
+
+#: Estimators that report.json has and these tables have not.
+HIDDEN = ("oracle: EMoR, 2 components", "oracle: EMoR, 5 components")
 
 ERROR_FIGURES = {
     "E_est": "E_est mean",
-    "median": "E_est median",
-    "p90": "E_est p90",
     "ratio": "E_est ratio",
     "wins": "E_est win rate",
     "E_lin": "E_lin mean",
@@ -73,8 +82,8 @@ STATED = {
     "gain": "gain",
 }
 
-#: The baselines that tables by group show.
-SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES)
+#: The estimators that tables by group show beside the models.
+SHOWN_BASELINES = (GAMMA, MEAN_CURVE, OTHER_BODIES, paper.PAPER)
 
 #: The folders of real photographs.
 FOLDERS = ("real", "real_bodies", "both")
@@ -82,10 +91,10 @@ FOLDERS = ("real", "real_bodies", "both")
 INTRODUCTION = """# How accurate the models are
 
 E_est, E_lin (x 1e-2) and the shape error in stops are defined in `docs/METHOD.md` (Eq. 32 to 34), the protocols in
-`training/README.md`. "p90" is the 90th percentile, "ratio" the mean divided by that of gamma 2.2 on the same
-photographs, "wins" the fraction of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals
-over scenes and responses together, on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group
-give E_est, shape. The paper is Li & Peers, 2017, on photographs of its own.
+`training/README.md`. "Ratio" is the mean divided by the mean of gamma 2.2 on the same photographs, "wins" the fraction
+of photographs on which gamma 2.2 is worse. [Brackets] hold 95 % bootstrap intervals over scenes and responses together,
+on P4 over bodies; a difference whose interval contains 0 is a tie. Tables by group give E_est, shape. The
+paper is Li & Peers, 2017, on photographs of its own.
 """
 
 SECTIONS = (
@@ -125,19 +134,19 @@ SECTIONS = (
     Section(
         "P4: differences",
         "The first model, as users ask it, less each other row.",
-        (Listed(("P4 both", "P4 both, with caution"), {error: f"{error} difference" for error in ERRORS}),),
+        (Listed(("P4 both",), {error: f"{error} difference" for error in ERRORS}),),
     ),
     Section(
         "P4: several photographs of one body",
         "Up to four photographs estimated together, and the same photographs one by one, with caution included.",
-        (Listed(("P4 both, pooled",), MEANS),),
+        (Listed(("P4 both, pooled",), MEANS, ("4 photographs",)),),
     ),
     Section(
         "P4: verdicts and weights",
-        'Accepted are the verdicts "good" and "usable"; far off is an E_est above 3 or a shape error above 0.4 stop.'
-        " Then the correlation over bodies of the true and the estimated EMoR weights.",
+        'Refused is the verdict "do not trust"; far off is an accepted answer with an E_est above 3'
+        " or a shape error above 0.4 stop. Weights: the correlation over bodies of true and estimated EMoR weights.",
         (
-            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("accepted", "refused", "far off")}),
+            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("refused", "far off")}),
             Listed(("P4 both",), {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}),
         ),
     ),
@@ -151,7 +160,7 @@ SECTIONS = (
         "P6: pictures that no response explains",
         "Accepted, of all and by kind. Files name no camera; renders and messengers' copies have the metadata that"
         " their programs write, unless a column excludes it.",
-        (Crossed(("P6", "P6 by kind"), ("accepted",)),),
+        (Crossed(("P6", "P6 by kind"), ("accepted",), has_ways=True),),
     ),
 )
 
@@ -165,10 +174,11 @@ def report_text(report: Report) -> str:
     """Return report.md."""
     settings = ", ".join(f"{name.replace('_', ' ')} {setting}" for name, setting in report.settings.items())
     models = ", ".join(f"{name} (`{sha256[:12]}`)" for name, sha256 in report.models.items())
-    parts = [INTRODUCTION, f"Models: {models}. Settings: {settings}.\n", *(f"- {note}\n" for note in report.notes)]
+    measured = fill(f"Models: {models}. Settings: {settings}.", WIDTH)
+    parts = [INTRODUCTION, measured + "\n", *(f"- {note}\n" for note in report.notes)]
     for section in SECTIONS:
         tables = [text for table in section.tables if (text := _table(report, table))]
-        parts += [f"## {section.title}\n", f"{section.text}\n", *tables] if tables else []
+        parts += [f"## {section.title}\n", fill(section.text, WIDTH) + "\n", *tables] if tables else []
     return "\n".join(parts)
 
 
@@ -185,28 +195,31 @@ def _table(report: Report, table: Listed | Crossed) -> str:
 
 
 def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
-    """Return a table with a row for each estimator that has the first figure."""
+    """Return tables, one for each group, with a row for each estimator that has the first figure."""
     first = next(iter(table.figures.values()))
-    rows = [row for row in rows if first in row and (not table.groups or row["group"] in table.groups)]
-    cells = [
-        [_name(row), row["estimator"], _counts(row), *(_cell(name, row.get(name)) for name in table.figures.values())]
-        for row in rows
-    ]
-    return markdown_table(["", "estimator", "photographs", *table.figures], cells) if cells else ""
+    groups: dict[str, list[list[str]]] = {}
+    for row in rows:
+        if first in row and row["estimator"] not in HIDDEN and (not table.groups or row["group"] in table.groups):
+            cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
+            groups.setdefault(f"{_name(row)}: {_counts(row)}", []).append(cells)
+    return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())
 
 
 def _crossed(rows: Sequence[ReportRow], table: Crossed, models: tuple[str, ...]) -> str:
-    """Return a table with a row for each group and a column for each model, way of asking it, and shown baseline."""
-    rows = [row for row in rows if row["estimator"].startswith(models) or row["estimator"] in SHOWN_BASELINES]
+    """Return a table with a row for each group and a column for each model and shown baseline."""
+    shown = {*models, *SHOWN_BASELINES}
+    rows = [
+        row for row in rows if row["estimator"] in shown or (table.has_ways and row["estimator"].startswith(models))
+    ]
     estimators = list(dict.fromkeys(row["estimator"] for row in rows))
     groups: dict[str, dict[str, ReportRow]] = {}
     for row in rows:
         groups.setdefault(_name(row), {})[row["estimator"]] = row
     cells = [
-        [name, _counts(next(iter(group.values()))), *(_means(group.get(each), table) for each in estimators)]
+        [f"{name}: {_counts(next(iter(group.values())))}", *(_means(group.get(each), table) for each in estimators)]
         for name, group in groups.items()
     ]
-    return markdown_table(["", "photographs", *estimators], cells) if cells else ""
+    return markdown_table(["", *estimators], cells) if cells else ""
 
 
 def _means(row: ReportRow | None, table: Crossed) -> str:
@@ -221,7 +234,8 @@ def _name(row: ReportRow) -> str:
 
 def _counts(row: ReportRow) -> str:
     """Return the number of photographs, and of bodies."""
-    return f"{row['photographs']} of {row['bodies']}" if "bodies" in row else str(row["photographs"])
+    bodies = f" of {row['bodies']} bodies" if "bodies" in row else ""
+    return f"{row['photographs']} photographs{bodies}"
 
 
 def _cell(name: str, figure: Any) -> str:
