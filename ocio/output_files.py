@@ -43,7 +43,7 @@ class OutputFiles:
     report : Path
         The JSON document.
     color_space : str
-        The name of the photograph's colour space in the config.
+        The name of the photograph's color space in the config.
     forward : tuple of Path
         The response itself in three formats; empty if it is not written.
     """
@@ -112,7 +112,7 @@ class OutputFiles:
     def plate_color_space(
         self, photo: Path, *, exposure: float = 0.0, file_pattern: str | None = None
     ) -> PlateColorSpace:
-        """Return the colour space of a photograph, for a config beside the LUTs.
+        """Return the color space of a photograph, for a config beside the LUTs.
 
         Parameters
         ----------
@@ -127,7 +127,7 @@ class OutputFiles:
         Raises
         ------
         ConfigError
-            If no colour space can have the name.
+            If no color space can have the name.
         """
         return PlateColorSpace(
             name=self.color_space,
@@ -154,7 +154,7 @@ def _plain(name: str) -> str:
 
 
 def _aliases(color_space: str) -> tuple[str, ...]:
-    """Return the alias of a colour space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
+    """Return the alias of a color space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
     return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
 
 

@@ -23,7 +23,7 @@ from crfnet_core.types import Progress, show_progress
 
 from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
-from .errors import AddonError, CancelledError
+from .errors import AddonError, CanceledError
 from .frame_files import frames_of, primaries_of, sampled_files
 from .job import Anchor, ApplyMode, Job, Plate
 from .target_check import check_targets
@@ -114,7 +114,7 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     estimated = _estimated(job, estimate_plate(job, sequence(), progress))
     try:
         return _completed(estimated, sequence, progress)
-    except CancelledError:
+    except CanceledError:
         raise
     except (AddonError, CRFNetError) as problem:
         return replace(estimated, problem=problem)
@@ -175,7 +175,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
         not force the estimate.
     """
-    show_progress(progress, 0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
+    show_progress(progress, 0, 1)  # ends a job that was canceled before the network is loaded, which takes a second
     plates = (job.plate, *job.estimation.photographs)
     sequences = (sequence, *map(frames_of, job.estimation.photographs))
     options, is_decoded = job.estimation.options, any(plate.decoder is not None for plate in plates)
@@ -192,7 +192,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
-    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its colour space."""
+    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its color space."""
     with suppress(OSError):  # told where the file is read
         file_kind(file)
     check_is_encoded(plate, file, config)

@@ -83,7 +83,7 @@ def write(
     progress : callable or None
         Called with (done, total) after every frame; what it raises ends the job.
     primaries : Primaries
-        Those that the plate is encoded in, for its colour space; a bake goes by the tags of each frame.
+        Those that the plate is encoded in, for its color space; a bake goes by the tags of each frame.
 
     Raises
     ------
@@ -148,7 +148,7 @@ def _light(lut: Lut1D, stops: float, primaries: Primaries = REC709) -> PlateLigh
 
 
 def install_color_space(job: Job, lut: Lut1D, stops: float, primaries: Primaries = REC709) -> Installed:
-    """Write the LUT, and a config with the plate's colour space that Blender reads when it starts next."""
+    """Write the LUT, and a config with the plate's color space that Blender reads when it starts next."""
     folder = _folder(job)
     space = color_space(job.plate, output_files(job.plate, folder), stops, primaries)
     hint = job.plate.folder.name if job.plate.folder else ""
@@ -169,7 +169,7 @@ def output_files(plate: Plate, folder: Path) -> OutputFiles:
 
 
 def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Primaries = REC709) -> PlateColorSpace:
-    """Return the plate's colour space, with a file rule for all its files, which an installed config leaves out."""
+    """Return the plate's color space, with a file rule for all its files, which an installed config leaves out."""
     space = files.plate_color_space(_photo(plate), exposure=stops, file_pattern=plate.pattern)
     return replace(space, primaries=primaries)
 
