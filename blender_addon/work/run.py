@@ -23,7 +23,7 @@ from crfnet_core.types import Progress, show_progress
 
 from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
-from .errors import AddonError, CanceledError
+from .errors import AddonError, CancelledError
 from .frame_files import frames_of, primaries_of, sampled_files
 from .job import Anchor, ApplyMode, Job, Plate
 from .target_check import check_targets
@@ -114,7 +114,7 @@ def run(job: Job, progress: Progress | None = None) -> CompletedJob:
     estimated = _estimated(job, estimate_plate(job, sequence(), progress))
     try:
         return _completed(estimated, sequence, progress)
-    except CanceledError:
+    except CancelledError:
         raise
     except (AddonError, CRFNetError) as problem:
         return replace(estimated, problem=problem)
