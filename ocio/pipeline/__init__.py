@@ -19,7 +19,7 @@ called with (done, total); whatever it raises ends the step, which first removes
 
 from ..luts.exposure import anchored_exposure
 from .calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
-from .delivery import all_or_none, deliver, deliver_estimate, estimated_light
+from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EachReport, EstimateBatch, estimate_each
 from .each_linear import LinearBatch, linearize_each
 from .estimates import FileEstimate, estimate_files, photograph_sources, response_lut
@@ -36,7 +36,6 @@ __all__ = [
     "LinearBatch",
     "OutputPlan",
     "PhotographRecord",
-    "all_or_none",
     "anchored_exposure",
     "deliver",
     "deliver_estimate",

@@ -109,7 +109,7 @@ def deliver(
     written = (*plan.targets, *more)
     if plan.space:
         check_config_folder(plan.files.config.parent)
-    with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
+    with _all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
         files = plan.files.in_folder(folder)
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
         linear = pool.submit(_write_linear, files.linear, sources, light, plan.plates, linearize, progress)
@@ -160,23 +160,8 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
 
 
 @contextmanager
-def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
-    """Yield the folder that a block writes files to; if it succeeds, they take their names together.
-
-    If it fails or is canceled, the folder of the targets is as it was, or gone if it was made for them.
-
-    Parameters
-    ----------
-    targets : sequence of Path
-        The files, all in one folder.
-    overwrite : bool
-        Whether existing files may be replaced.
-
-    Raises
-    ------
-    CRFNetError
-        If a file exists and may not be replaced, or the folder cannot be made or written to.
-    """
+def _all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
+    """Yield the folder that a block writes files to, all of one folder; they take their names together or not at all."""
     folder = targets[0].parent
     check_folder(folder)
     with ExitStack() as stack:
