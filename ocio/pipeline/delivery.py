@@ -161,7 +161,7 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
 
 @contextmanager
 def _all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
-    """Yield the folder that a block writes files to, all of one folder; they take their names together or not at all."""
+    """Yield the folder that a block writes files to; they take their names together or not at all."""
     folder = targets[0].parent
     check_folder(folder)
     with ExitStack() as stack:
