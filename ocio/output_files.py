@@ -41,7 +41,7 @@ class OutputFiles:
     report : Path
         The JSON document.
     color_space : str
-        The name of the photograph's colour space in the config.
+        The name of the photograph's color space in the config.
     forward : tuple of Path
         The response itself in each format; empty if it is not written.
     """

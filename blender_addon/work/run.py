@@ -180,7 +180,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
         If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
         not force the estimate.
     """
-    show_progress(progress, 0, 1)  # ends a job that was cancelled before the network is loaded, which takes a second
+    show_progress(progress, 0, 1)  # ends a job that was canceled before the network is loaded, which takes a second
     plates = (job.plate, *job.estimation.photographs)
     sequences = (sequence, *map(frames_of, job.estimation.photographs))
     options = job.estimation.options
@@ -196,7 +196,7 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
-    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its colour space."""
+    """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its color space."""
     with suppress(OSError):  # told where the file is read
         file_kind(file)
     check_is_encoded(plate, file, config)

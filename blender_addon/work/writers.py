@@ -82,7 +82,7 @@ def write(
     progress : callable or None
         Called with (done, total) after every frame; what it raises ends the job.
     primaries : Primaries
-        Those that the plate is encoded in, for its colour space; a bake goes by the tags of each frame.
+        Those that the plate is encoded in, for its color space; a bake goes by the tags of each frame.
 
     Raises
     ------

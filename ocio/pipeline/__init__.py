@@ -1,11 +1,13 @@
 """The one way from photographs to files, for the command and for the add-on.
 
 estimates    photographs, frames and movies to the response estimated from them, and its LUT
-delivery     the files of one estimate: planned and checked first, then written together
+plan         the files of one estimate, checked before any work is done
+delivery     the same, written together
 loading      the network, the prior and the stored camera that the options name
 each         many photographs, one response each, with its files
 each_linear  many photographs as linear EXR
-batch        what both have in common: recorded as they end, continued when interrupted
+batch        what both have in common, and which files belong to each photograph
+run          the work: recorded as it ends, continued when interrupted
 records      the file of these records
 photographs  the photographs of a batch
 workers      processes of this machine, or a Dask cluster
@@ -17,12 +19,13 @@ called with (done, total); whatever it raises ends the step, which first removes
 
 from ..luts.exposure import anchored_exposure
 from .calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
-from .delivery import OutputPlan, all_or_none, deliver, deliver_estimate, estimated_light, plan_outputs
+from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EachReport, EstimateBatch, estimate_each
 from .each_linear import LinearBatch, linearize_each
 from .estimates import FileEstimate, estimate_files, photograph_sources, response_lut
 from .loading import load_camera_response, load_network, load_prior
 from .photographs import find_photographs
+from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord
 
 __all__ = [
@@ -33,7 +36,6 @@ __all__ = [
     "LinearBatch",
     "OutputPlan",
     "PhotographRecord",
-    "all_or_none",
     "anchored_exposure",
     "deliver",
     "deliver_estimate",

@@ -1,54 +1,36 @@
-"""Many photographs, one task each: recorded as they end, continued when interrupted, not stopped by a bad file."""
+"""Many photographs, one task each: what they have in common, and which files belong to each."""
 
 from __future__ import annotations
 
 import hashlib
 import itertools
 import os
-import time
 from abc import ABC, abstractmethod
 from collections.abc import Iterator, Mapping, Sequence
-from concurrent.futures import BrokenExecutor, as_completed
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import CRFNetError, one_line
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes
-from crfnet_core.types import Progress, cores, show_progress
 
 from ..errors import PlateError
 from ..options import EstimateOptions, PlateOptions
-from ..output_files import LONGEST_STEM, check_targets, output_folder, plain_stem
+from ..output_files import LONGEST_STEM, check_targets, plain_stem
 from ..plates.light import PlateLight
 from ..report import result_line
 from .estimates import response_lut
 from .loading import load_camera_response
 from .photographs import unreadable_reason, without_outputs
 from .records import PhotographRecord, RecordFile
-from .workers import worker_pool
 
 #: Bytes that a number behind a stem may need.
 NUMBER_BYTES = 8
 
-#: How often, and after how many seconds each, the record of files that another run has just written is looked for.
-RECORD_TRIALS, RECORD_SECONDS = 10, 0.1
-
 
 @dataclass(frozen=True, kw_only=True)
 class Batch(ABC):
-    """What many photographs have in common.
-
-    Parameters
-    ----------
-    out : Path
-        The folder for everything.
-    options : EstimateOptions
-        How responses are estimated.
-    plates : PlateOptions
-        How linear plates are written; `overwrite` holds for every file.
-    """
+    """What many photographs have in common: the folder for everything, and how they are estimated and linearized."""
 
     out: Path
     options: EstimateOptions
@@ -65,13 +47,7 @@ class Batch(ABC):
 
     @abstractmethod
     def done(self, task: Task) -> PhotographRecord:
-        """Write the files of one photograph and return its record.
-
-        Raises
-        ------
-        Exception
-            Whatever goes wrong.
-        """
+        """Write the files of one photograph and return its record."""
 
     def shared_response(self) -> str | None:
         """Return which response all photographs have now: the stored camera's; None if each has its own."""
@@ -94,18 +70,8 @@ class Batch(ABC):
 class Task:
     """One photograph of a batch, and all that its worker gets.
 
-    Parameters
-    ----------
-    batch : Batch
-        The batch.
-    photo : Path
-        The photograph.
-    folder : Path
-        The folder of its files, relative to the batch's.
-    stem : str
-        The name of its files, without suffix; no other photograph of the folder has it.
-    options : str
-        The batch's digest.
+    Its files lie in `folder`, relative to the batch's, and their names begin with `stem`, as those of no other
+    photograph do. `options` is the batch's digest.
     """
 
     batch: Batch
@@ -171,16 +137,14 @@ def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], *, shared: Sequen
     batch : Batch
         What they have in common.
     photographs : mapping of Path to Path
-        As `find_photographs` returns them. Those in the batch's folder are left out, if a folder around it was
-        searched.
+        As `find_photographs` returns them.
     shared : sequence of Path
         Files of several photographs, which must not replace a photograph.
 
     Raises
     ------
     CRFNetError
-        If a photograph would be replaced, the folder cannot be used, the response cannot be read, or the records
-        are damaged.
+        If a photograph would be replaced, there are results of other options, or the folder cannot be used.
     """
     chosen, records = without_outputs(photographs, batch.out), batch.records.read()
     stems, digest = _distinct_stems(batch, chosen, records), batch.digest()
@@ -192,51 +156,6 @@ def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], *, shared: Sequen
     targets = [path for task in tasks if not unreadable_reason(task.photo) for path in task.targets]
     check_targets(batch.out, targets, photos=list(chosen), shared=shared, overwrite=True)
     return tasks
-
-
-def run_tasks(
-    batch: Batch,
-    tasks: Sequence[Task],
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: Progress | None = None,
-) -> list[PhotographRecord]:
-    """Do the tasks that are not done yet; return the records of all, in order.
-
-    A record is appended as soon as the files of its photograph are whole. The same call after an interruption goes on;
-    photographs that failed are tried again.
-
-    Parameters
-    ----------
-    batch : Batch
-        See `plan_tasks`.
-    tasks : sequence of Task
-        As `plan_tasks` returns them.
-    workers : int, optional
-        Processes; by default one a core.
-    scheduler : str, optional
-        The address of a Dask scheduler: see `worker_pool`.
-    progress : callable, optional
-        Called with (done, total) after every photograph; whatever it raises ends the run after those that have begun.
-
-    Raises
-    ------
-    CRFNetError
-        If a process dies, or no scheduler answers; not if a photograph is bad.
-    """
-    with output_folder(batch.out):
-        file = batch.records
-        records = {} if batch.plates.overwrite else file.read()
-        todo = [task for task in tasks if not task.is_done(records.get(str(task.photo)))]
-        done = len(tasks) - len(todo)
-        show_progress(progress, done, len(tasks))
-        for record in _ended(todo, workers or cores(), scheduler):
-            file.append(record)
-            records[record.photograph] = record
-            done += 1
-            show_progress(progress, done, len(tasks))
-    return [records[str(task.photo)] for task in tasks]
 
 
 def _distinct_stems(
@@ -279,80 +198,3 @@ def _stems(photo: Path) -> Iterator[str]:
 def _same_file(name: str, photo: Path) -> bool:
     """Return whether a name, perhaps by another way to its folder, is that of a photograph."""
     return os.path.normpath(Path(name).absolute()) == os.path.normpath(photo.absolute())
-
-
-def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
-    """Yield the records of photographs as they end."""
-    if not tasks:
-        return
-    workers = min(workers, len(tasks))
-    if (workers > 1 or scheduler) and not tasks[0].batch.options.threads:
-        single = replace(tasks[0].batch, options=replace(tasks[0].batch.options, threads=1))
-        tasks = [replace(task, batch=single) for task in tasks]
-    with worker_pool(workers, scheduler=scheduler) as pool:
-        futures = [pool.submit(_recorded, task) for task in tasks]
-        try:
-            for future in as_completed(futures):
-                yield future.result()
-        except BrokenExecutor as problem:
-            raise PlateError("process_died") from problem
-
-
-def _recorded(task: Task) -> PhotographRecord:
-    """Return the record of a task; what goes wrong stands in it."""
-    try:
-        if reason := unreadable_reason(task.photo):
-            raise PlateError("unreadable", path=task.photo, reason=reason)
-        return _done_once(task)
-    except Exception as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
-        return PhotographRecord(photograph=str(task.photo), options=task.options, error=_words(problem, task.photo))
-
-
-def _done_once(task: Task) -> PhotographRecord:
-    """Do a task; if another run has just written its files, return the record that it is about to append."""
-    try:
-        return _record_of_existing(task) or task.batch.done(task)
-    except CRFNetError:
-        for _ in range(RECORD_TRIALS if _existing(task) else 0):
-            record = task.batch.records.read().get(str(task.photo))
-            if record and task.is_done(record):
-                return record
-            time.sleep(RECORD_SECONDS)
-        raise
-
-
-def _record_of_existing(task: Task) -> PhotographRecord | None:
-    """Return the record of files that are there, as another run may have made it meanwhile; None without any record.
-
-    Raises
-    ------
-    PlateError
-        If they are those of another photograph, or of another program.
-    """
-    there = [] if task.batch.plates.overwrite else _existing(task)
-    if not there:
-        return None
-    records = task.batch.records.read()
-    record = records.get(str(task.photo))
-    if task.is_done(record):
-        return record
-    place = (task.folder.as_posix(), task.stem)
-    is_owned = any((other.folder, other.stem) == place for other in records.values() if other is not record)
-    if is_owned or (record is None and len(there) < len(task.targets)):
-        raise PlateError("file_exists", path=there[0])
-    return None
-
-
-def _existing(task: Task) -> list[Path]:
-    """Return the files of a task that are there."""
-    return [path for path in task.targets if os.path.lexists(path)]
-
-
-def _words(problem: Exception, photo: Path) -> str:
-    """Return why a photograph failed, on one line, with its name."""
-    if isinstance(problem, MemoryError):
-        return one_line(f"{photo}: not enough memory")
-    text = one_line(problem)
-    if isinstance(problem, CRFNetError | OSError):
-        return text
-    return one_line(f"{photo}: {type(problem).__name__} ({text})")

@@ -19,11 +19,13 @@ from ..movies.source import file_source
 from ..options import OutputOptions
 from ..output_files import OutputFiles
 from ..plates.linear_space import linear_space
-from .batch import Batch, Task, plan_tasks, run_tasks
-from .delivery import OutputPlan, deliver_estimate, estimated_light, stale_files, with_light
+from .batch import Batch, Task, plan_tasks
+from .delivery import deliver_estimate, estimated_light, with_light
 from .estimates import estimate_files
 from .loading import load_camera, load_network, load_prior
+from .plan import OutputPlan, stale_files
 from .records import PhotographRecord, RecordFile
+from .run import run_tasks
 
 #: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
 #: build it grows with the square.
@@ -128,7 +130,7 @@ def estimate_each(
     stale = [path.relative_to(batch.out) for task in tasks for path in _stale_files(batch, task)]
     records = run_tasks(batch, tasks, workers=workers, scheduler=scheduler, progress=progress)
     with batch.records.locked():  # two runs at once: the last that ends knows the records of both
-        damaged = _write_configs(batch)
+        damaged = _write_configs(batch, tasks)
     for record in damaged.values():
         batch.records.append(record)
     records = [damaged.get(record.photograph, record) for record in records]
@@ -142,14 +144,16 @@ def _stale_files(batch: EstimateBatch, task: Task) -> Sequence[Path]:
     return stale_files(batch.files(task.folder, task.stem), [task.photo])
 
 
-def _write_configs(batch: EstimateBatch) -> dict[str, PhotographRecord]:
+def _write_configs(batch: EstimateBatch, tasks: Sequence[Task]) -> dict[str, PhotographRecord]:
     """Write a config into each folder, with the color spaces of all its photographs whose LUT is there.
 
     Return the photographs whose LUT is damaged: the next run estimates them again.
     """
     damaged: dict[str, PhotographRecord] = {}
     folders: dict[str, list[PhotographRecord]] = {}
-    for record in batch.records.read().values():
+    order = {str(task.photo): number for number, task in enumerate(tasks)}  # whatever ended first
+    every = batch.records.read().values()
+    for record in sorted(every, key=lambda each: (order.get(each.photograph, len(order)), each.photograph)):
         if not record.error and (batch.out / record.lut).exists():
             folders.setdefault(record.folder, []).append(record)
     for folder, records in folders.items():

@@ -18,10 +18,11 @@ from ..movies.library import is_movie
 from ..output_files import output_folder
 from ..plates.frames import FrameSequence
 from ..plates.linear import linearize_plates
-from .batch import Batch, Task, plan_tasks, run_tasks
+from .batch import Batch, Task, plan_tasks
 from .estimates import estimate_files, response_lut
 from .loading import load_camera_response, load_network, load_prior
 from .records import PhotographRecord, RecordFile
+from .run import run_tasks
 
 
 @dataclass(frozen=True, kw_only=True)

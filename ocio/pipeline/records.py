@@ -26,39 +26,7 @@ from ..plates.primaries import PlatePrimaries
 
 @dataclass(frozen=True, kw_only=True)
 class PhotographRecord:
-    """What became of one photograph.
-
-    Parameters
-    ----------
-    photograph : str
-        The file, as it was given.
-    options : str
-        A digest of the options and of a response that all photographs share: equal for equal ones.
-    folder : str
-        The folder of its files, relative to that of the records.
-    lut, linear : str
-        The LUT and the linear EXR, relative to the folder of the records; empty for one that is not written.
-    weights : tuple of float
-        Eleven EMoR weights of the response; empty if it was given as a LUT, and so is the rest up to the exposure.
-    family : str
-        The most probable kind of response, in words.
-    verdict : str
-        "good", "usable" or "do not trust".
-    uncertainty, shape_uncertainty_stops : float
-        The expected E_est, and the expected shape error in stops.
-    warnings : tuple of str
-        What makes a poor estimate likely.
-    exposure : float
-        Stops added after the inverse response.
-    primaries : mapping, optional
-        The fields of the photograph's `Primaries`; None if they are unknown.
-    primaries_source : str
-        Who says so.
-    summary : str
-        The result in one line of words.
-    error : str
-        Why there is no result; empty if there is one.
-    """
+    """What became of one photograph; docs/each.schema.json describes the entries."""
 
     photograph: str
     options: str = ""
@@ -116,13 +84,7 @@ class PhotographRecord:
 
 
 class RecordFile:
-    """A file of records, which need not exist yet.
-
-    Parameters
-    ----------
-    path : Path
-        The file; its folder must exist before a record is appended.
-    """
+    """A file of records, which need not exist yet; its folder must before a record is appended."""
 
     def __init__(self, path: Path) -> None:
         self.path = path

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import asyncio
 import signal
 from collections.abc import Iterator
 from concurrent.futures import Executor, ProcessPoolExecutor, ThreadPoolExecutor
@@ -56,6 +55,8 @@ def _leave_signals_to_the_parent() -> None:
 @contextmanager
 def _dask_pool(address: str) -> Iterator[Executor]:
     """Yield the executor of a Dask cluster; Dask's own settings hold the certificates of an encrypted one."""
+    import asyncio  # only here, since it takes 20 ms
+
     try:
         from distributed import Client
     except ImportError as problem:

@@ -84,7 +84,7 @@ def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any],
 
     Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither;
     where the linear EXR keeps primaries that the config has no linear space of, it says that the config converts them.
-    `alpha` is that of the photograph's `FileMetadata`: the LUT takes colours that are not multiplied by it.
+    `alpha` is that of the photograph's `FileMetadata`: the LUT takes colors that are not multiplied by it.
     """
     primaries, linear = document["primaries"], document["output_space"]
     target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
@@ -95,7 +95,7 @@ def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any],
     lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.lut, files.config, photo))
     space = shlex.quote(files.color_space)
     oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
-    # Straight colours are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
+    # Straight colors are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
     oiiotool += " --no-autopremult" * (alpha == "straight")
     divide, multiply = ":unpremult=1" * (alpha == "multiplied"), " --premult" * (alpha == "straight")
     end = f"{multiply} -d half -o linear.exr"

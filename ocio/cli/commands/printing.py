@@ -20,7 +20,7 @@ from crfnet_core.types import Progress
 from ...errors import PlateError
 
 if TYPE_CHECKING:
-    from ...pipeline.delivery import EarlierRun
+    from ...pipeline.plan import EarlierRun
     from ...pipeline.records import PhotographRecord
 
 #: Seconds between two lines of progress where there is no terminal.

@@ -162,14 +162,14 @@ def test_a_document_without_a_response_is_refused(crfnet, frames, tmp_path, text
     (tmp_path / "other.json").write_text(text)
     done = crfnet("calibrate", *frames, "--out", tmp_path / "out", "--compare", tmp_path / "other.json")
     assert done.code == BAD_INPUT
-    assert "other.json: holds no response; give the JSON that crfnet estimate or calibrate wrote" in done.err
+    assert "other.json: holds no response; give the JSON of an estimate or of a calibration" in done.err
 
 
 def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     (tmp_path / "eos20d.cube").write_text("mine")
     done = crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d")
     assert done.code == BAD_INPUT
-    assert "eos20d.cube exists already; add --overwrite" in done.err
+    assert "eos20d.cube: exists already; choose another folder; or add --overwrite" in done.err
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
 
 

@@ -211,7 +211,7 @@ def test_what_is_there_stays_there(estimate, plate, tmp_path):
     (tmp_path / "out" / "plate.cube").write_text("mine")
     done = estimate(plate)
     assert done.code == BAD_INPUT
-    assert "plate.cube exists already; add --overwrite" in done.err
+    assert "plate.cube: exists already; choose another folder; or add --overwrite" in done.err
     assert tree(tmp_path / "out") == {"plate.cube": b"mine"}
 
 
@@ -250,7 +250,7 @@ def test_two_photographs_of_one_name_are_refused(estimate, plate, tmp_path):
     done = estimate(plate, other)
     assert done.code == BAD_INPUT
     both = f"{plate} and {other} would both be written as plate_linear.exr"
-    assert f"{both}; rename one, or add --no-linear" in done.err
+    assert f"{both}; rename one; or add --no-linear" in done.err
 
 
 def test_a_photograph_that_is_given_twice_counts_once(estimate, plate, monkeypatch):

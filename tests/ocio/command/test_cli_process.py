@@ -40,7 +40,7 @@ def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
     command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == BAD_INPUT
-    assert done.stderr == "crfnet: error: a file's name is no valid Unicode; rename it\n"
+    assert done.stderr == "crfnet: error: a file's name is not valid Unicode; rename it\n"
     assert not (tmp_path / "out").exists()
 
 
@@ -54,7 +54,7 @@ def test_a_reader_that_leaves_is_no_error_message(look):
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_signal_leaves_nothing_and_no_traceback(plate, fixed_model, tmp_path, number):
     code = (
-        "import sys, time, crfnet.pipeline.folders as f, crfnet.cli.main;"
+        "import sys, time, crfnet.pipeline.delivery as f, crfnet.cli.main;"
         "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
         "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
@@ -100,7 +100,7 @@ def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fixed_model, tmp_path):
     code = (
-        "import sys, time, crfnet.pipeline.folders as f, crfnet.cli.main;"
+        "import sys, time, crfnet.pipeline.delivery as f, crfnet.cli.main;"
         "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
         "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
     )
