@@ -41,7 +41,6 @@ SENTENCES: Mapping[str, str] = {
     "frames_of_each": "--frames chooses the frames of one response, --each takes photographs; drop one",
     "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
     " such as shot.%04d.png, or a name without a placeholder",
-    "photographs_or_calibration": "give photographs, or --from-calibration FILE: one of them",
     "several_plates": "{count} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each",
     "two_responses": "--lut and --camera both name a response; give one of them",
 }

@@ -136,8 +136,8 @@ class TestPrimaries:
         done = crfnet(*arguments, "--output-space", "ACEScg")
         assert done.code == BAD_INPUT
         assert done.err == (
-            "crfnet: error: the plate's primaries are unknown (ICC profile of tables), so it cannot be converted to"
-            " ACEScg; state what they are; give them with --primaries\n"
+            "crfnet: error: the primaries are unknown (ICC profile of tables), so ACEScg cannot be reached; state the"
+            " primaries; give them with --primaries\n"
         )
         assert not (tmp_path / "a.exr").exists()
         assert crfnet(*arguments, "--output-space", "ACEScg", "--primaries", "rec2020").code == 0
