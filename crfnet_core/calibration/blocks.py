@@ -1,4 +1,4 @@
-"""Blocks of pixels that a stack is measured in, and the brightness of those that tell most."""
+"""Blocks of pixels that a stack is measured in, and the most informative of them."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class BlockMeans(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """What was seen of M samples (a block in one channel) in T frames.
+    """The brightness of M samples (a block in one channel) in T frames.
 
     Parameters
     ----------
@@ -61,31 +61,33 @@ class Observations:
         Its expected standard deviation.
     is_used : ndarray, bool, shape (M, T)
         Whether the brightness counts.
-    is_white : ndarray, bool, shape (M, T)
-        Whether the sample is white: it then says only that its irradiance is at least that of white.
     white_fraction : ndarray, float64, shape (M, T)
         Fraction of white pixels.
     spread : ndarray, float64, shape (M,)
         Typical spread within the block, in brightness.
     block, channel : ndarray, int, shape (M,)
-        Which block of the picture, and which channel, the sample is.
+        The sample's block of the picture, and its channel.
     """
 
     brightness: Float64Array
     deviation: Float64Array
     is_used: BoolArray
-    is_white: BoolArray
     white_fraction: Float64Array
     spread: Float64Array
     block: IndexArray
     channel: IndexArray
+
+    @property
+    def is_white(self) -> BoolArray:
+        """Whether the sample is white, shape (M, T): its irradiance is then at least that of white."""
+        return self.white_fraction >= ALL_WHITE
 
     def subset(self, samples: BoolArray | IndexArray) -> Observations:
         """Return some of the samples."""
         return Observations(**{name: values[samples] for name, values in vars(self).items()})
 
     def in_frames(self, frames: BoolArray) -> Observations:
-        """Return what some of the frames show."""
+        """Return the samples in some of the frames."""
         cut = {name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2}
         return Observations(**{**vars(self), **cut})
 
@@ -124,7 +126,6 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
     brightness, spread, white = (
         np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)
     )  # (N, C, T)
-    is_white = white >= ALL_WHITE
     is_used = (white <= PARTLY_WHITE) & (brightness * 255 >= DARKEST_CODE)
     deviation = np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread)
     deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
@@ -139,7 +140,6 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
         brightness=brightness.reshape(flat),
         deviation=deviation.reshape(flat),
         is_used=is_used.reshape(flat),
-        is_white=is_white.reshape(flat),
         white_fraction=white.reshape(flat),
         spread=typical.ravel(),
         block=np.repeat(np.arange(blocks), channels),
@@ -182,13 +182,9 @@ def _check_often(is_often: BoolArray) -> None:
         return
     each = channels * is_often.sum(axis=0)
     poor = [name for name, count in zip(("red", "green", "blue"), each, strict=False) if count < LEAST_SAMPLES]
-    advice = "; take more frames, closer together, or a scene with even surfaces"
     if 0 < len(poor) < channels:
-        colors = " and ".join(poor)
-        advice = f": in {colors} nearly everything is black or white; use white light and a scene of neutral colours"
-    raise CalibrationError(
-        f"only {samples} flat places are seen well in two frames, {LEAST_SAMPLES} are needed{advice}"
-    )
+        raise CalibrationError("dark_channel", count=samples, least=LEAST_SAMPLES, channels=" and ".join(poor))
+    raise CalibrationError("few_flat_places", count=samples, least=LEAST_SAMPLES)
 
 
 def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:

@@ -1,4 +1,4 @@
-"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. 43)."""
+"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. C.1)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SPLINE_DEVIATION = 0.012
 #: that is not among them.
 WIDENING = 4.0
 
-#: Samples at the end of a response by which its slope at white is measured.
+#: Samples at the end of a response that give its slope at white.
 END_SAMPLES = 24
 
 
@@ -54,7 +54,7 @@ class CurveModel:
     mean : ndarray, float64, shape (G,)
         The response of weights 0.
     basis : ndarray, float64, shape (G, K)
-        What a unit of each weight adds.
+        The change of the response by a unit of each weight.
     precision : ndarray, float64, shape (K, K)
         Inverse of the weights' prior covariance.
     """
@@ -66,7 +66,7 @@ class CurveModel:
     @classmethod
     @cache
     def load(cls) -> CurveModel:
-        """Return the model of the packaged EMoR, its weights spread around 0 as those of the packaged responses."""
+        """Return the model of the packaged EMoR, with weights as widely spread as in the packaged responses."""
         emor, bank = EmorBasis.load(), ResponseBank.load()
         weights = bank.weights[bank.ordinary]
         covariance = WIDENING * weights.T @ weights / len(weights)
@@ -142,7 +142,7 @@ def table_stops() -> Float64Array:
 
 
 def cubic_splines(mean: Float64Array) -> Float64Array:
-    """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both its ends.
+    """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both ends.
 
     Source: de Boor, "On calculating with B-splines", 1972.
     """

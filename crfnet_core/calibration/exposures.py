@@ -32,7 +32,7 @@ _MOST_BYTES = 16 * 2**20
 
 @dataclass(frozen=True)
 class ExposureLabel:
-    """What a file, or the user, says of a frame's exposure; None where nothing is said.
+    """A frame's exposure by its file or by the user; None where neither states it.
 
     Parameters
     ----------
@@ -49,8 +49,8 @@ class ExposureLabel:
     iso: float | None = None
 
     @classmethod
-    def of_header(cls, header: Any) -> ExposureLabel:
-        """Return what EXIF says, from an `OpenImageIO.ImageSpec`."""
+    def from_header(cls, header: Any) -> ExposureLabel:
+        """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`."""
         return cls(
             seconds=_positive(header, "ExposureTime"),
             f_number=_positive(header, "FNumber"),
@@ -69,7 +69,7 @@ class Exposures:
     snapped : ndarray, float64, shape (T,), optional
         The same with each factor on the exact power of two that its label stands for; None if labels stand for none.
     differing : tuple of str
-        Which settings beside the time differ between the frames: "ISO", "aperture".
+        The settings other than the time that differ between the frames: "ISO", "aperture".
     """
 
     nominal: Float64Array
@@ -107,7 +107,7 @@ def parse_times(text: str) -> tuple[float, ...]:
     Raises
     ------
     CalibrationError
-        If one is no positive number.
+        If one is not a positive number.
     """
     return tuple(_seconds(part) for part in text.split(","))
 
@@ -129,19 +129,19 @@ def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
         ]
     except (OSError, UnicodeDecodeError, csv.Error) as problem:
         reason = getattr(problem, "strerror", None) or problem
-        raise CalibrationError(f"{path}: cannot be read as CSV ({reason}); give rows such as IMG_1.jpg,1/60") from None
-    found: dict[str, float] = {}
+        raise CalibrationError("times_unreadable", path=path, reason=reason) from None
+    times: dict[str, float] = {}
     for number, row in enumerate(rows):
         if len(row) < 2:
-            raise CalibrationError(f"{path}: row {number + 1} holds no file and time; write it as IMG_1.jpg,1/60")
+            raise CalibrationError("times_row", path=path, row=number + 1)
         if number == 0 and not any(character.isdigit() for character in row[1]):
             continue
         name, seconds = Path(row[0].strip()).name, _seconds(row[1])
-        if found.setdefault(name, seconds) != seconds and name in names:
-            raise CalibrationError(f"{path}: has two times for {name}; give every frame a name and a row of its own")
-    if missing := [name for name in names if name not in found]:
-        raise CalibrationError(f"{path}: has no row for {missing[0]}; add its exposure time")
-    return tuple(found[name] for name in names)
+        if times.setdefault(name, seconds) != seconds and name in names:
+            raise CalibrationError("times_differ", path=path, name=name)
+    if missing := [name for name in names if name not in times]:
+        raise CalibrationError("times_lack_frame", path=path, name=missing[0])
+    return tuple(times[name] for name in names)
 
 
 def _seconds(text: str) -> float:
@@ -152,7 +152,7 @@ def _seconds(text: str) -> float:
     except (ValueError, ZeroDivisionError):
         value = 0.0
     if not 0 < value < math.inf:
-        raise CalibrationError(f"{text.strip()!r} is no exposure time; give seconds such as 1/60 or 0.5")
+        raise CalibrationError("bad_seconds", text=text.strip())
     return value
 
 

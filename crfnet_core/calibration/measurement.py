@@ -1,4 +1,4 @@
-"""From observations to an anchored response: start, fit, anchor, and what does not fit left out."""
+"""From observations to an anchored response: start, fit, anchor; frames and samples that do not fit are left out."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ OUTLIER = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """An anchored response, and what it was measured on.
+    """An anchored response, and the samples that it was measured on.
 
     Parameters
     ----------
@@ -134,11 +134,8 @@ def _worst_frame(fit: StackFit) -> int | None:
 def _check_rest(stops: Float64Array, count: int) -> None:
     """Refuse the frames that fit each other, of `count` frames, if their exposures span too few stops."""
     if (span := float(np.ptp(stops))) < LEAST_REST:
-        raise CalibrationError(
-            f"without the frames that do not fit the others ({count - len(stops)} of {count}), the exposures span"
-            f" {beside_limits(span, LEAST_REST)} stops; these need {LEAST_REST:g} or more: use a tripod and a still"
-            " scene, and take frames one or two stops apart"
-        )
+        span_text = beside_limits(span, LEAST_REST)
+        raise CalibrationError("rest_span", unfit=count - len(stops), count=count, span=span_text, least=LEAST_REST)
 
 
 def _outliers(seen: Observations, fit: StackFit) -> BoolArray:

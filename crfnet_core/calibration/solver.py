@@ -1,4 +1,4 @@
-"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. 44)."""
+"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. C.2)."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, STEPS, CurveModel, CurveValues
 from crfnet_core.types import BoolArray, Float64Array
 
-#: Factor by which every observation is down-weighted, because errors of neighbouring blocks are correlated.
+#: Factor by which every observation is down-weighted, because errors of neighboring blocks are correlated.
 DEFLATION = 10.0
 
 #: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around that of
@@ -51,7 +51,7 @@ class StackFit:
     residual : ndarray, float64, shape (M, T)
         Brightness less that of the model; NaN where nothing was seen.
     cost : float
-        What was minimised.
+        What was minimized.
     """
 
     weights: Float64Array

@@ -1,4 +1,4 @@
-"""How far a measured response may be off: its shape and its scale, both in stops (Eq. 46 and 47 of docs/METHOD.md)."""
+"""How far a measured response may be off: its shape and its scale, both in stops (Eq. C.4 and C.5)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crfnet_core.types import Float64Array
 #: Draws from the posterior of the curve's weights, and their seed.
 DRAWS, SEED = 64, 0
 
-#: What remains in stops where nothing disagrees: blocks are not flat, JPEG, the model.
+#: The rest in stops where nothing disagrees: blocks are not flat, JPEG, the model.
 LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
 
 #: Part of the difference between the channels' own responses that counts: they have a response in common.

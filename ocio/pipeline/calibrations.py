@@ -37,7 +37,7 @@ class CalibrationPlan:
     files : OutputFiles
         The files, all in one folder, which need not exist yet; no linear plates are among them.
     config : PyOpenColorIO.Config
-        The config of the folder, with the camera's colour space.
+        The config of the folder, with the camera's color space.
     lut_length : int
         Entries of the LUTs.
     overwrite : bool
@@ -67,7 +67,7 @@ def plan_calibration(
     outputs : OutputOptions
         Which files there are beside the LUTs, and how long the LUTs are.
     name : str, optional
-        How the files and the colour space are called; by default as the first frame.
+        How the files and the color space are called; by default as the first frame.
     overwrite : bool
         Whether existing files may be replaced.
 
@@ -77,7 +77,7 @@ def plan_calibration(
         If the name cannot be that of a file, or a file cannot be written or would replace another, or a frame: see
         `check_outputs`.
     ConfigError
-        If the colour space cannot be in a config.
+        If the color space cannot be in a config.
     """
     if name is not None and (not name.strip(" .") or Path(name).name != name):
         raise PlateError("not_a_file_name", name=repr(name))

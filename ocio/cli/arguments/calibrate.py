@@ -23,7 +23,7 @@ def add(commands: Commands) -> None:
     parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
     parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, HEIC, PNG, TIFF, DPX and others")
     parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
-    parser.add_argument("--name", metavar="NAME", help="how the files and the colour space are called (first frame)")
+    parser.add_argument("--name", metavar="NAME", help="the name of the files and of the color space (first frame's)")
     parser.add_argument(
         "--times", metavar="LIST|CSV", help="exposure times in seconds, one for each frame, instead of EXIF's"
     )

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.calibration.alignment import chain_of_shifts, common_area, displacement, rank_image
+from crfnet_core.calibration.alignment import chain_of_shifts, common_parts, displacement, rank_image
 from crfnet_core.calibration.blocks import block_means, cell_size, observe
 from crfnet_core.calibration.curve_model import CurveModel, cubic_splines
 from crfnet_core.response.curve import ResponseCurve
@@ -36,15 +36,17 @@ def test_frames_that_show_nothing_in_common_are_not_shifted():
 
 
 def test_shifts_add_up_along_the_exposures():
-    """Frames 2, 0, 1 from dark to bright: 0 is the reference, its neighbours are compared with it."""
+    """Frames 2, 0, 1 from dark to bright: 0 is the reference, its neighbors are compared with it."""
     image = texture()
     ranks = [rank_image(np.roll(image, shift, axis=(0, 1))) for shift in ((0, 0), (3, 2), (-4, 0))]
     assert chain_of_shifts(ranks, [2, 0, 1], stride=2) == ((0, 0), (6, 4), (-8, 0))
 
 
-def test_the_common_area_is_what_every_frame_shows():
-    rows, columns = common_area((100, 80), [(0, 0), (5, -3), (-2, 4)])
-    assert (rows, columns) == (slice(2, 95), slice(3, 76))
+def test_displaced_images_are_cut_to_what_all_of_them_show():
+    image, shifts = texture(), [(0, 0), (5, -3), (-2, 4)]
+    parts = common_parts([np.roll(image, shift, axis=(0, 1)) for shift in shifts], shifts)
+    for part in parts:
+        np.testing.assert_array_equal(part, image[2:155, 3:196])
 
 
 def test_small_pictures_have_small_cells():
@@ -73,7 +75,7 @@ def test_partly_white_and_nearly_black_blocks_do_not_count():
     half[:2] = 255
     seen = observe([block_means(codes, 255) for codes in (*frames, half)], is_gray=True)
     np.testing.assert_array_equal(seen.is_used, [[False, True, False, False]])
-    np.testing.assert_array_equal(seen.is_white, [[False, False, True, False]])
+    np.testing.assert_array_equal(seen.white_fraction, [[0, 0, 1, 0.5]])
 
 
 def test_splines_vanish_at_black_and_white_and_add_up_between():
@@ -82,7 +84,7 @@ def test_splines_vanish_at_black_and_white_and_add_up_between():
     np.testing.assert_allclose(splines[:, 500].sum(), 1, atol=1e-9)
 
 
-@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("seed", range(2))
 def test_the_model_holds_emor_responses(seed):
     model, curve = CurveModel.load(), emor_response(seed)
     again = model.response(model.weights_of(curve))
