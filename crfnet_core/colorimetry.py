@@ -33,10 +33,7 @@ def rgb_to_xyz(red: Chromaticity, green: Chromaticity, blue: Chromaticity, white
 
     Source: SMPTE RP 177-1993, Derivation of Basic Television Color Equations.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the three primaries lie on a line.
+    Raise numpy.linalg.LinAlgError if the three primaries lie on a line.
     """
     columns = np.array([(x, y, 1 - x - y) for x, y in (red, green, blue)]).T
     scales: Float64Array = np.linalg.solve(columns, xyz_of(white))
@@ -57,24 +54,14 @@ D60: Chromaticity = (0.32168, 0.33767)
 
 @dataclass(frozen=True)
 class Primaries:
-    """The chromaticities of an RGB.
+    """The chromaticities of an RGB, CIE 1931 x and y."""
 
-    Parameters
-    ----------
-    name : str
-        As people know it, for example "Display P3".
-    red, green, blue, white : (float, float)
-        CIE 1931 x and y.
-    interop_id : str
-        The Color Interop Forum's name of the scene-linear space with these primaries; empty if there is none.
-    """
-
-    name: str
+    name: str  # as people know it, for example "Display P3"
     red: Chromaticity
     green: Chromaticity
     blue: Chromaticity
     white: Chromaticity = D65
-    interop_id: str = ""
+    interop_id: str = ""  # the Color Interop Forum's name of the scene-linear space; empty if there is none
 
     @property
     def corners(self) -> Float64Array:

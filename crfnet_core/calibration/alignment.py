@@ -33,18 +33,10 @@ def rank_image(gray: Float64Array) -> Float64Array:
 
 
 def chain_of_shifts(ranks: Sequence[Float64Array], order: Sequence[int], stride: int) -> tuple[Shift, ...]:
-    """Return by how many pixels each frame is displaced from the middle one of `order`.
+    """Return by how many pixels each frame is displaced from the middle one of `order`, the frames by exposure.
 
-    Neighbors in `order` (of exposure) look most alike, so each is compared with the next and the shifts are added up.
-
-    Parameters
-    ----------
-    ranks : sequence of ndarray, shape (h, w)
-        Rank images of the frames.
-    order : sequence of int
-        The frames by exposure.
-    stride : int
-        Pixels of a frame between two samples of its rank image.
+    Neighbors in `order` look most alike, so each rank image is compared with the next and the shifts are added up.
+    `stride` is the number of pixels between two samples of a rank image.
     """
     steps = [displacement(ranks[first], ranks[second]) for first, second in pairwise(order)]
     places = np.cumsum([np.zeros(2), *steps], axis=0)

@@ -32,21 +32,11 @@ UNSEEN_DEVIATION = 0.4
 
 @dataclass(frozen=True)
 class Anchor:
-    """The irradiance at which the codes reach white.
+    """The irradiance at which the codes reach white."""
 
-    Parameters
-    ----------
-    log_white : float
-        log2 of the irradiance of white, in the units of the fit; 0 if the fit has it right.
-    deviation : float
-        Its standard deviation in stops.
-    is_seen : bool
-        Whether samples reach white in some frame and are measured in another.
-    """
-
-    log_white: float
-    deviation: float
-    is_seen: bool
+    log_white: float  # log2 of the irradiance of white, in the units of the fit; 0 if the fit has it right
+    deviation: float  # its standard deviation in stops
+    is_seen: bool  # whether samples reach white in some frame and are measured in another
 
 
 def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, fit: StackFit) -> Anchor:

@@ -51,31 +51,15 @@ class BlockMeans(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """The brightness of M samples (a block in one channel) in T frames.
+    """The brightness of M samples (a block in one channel) in T frames."""
 
-    Parameters
-    ----------
-    brightness : ndarray, float64, shape (M, T)
-        Mean brightness, white = 1.
-    deviation : ndarray, float64, shape (M, T)
-        Its expected standard deviation.
-    is_used : ndarray, bool, shape (M, T)
-        Whether the brightness counts.
-    white_fraction : ndarray, float64, shape (M, T)
-        Fraction of white pixels.
-    spread : ndarray, float64, shape (M,)
-        Typical spread within the block, in brightness.
-    block, channel : ndarray, int, shape (M,)
-        The sample's block of the picture, and its channel.
-    """
-
-    brightness: Float64Array
-    deviation: Float64Array
-    is_used: BoolArray
-    white_fraction: Float64Array
-    spread: Float64Array
-    block: IndexArray
-    channel: IndexArray
+    brightness: Float64Array  # (M, T): mean brightness, white = 1
+    deviation: Float64Array  # (M, T): its expected standard deviation
+    is_used: BoolArray  # (M, T): whether the brightness counts
+    white_fraction: Float64Array  # (M, T): fraction of white pixels
+    spread: Float64Array  # (M,): typical spread within the block, in brightness
+    block: IndexArray  # (M,): the sample's block of the picture
+    channel: IndexArray  # (M,): the sample's channel
 
     @property
     def is_white(self) -> BoolArray:
@@ -93,15 +77,7 @@ class Observations:
 
 
 def block_means(codes: CodeArray, white: float) -> BlockMeans:
-    """Return the means over the blocks of a frame, row by row.
-
-    Parameters
-    ----------
-    codes : ndarray, uint8 or uint16, shape (H, W, 3)
-        Code values.
-    white : float
-        The code of white.
-    """
+    """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
     cell = cell_size(codes.shape[:2])
     rows, columns = (side // (CELLS * cell) for side in codes.shape[:2])
     cut = codes[: rows * CELLS * cell, : columns * CELLS * cell]
@@ -150,17 +126,8 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
 def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observations:
     """Return the samples of about `BLOCKS` blocks, the flattest and most neutral ones of every level of irradiance.
 
-    Parameters
-    ----------
-    seen : Observations
-        Every sample.
-    log_irradiance : ndarray, float64, shape (M,)
-        log2 of each sample's irradiance, roughly; NaN where no frame shows it.
-
-    Raises
-    ------
-    CalibrationError
-        If there are fewer than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
+    `log_irradiance`, shape (M,), is rough; NaN where no frame shows a sample. Raise CalibrationError if there are fewer
+    than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
     """
     channels = int(seen.channel.max()) + 1
     levels = log_irradiance.reshape(-1, channels)

@@ -41,44 +41,22 @@ SAME_LABELS = 0.005
 
 @dataclass(frozen=True, eq=False)
 class FrameReport:
-    """One frame of a measured stack.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    label : ExposureLabel
-        Its exposure by EXIF or as given.
-    stops : float
-        Its exposure as it was used, relative to the mean of the stack.
-    offsets : ndarray, float64, shape (C,)
-        Stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
-    shift : (int, int)
-        Rows and columns in pixels by which it was displaced.
-    residual : float
-        Root mean square of brightness less the model's, in 8-bit codes of the file; NaN if it was left out.
-    is_used : bool
-        Whether it fits the others.
-    """
+    """One frame of a measured stack."""
 
     path: Path
-    label: ExposureLabel
-    stops: float
+    label: ExposureLabel  # its exposure by EXIF or as given
+    stops: float  # its exposure as used, relative to the mean of the stack
+    #: Shape (C,): stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
     offsets: Float64Array
-    shift: Shift
+    shift: Shift  # rows and columns in pixels by which it was displaced
+    #: Root mean square of brightness less the model's, in 8-bit codes of the file; NaN if it was left out.
     residual: float
-    is_used: bool
+    is_used: bool  # whether it fits the others
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far another response is from a measured one.
-
-    Parameters
-    ----------
-    estimation_error, linearization_error, shape_error, scale_error : float
-        See the functions of these names in `crfnet_core.response.metrics`; E_lin is of the best exposed frame.
-    """
+    """How far another response is from a measured one, by the functions of these names; E_lin of the best exposed frame."""
 
     estimation_error: float
     linearization_error: float
@@ -88,52 +66,24 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """A measured response, how far it may be off, and its stack.
+    """A measured response, how far it may be off, and its stack."""
 
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response. Its brightness is a part of the file's largest code, as in `points` and `counts`: where the
-        camera clips below that code, the response reaches `white` and jumps to 1.
-    weights : ndarray, float64, shape (11,)
-        Its EMoR weights.
-    uncertainty : Uncertainty
-        Of its shape and of its scale, in stops.
-    residual : float
-        Root mean square of brightness less the model's, in 8-bit codes of the file.
-    white : float
-        Code of white as a part of the largest code.
-    reaches_white : bool
-        Whether white was seen; otherwise the scale comes from similar known responses.
-    labels : str
-        The reading of the exposure labels: "nominal", or "exact powers of two".
-    nearest_known : float
-        E_est between it and the nearest packaged response, both in parts of their own white.
-    metadata : FileMetadata
-        The header of the first frame's file.
-    frames : tuple of FrameReport
-        The frames in the order given.
-    points : ndarray, float64, shape (N, 4)
-        The samples: log2 of irradiance (white = 0), brightness, brightness less the model's, frame.
-    counts : ndarray, float64, shape (256,)
-        How often each of 256 steps of brightness occurs in the best exposed frame.
-    warnings : tuple of Notice
-        Doubts about the measurement.
-    """
-
+    #: The response. Its brightness is a part of the file's largest code, as in `points` and `counts`: where the camera
+    #: clips below that code, the response reaches `white` and jumps to 1.
     curve: ResponseCurve
-    weights: Float64Array
-    uncertainty: Uncertainty
-    residual: float
-    white: float
-    reaches_white: bool
-    labels: str
-    nearest_known: float
-    metadata: FileMetadata
-    frames: tuple[FrameReport, ...]
+    weights: Float64Array  # (11,): its EMoR weights
+    uncertainty: Uncertainty  # of its shape and of its scale, in stops
+    residual: float  # root mean square of brightness less the model's, in 8-bit codes of the file
+    white: float  # code of white as a part of the largest code
+    reaches_white: bool  # whether white was seen; otherwise the scale comes from similar known responses
+    labels: str  # the reading of the exposure labels: "nominal", or "exact powers of two"
+    nearest_known: float  # E_est between it and the nearest packaged response, both in parts of their own white
+    metadata: FileMetadata  # the header of the first frame's file
+    frames: tuple[FrameReport, ...]  # in the order of the files
+    #: Shape (N, 4): the samples: log2 of irradiance (white = 0), brightness, brightness less the model's, frame.
     points: Float64Array
-    counts: Float64Array
-    warnings: tuple[Notice, ...]
+    counts: Float64Array  # (256,): how often each of 256 steps of brightness occurs in the best exposed frame
+    warnings: tuple[Notice, ...]  # doubts about the measurement
 
     def compare(self, other: ResponseCurve) -> Comparison:
         """Return how far another response, such as an estimate, is from this one."""
@@ -155,23 +105,12 @@ def calibrate_stack(
 ) -> Calibration:
     """Measure the response of the camera that took an exposure stack of one static scene.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        The frames, in any order.
-    seconds : sequence of float, optional
-        Their exposure times; by default EXIF's. ISO and f-number count too where EXIF has them.
-    accept_edited : bool
-        Whether files may be measured that a program has edited.
-    progress : callable, optional
-        Called with (done, total) after every frame that is read.
+    `seconds` are the exposure times of the frames, by default EXIF's; ISO and f-number count too where EXIF has them.
+    Files that a program has edited are refused unless `accept_edited`. `progress` is called with (done, total) after
+    every frame that is read.
 
-    Raises
-    ------
-    PhotoError
-        If a frame cannot be read.
-    CalibrationError
-        If the frames are not a stack, or no camera response explains them.
+    Raise PhotoError if a frame cannot be read, and CalibrationError if the frames are not a stack, or no camera
+    response explains them.
     """
     frames = _labeled(read_frames(paths, progress=progress), seconds)
     check_labels(frames, accept_edited=accept_edited)

@@ -45,13 +45,7 @@ CODE_BINS, LEAST_BINS = 28, 0.5
 
 
 def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
-    """Refuse frames without exposure times, and frames that a program has edited.
-
-    Raises
-    ------
-    CalibrationError
-        In either case; edited frames only if `accept_edited` is false.
-    """
+    """Refuse frames without exposure times, and frames that a program has edited."""
     for frame in frames:
         if frame.label.seconds is None:
             raise CalibrationError("frame_untimed", path=frame.path)
@@ -60,13 +54,7 @@ def check_labels(frames: Sequence[Frame], *, accept_edited: bool) -> None:
 
 
 def check_range(exposures: Exposures) -> None:
-    """Refuse a stack whose exposures lie too close together, or too far apart.
-
-    Raises
-    ------
-    CalibrationError
-        If they span less than `LEAST_RANGE` stops, or two neighbors are more than `LARGEST_STEP` stops apart.
-    """
+    """Refuse exposures that span less than `LEAST_RANGE` stops, or neighbors more than `LARGEST_STEP` stops apart."""
     if exposures.range < LEAST_RANGE - ROUNDING:
         raise CalibrationError("exposures_span", span=beside_limits(exposures.range, LEAST_RANGE), least=LEAST_RANGE)
     if (step := float(np.diff(np.sort(exposures.nominal)).max())) > LARGEST_STEP + ROUNDING:
@@ -74,18 +62,7 @@ def check_range(exposures: Exposures) -> None:
 
 
 def check_seen(brightness: Float64Array) -> None:
-    """Refuse a stack that does not show enough of the codes between black and white.
-
-    Parameters
-    ----------
-    brightness : ndarray, float64, shape (N,)
-        The measured brightness, the largest code of the file = 1.
-
-    Raises
-    ------
-    CalibrationError
-        If fewer than `LEAST_BINS` of the codes that the shape is measured over occur.
-    """
+    """Refuse a stack whose brightness, shape (N,), shows fewer than `LEAST_BINS` of the codes that give the shape."""
     edges = np.linspace(FIRST_SHAPE_CODE, LAST_SHAPE_CODE, CODE_BINS + 1)
     part = float(np.mean(np.histogram(255 * brightness, edges)[0] > 0))
     if part < LEAST_BINS:
@@ -93,22 +70,7 @@ def check_seen(brightness: Float64Array) -> None:
 
 
 def check_measurement(measurement: Measurement, names: Sequence[str], *, white: float) -> None:
-    """Refuse a measurement that no camera response explains.
-
-    Parameters
-    ----------
-    measurement : Measurement
-        The response.
-    names : sequence of str
-        The names of all frames.
-    white : float
-        The code of white as a part of the largest code.
-
-    Raises
-    ------
-    CalibrationError
-        If the frames moved, are mistimed, or follow no one curve, or the curve is far from every known response.
-    """
+    """Refuse frames that moved, are mistimed or follow no single curve, and a curve far from every known response."""
     used, left_out = _names(measurement, names)
     residual = white * measurement.residual
     is_moved = measurement.frames.sum() < LEAST_FRAMES or measurement.outliers > MOST_OUTLIERS
@@ -128,19 +90,7 @@ def check_measurement(measurement: Measurement, names: Sequence[str], *, white: 
 def notices_of(
     measurement: Measurement, names: Sequence[str], exposures: Exposures, *, white: float
 ) -> tuple[Notice, ...]:
-    """Return the doubts about a measurement that are not a reason to refuse it.
-
-    Parameters
-    ----------
-    measurement : Measurement
-        The response.
-    names : sequence of str
-        The names of all frames.
-    exposures : Exposures
-        Their exposures.
-    white : float
-        The code of white as a part of the largest code.
-    """
+    """Return the doubts about a measurement that are not a reason to refuse it."""
     used, left_out = _names(measurement, names)
     notices = [Notice("frame_unfit", {"name": name}) for name in left_out]
     offsets = zip(used, off_trend(measurement).tolist(), strict=True)

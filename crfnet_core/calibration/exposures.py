@@ -32,21 +32,11 @@ _MOST_BYTES = 16 * 2**20
 
 @dataclass(frozen=True)
 class ExposureLabel:
-    """A frame's exposure by its file or by the user; None where neither states it.
+    """A frame's exposure by its file or by the user; None where neither states it."""
 
-    Parameters
-    ----------
-    seconds : float, optional
-        Exposure time.
-    f_number : float, optional
-        Focal length over aperture.
-    iso : float, optional
-        Sensitivity.
-    """
-
-    seconds: float | None = None
-    f_number: float | None = None
-    iso: float | None = None
+    seconds: float | None = None  # exposure time
+    f_number: float | None = None  # focal length over aperture
+    iso: float | None = None  # sensitivity
 
     @classmethod
     def from_header(cls, header: Any) -> ExposureLabel:
@@ -60,21 +50,13 @@ class ExposureLabel:
 
 @dataclass(frozen=True, eq=False)
 class Exposures:
-    """The exposures of a stack.
+    """The exposures of a stack."""
 
-    Parameters
-    ----------
-    nominal : ndarray, float64, shape (T,)
-        log2 of seconds x ISO / f-number^2, as labelled, relative to the mean over the stack.
-    snapped : ndarray, float64, shape (T,), optional
-        The same with each factor on the exact power of two that its label stands for; None if labels stand for none.
-    differing : tuple of str
-        The settings other than the time that differ between the frames: "ISO", "aperture".
-    """
-
-    nominal: Float64Array
+    nominal: Float64Array  # (T,): log2 of seconds x ISO / f-number^2, as labeled, relative to the mean over the stack
+    #: Shape (T,): the same with each factor on the exact power of two that its label stands for; None if labels stand
+    #: for none.
     snapped: Float64Array | None
-    differing: tuple[str, ...]
+    differing: tuple[str, ...]  # the settings other than the time that differ between the frames: "ISO", "aperture"
 
     @property
     def range(self) -> float:
@@ -104,10 +86,7 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
 def parse_times(text: str) -> tuple[float, ...]:
     """Return the seconds in "1/60,1/30,0.5".
 
-    Raises
-    ------
-    CalibrationError
-        If one is not a positive number.
+    Raise CalibrationError if one is not a positive number.
     """
     return tuple(_seconds(part) for part in text.split(","))
 
@@ -116,12 +95,8 @@ def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
     """Return the seconds of each of the files `names`, in a CSV file of rows such as "IMG_1.jpg,1/60".
 
     Rows may be in any order, and may name other files too; folders in them do not count. A first row without a time is
-    a heading.
-
-    Raises
-    ------
-    CalibrationError
-        If the file cannot be read, a row holds no name and time, or a frame has no row, or two times.
+    a heading. Raise CalibrationError if the file cannot be read, a row holds no name and time, or a frame has no row,
+    or two times.
     """
     try:
         rows = [

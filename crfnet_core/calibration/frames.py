@@ -33,36 +33,16 @@ ABOVE_NEIGHBORS, ABOVE_REST = 1.5, 2.0
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame of a stack.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    codes : ndarray, uint8 or uint16, shape (H, W, 3)
-        Its code values, every `stride`-th in both directions.
-    stride : int
-        Distance of the samples in the file.
-    largest : int
-        The largest code that the file can hold.
-    counts : ndarray, float64, shape (256,)
-        How often each brightness occurs over all channels, in 256 steps.
-    label : ExposureLabel
-        Its exposure by EXIF.
-    metadata : FileMetadata
-        The rest of the file's header.
-    is_gray : bool
-        Whether the three channels are equal everywhere.
-    """
+    """One frame of a stack."""
 
     path: Path
-    codes: CodeArray
-    stride: int
-    largest: int
-    counts: Float64Array
-    label: ExposureLabel
-    metadata: FileMetadata
-    is_gray: bool
+    codes: CodeArray  # (H, W, 3): its code values, every `stride`-th in both directions
+    stride: int  # distance of the samples in the file
+    largest: int  # the largest code that the file can hold
+    counts: Float64Array  # (256,): how often each brightness occurs over all channels, in 256 steps
+    label: ExposureLabel  # its exposure by EXIF
+    metadata: FileMetadata  # the rest of the file's header
+    is_gray: bool  # whether the three channels are equal everywhere
 
     @property
     def size(self) -> tuple[int, int]:
@@ -73,19 +53,8 @@ class Frame:
 def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> tuple[Frame, ...]:
     """Read the frames of one static scene, checked to be of one size, bit depth and camera.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        JPEG, HEIC, PNG, TIFF, DPX and other files: see `crfnet_core.photograph.image_io.read_photo`.
-    progress : callable, optional
-        Called with (done, total) after every frame.
-
-    Raises
-    ------
-    PhotoError
-        If a frame cannot be read.
-    CalibrationError
-        If there are fewer than `LEAST_FRAMES`, or they differ in what a stack has in common.
+    Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, or they
+    differ in what a stack has in common.
     """
     if len(paths) < LEAST_FRAMES:
         for path in paths:
@@ -142,12 +111,7 @@ def _pile(fractions: Float64Array) -> int | None:
 def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[Shift, ...]]:
     """Return the codes of all frames cut to what they have in common, and by how many pixels each was displaced.
 
-    Parameters
-    ----------
-    frames : sequence of Frame
-        The stack.
-    order : sequence of int
-        The frames from the shortest to the longest exposure.
+    `order` lists the frames from the shortest to the longest exposure.
     """
     stride = max(1, -(-max(frames[0].codes.shape) // LONGEST_SIDE))
     ranks = [rank_image(frame.codes[::stride, ::stride].mean(axis=2, dtype=np.float64)) for frame in frames]

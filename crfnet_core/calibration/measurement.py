@@ -34,33 +34,15 @@ OUTLIER = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """An anchored response, and the samples that it was measured on.
+    """An anchored response, and the samples that it was measured on."""
 
-    Parameters
-    ----------
-    seen : Observations
-        The samples that were used, in the frames that were used.
-    exposures : ndarray, float64, shape (T,)
-        The labels of these frames, in stops.
-    frames : ndarray, bool, shape (all frames,)
-        Which frames these are.
-    fit : StackFit
-        The fit; its unit of irradiance is white but for `anchor`.
-    anchor : Anchor
-        Where white is in that unit.
-    curve : ResponseCurve
-        The response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`.
-    outliers : float
-        Fraction of the samples that were left out.
-    """
-
-    seen: Observations
-    exposures: Float64Array
-    frames: BoolArray
-    fit: StackFit
-    anchor: Anchor
-    curve: ResponseCurve
-    outliers: float
+    seen: Observations  # the samples that were used, in the frames that were used
+    exposures: Float64Array  # (T,): the labels of these frames, in stops
+    frames: BoolArray  # (all frames,): which frames these are
+    fit: StackFit  # its unit of irradiance is white but for `anchor`
+    anchor: Anchor  # where white is in that unit
+    curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
+    outliers: float  # fraction of the samples that were left out
 
     @property
     def residual(self) -> float:
@@ -71,19 +53,10 @@ class Measurement:
 def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
 
-    Parameters
-    ----------
-    every : Observations
-        Every sample of the stack.
-    exposures : ndarray, float64, shape (T,)
-        Labels of the exposures, in stops.
-    model : CurveModel
-        The responses to choose from.
+    `exposures` are the labels in stops, shape (T,).
 
-    Raises
-    ------
-    CalibrationError
-        If too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans too few stops.
+    Raise CalibrationError if too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans
+    too few stops.
     """
     frames = np.ones(len(exposures), dtype=bool)
     while True:

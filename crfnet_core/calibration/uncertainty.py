@@ -31,18 +31,10 @@ LEAST_SAMPLES = 60
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Standard deviations in stops, each with its parts by name.
+    """Standard deviations in stops, each with its parts by name."""
 
-    Parameters
-    ----------
-    shape : dict
-        Parts of the shape's: see `crfnet_core.response.metrics.shape_error`.
-    scale : dict
-        Parts of the scale's: see `crfnet_core.response.metrics.scale_error`.
-    """
-
-    shape: dict[str, float]
-    scale: dict[str, float]
+    shape: dict[str, float]  # parts of the shape's: see `crfnet_core.response.metrics.shape_error`
+    scale: dict[str, float]  # parts of the scale's: see `crfnet_core.response.metrics.scale_error`
 
     @property
     def shape_stops(self) -> float:
@@ -60,16 +52,8 @@ def uncertainty_of(
 ) -> Uncertainty:
     """Return how far a measured response may be off, at the codes of the file.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        The response.
-    other_labels : ResponseCurve, optional
-        The response by the other reading of the exposure labels, if there is one.
-    model : CurveModel
-        The responses to choose from.
-    white : float
-        The code of white as a part of the largest code.
+    `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
+    exposure labels, if there is one.
     """
     curve = in_file_codes(measurement.curve, white)
     even = measurement.seen.block % 2 == 0

@@ -20,18 +20,10 @@ from crfnet_core.types import Float32Array, Progress, cores, show_progress
 
 @dataclass(frozen=True)
 class Predictions:
-    """The evidence that a network sees in one photograph.
+    """The evidence that a network sees in one photograph."""
 
-    Parameters
-    ----------
-    windows : tuple of Evidence
-        Of each window by itself.
-    pooled : Evidence
-        Of all windows together: by the network, or their robust mean if it does not pool.
-    """
-
-    windows: tuple[Evidence, ...]
-    pooled: Evidence
+    windows: tuple[Evidence, ...]  # of each window by itself
+    pooled: Evidence  # of all windows together: by the network, or their robust mean if it does not pool
 
 
 class ResponseNetwork:
@@ -78,19 +70,10 @@ class ResponseNetwork:
         return cls(config, Session(folder, read_graph(folder, config), config), folder=folder, threads=threads)
 
     def predict(self, windows: Float32Array, *, progress: Progress | None = None) -> Predictions:
-        """Return the evidence in the windows of one photograph.
+        """Return the evidence in the windows of one photograph, code values in [0, 1], shape (N, 227, 227, 3).
 
-        Parameters
-        ----------
-        windows : ndarray, float32, shape (N, 227, 227, 3)
-            At least one window, code values in [0, 1]; not changed.
-        progress : callable, optional
-            Called with (done, total) after every window.
-
-        Raises
-        ------
-        ModelError
-            If the network fails, or answers with numbers that are not finite or of another shape than evidence.
+        `progress` is called with (done, total) after every window. Raise ModelError if the network fails, or answers
+        with numbers that are not finite or of another shape than evidence.
         """
         if self.config.reads_statistics:
             outputs = self._session.run(_statistics(windows, progress))

@@ -45,24 +45,12 @@ LARGEST_RESIDUAL = 8
 _WARNING = VERDICT_INK[Verdict.USABLE]
 
 
-def draw_calibration(path: Path, calibration: Calibration, *, overwrite: bool = False) -> None:
+def draw_calibration(path: Path, calibration: Calibration) -> None:
     """Write the picture of a calibration as PNG; the same input gives the same bytes.
 
-    Parameters
-    ----------
-    path : Path
-        The file to write.
-    calibration : Calibration
-        The measured response.
-    overwrite : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    PlateError
-        If the file cannot be written.
+    Raise PlateError if that fails.
     """
-    with sheet_figure(path, overwrite=overwrite) as figure:
+    with sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)
         colors = _frame_colors(calibration)
