@@ -46,7 +46,7 @@ def adaptation(source: Chromaticity, target: Chromaticity) -> Float64Array:
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
 
 
-#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and ACES's ("D60", SMPTE ST 2065-1).
 D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)
@@ -97,10 +97,10 @@ PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophot
 
 
 def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
-    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
+    """Return the matrix from linear RGB of one kind to another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
 
-    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
-    configs of OpenColorIO. Colours outside the target's gamut become negative.
+    White stays white: between different white points colors are adapted by the Bradford transform, as in the ACES
+    configs of OpenColorIO. Colors outside the target's gamut become negative.
     """
     if source == target:
         return np.eye(3)

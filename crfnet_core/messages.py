@@ -207,10 +207,6 @@ SENTENCES: Mapping[str, str] = {
     " camera or the scene has moved, so use a tripod and a still scene, or leave these frames out",
     "settings_differ": "{settings} differ between the frames: exposures are time x ISO / f-number^2",
     "times_count": "{times} times are given for {frames} frames; give one for each, in order",
-    "times_differ": "{path}: has two times for {name}; give every frame a name and a row of its own",
-    "times_lack_frame": "{path}: has no row for {name}; add its exposure time",
-    "times_row": "{path}: row {row} holds no file and time; write it as IMG_1.jpg,1/60",
-    "times_unreadable": "{path}: cannot be read as CSV ({reason}); give rows such as IMG_1.jpg,1/60",
     "unknown_curve": "the curve that explains the frames is far from every known response (E_est {distance}, at most"
     " {most:g}); the exposure times are probably wrong, so check them, or the files were edited",
     "unlike_cameras": "unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times",

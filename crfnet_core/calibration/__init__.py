@@ -17,7 +17,7 @@ docs/CALIBRATE.md has the equations, and how good it is.
 """
 
 from crfnet_core.calibration.calibrate import Calibration, Comparison, FrameReport, calibrate_stack
-from crfnet_core.calibration.exposures import ExposureLabel, parse_times, read_times
+from crfnet_core.calibration.exposures import ExposureLabel, parse_times
 from crfnet_core.calibration.uncertainty import Uncertainty
 
 __all__ = [
@@ -28,5 +28,4 @@ __all__ = [
     "Uncertainty",
     "calibrate_stack",
     "parse_times",
-    "read_times",
 ]

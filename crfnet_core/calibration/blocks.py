@@ -31,7 +31,7 @@ DARK_CODE = 10
 CODE_NOISE, SPREAD_NOISE = 0.4, 0.15
 
 #: Factor on the deviation where another channel clips, and the chroma (a part of the brightness) at which the variance
-#: is twice that of gray.
+#: is twice gray's.
 CLIPPED_NEIGHBOR, STRONG_CHROMA = 4.0, 0.35
 
 #: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
@@ -97,7 +97,7 @@ def cell_size(shape: tuple[int, ...]) -> int:
 
 
 def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
-    """Return every sample of every block: those of one block follow each other, one channel only if gray."""
+    """Return every sample of every block, channel after channel; one channel only if gray."""
     channels = 1 if is_gray else 3
     brightness, spread, white = (
         np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)

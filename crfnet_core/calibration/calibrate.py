@@ -56,7 +56,7 @@ class FrameReport:
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far another response is from a measured one, by the functions of these names; E_lin of the best exposed frame."""
+    """Errors of another response by the functions of these names; E_lin is of the best exposed frame."""
 
     estimation_error: float
     linearization_error: float
@@ -144,7 +144,7 @@ def calibrate_stack(
 
 
 def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
-    """Return the frames with the times that were given, if any were."""
+    """Return the frames with the stated times, if there are any."""
     if seconds is None:
         return tuple(frames)
     if len(seconds) != len(frames):

@@ -1,18 +1,15 @@
-"""Exposures of the frames of a stack, in stops: from EXIF or given times, as labelled and as cameras really expose."""
+"""Exposures of the frames of a stack, in stops: from EXIF or given times, as labeled and as cameras really expose."""
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import CalibrationError
-from crfnet_core.files import read_bytes
 from crfnet_core.photograph.metadata.header_colors import header_attribute
 from crfnet_core.types import Float64Array
 
@@ -25,9 +22,6 @@ ROUNDING = 1e-6
 #: Steps of a camera to a stop -> the largest distance in stops between a label and the exposure that it stands for:
 #: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
 LABEL_ERRORS = {3: 0.13, 2: 0.18}
-
-#: Size of the largest table of exposure times.
-_MOST_BYTES = 16 * 2**20
 
 
 @dataclass(frozen=True)
@@ -78,45 +72,13 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
     nominal = np.sum(parts, axis=0)
     known = [part for part in rounded if part is not None]
     snapped = np.sum(known, axis=0) if len(known) == len(parts) else None
-    return Exposures(
-        nominal - nominal.mean(), None if snapped is None else snapped - snapped.mean(), differing=tuple(differing)
-    )
+    centered = None if snapped is None else snapped - snapped.mean()
+    return Exposures(nominal - nominal.mean(), centered, tuple(differing))
 
 
 def parse_times(text: str) -> tuple[float, ...]:
-    """Return the seconds in "1/60,1/30,0.5".
-
-    Raise CalibrationError if one is not a positive number.
-    """
+    """Return the seconds in "1/60,1/30,0.5". Raise CalibrationError if one is not a positive number."""
     return tuple(_seconds(part) for part in text.split(","))
-
-
-def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
-    """Return the seconds of each of the files `names`, in a CSV file of rows such as "IMG_1.jpg,1/60".
-
-    Rows may be in any order, and may name other files too; folders in them do not count. A first row without a time is
-    a heading. Raise CalibrationError if the file cannot be read, a row holds no name and time, or a frame has no row,
-    or two times.
-    """
-    try:
-        rows = [
-            row for row in csv.reader(read_bytes(path, most=_MOST_BYTES).decode("utf-8-sig").splitlines()) if any(row)
-        ]
-    except (OSError, UnicodeDecodeError, csv.Error) as problem:
-        reason = getattr(problem, "strerror", None) or problem
-        raise CalibrationError("times_unreadable", path=path, reason=reason) from None
-    times: dict[str, float] = {}
-    for number, row in enumerate(rows):
-        if len(row) < 2:
-            raise CalibrationError("times_row", path=path, row=number + 1)
-        if number == 0 and not any(character.isdigit() for character in row[1]):
-            continue
-        name, seconds = Path(row[0].strip()).name, _seconds(row[1])
-        if times.setdefault(name, seconds) != seconds and name in names:
-            raise CalibrationError("times_differ", path=path, name=name)
-    if missing := [name for name in names if name not in times]:
-        raise CalibrationError("times_lack_frame", path=path, name=missing[0])
-    return tuple(times[name] for name in names)
 
 
 def _seconds(text: str) -> float:

@@ -20,7 +20,7 @@ from crfnet_core.types import Float64Array, Progress, show_progress
 #: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
 LEAST_FRAMES = 4
 
-#: Longest side in pixels that is kept: every second pixel, or fewer, of larger frames.
+#: Longest side of the samples in pixels; larger frames are thinned out.
 KEPT_SIDE = 3000
 
 #: 8-bit code from which samples that pile up may be white, their least fraction, and the frames in which they have to.
@@ -104,8 +104,8 @@ def _pile(fractions: Float64Array) -> int | None:
     pile = WHITE_FROM + int(fractions[WHITE_FROM:].argmax())
     if pile == 255 or fractions[pile] < WHITE_FRACTION:
         return None
-    beside, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
-    return pile if fractions[pile] > ABOVE_NEIGHBORS * beside and fractions[pile] > ABOVE_REST * below else None
+    near, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
+    return pile if fractions[pile] > ABOVE_NEIGHBORS * near and fractions[pile] > ABOVE_REST * below else None
 
 
 def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[Shift, ...]]:

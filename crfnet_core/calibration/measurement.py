@@ -19,7 +19,7 @@ from crfnet_core.types import BoolArray, Float64Array
 #: Fits with the anchor corrected in between.
 ROUNDS = 2
 
-#: Residual in 8-bit codes from which a frame does not fit, and how many times it has to be that of the others.
+#: Residual in 8-bit codes from which a frame does not fit, and by which factor it has to exceed the others.
 WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
 #: Stops that the frames that fit each other have to span, fewer than a whole stack: over one stop, whose labels may be
@@ -63,16 +63,16 @@ def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> 
         within, stops = every.in_frames(frames), exposures[frames]
         known = best_known_response(within, stops)
         seen = pick_blocks(within, rough_irradiance(within, stops, known))
-        found = fit_and_anchor(seen, stops, model, known)
-        worst = _worst_frame(found.fit)
+        measurement = fit_and_anchor(seen, stops, model, known)
+        worst = _worst_frame(measurement.fit)
         if worst is None or frames.sum() < LEAST_FRAMES:
             break
         frames[np.flatnonzero(frames)[worst]] = False
         _check_rest(exposures[frames], len(frames))
-    is_outlier = _outliers(seen, found.fit)
+    is_outlier = _outliers(seen, measurement.fit)
     if is_outlier.any() and not is_outlier.all():
-        found = fit_and_anchor(seen.subset(~is_outlier), stops, model, found.curve)
-    return replace(found, frames=frames, outliers=float(is_outlier.mean()))
+        measurement = fit_and_anchor(seen.subset(~is_outlier), stops, model, measurement.curve)
+    return replace(measurement, frames=frames, outliers=float(is_outlier.mean()))
 
 
 def fit_and_anchor(

@@ -13,12 +13,12 @@ from crfnet_core.types import BoolArray, Float64Array
 #: Factor by which every observation is down-weighted, because errors of neighboring blocks are correlated.
 DEFLATION = 10.0
 
-#: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around that of
-#: green: cameras that change the white balance between frames leave green alone.
+#: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around
+#: green's: cameras that change the white balance between frames leave green alone.
 TIME_DEVIATION, BALANCE_DEVIATION = 0.05, 0.3
 
-#: The same, in stops a stop, of green's offsets' trend over the exposures. A power of the exposures cannot be told from
-#: a power in the response, so the labels decide.
+#: The same, in stops a stop, of the trend of green's offsets over the exposures. A power of the exposures cannot be
+#: distinguished from a power in the response, so the labels decide.
 TREND_DEVIATION = 5e-4
 
 #: Standard deviations from which errors of brightness, and of exposures, count linearly.
@@ -36,11 +36,11 @@ MOST_ITERATIONS, ENOUGH = 40, 2e-4
 
 @dataclass(frozen=True, eq=False)
 class StackFit:
-    """What explains a stack."""
+    """The response, exposures and irradiances that explain a stack."""
 
     weights: Float64Array  # (K,): of the response: see `CurveModel`
     offsets: Float64Array  # (T, C): stops by which each frame is brighter than its label, in each channel
-    #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; that of white is 0.
+    #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; white is 0.
     log_irradiance: Float64Array
     covariance: Float64Array  # (K, K): posterior covariance of the weights
     residual: Float64Array  # (M, T): brightness less the model's; NaN where nothing was seen

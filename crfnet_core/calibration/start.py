@@ -15,7 +15,7 @@ COMPARED, SEED = 400, 0
 #: Largest disagreement in 8-bit codes that counts: beyond, a sample is an outlier.
 LARGEST_SPREAD = 20.0
 
-#: Stops that a code is at least worth: where it is worth less, it does not tell responses apart.
+#: Stops that a code is at least worth: where it is worth less, it does not separate responses.
 LEAST_STOPS = 0.004
 
 

@@ -88,7 +88,7 @@ def uncertainty_of(
 def _curve_of(
     seen: Observations, exposures: Float64Array, measurement: Measurement, model: CurveModel
 ) -> ResponseCurve:
-    """Return the response of a part of the samples; that of all if the part is too small."""
+    """Return the response of a part of the samples, or of all if the part is too small."""
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
     return fit_and_anchor(seen, exposures, model, measurement.curve, rounds=1).curve

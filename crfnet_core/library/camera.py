@@ -60,10 +60,7 @@ class Camera:
 
 
 def checked_name(name: str) -> str:
-    """Return a camera's name in Unicode's composed form, with single spaces.
-
-    Raise CameraError if it is not a name by the rule of `NAME`.
-    """
+    """Return a camera's name in Unicode's composed form, with single spaces. Raise CameraError if `NAME` forbids it."""
     plain = " ".join(unicodedata.normalize("NFC", name).split())
     if not NAME.fullmatch(plain):
         raise CameraError("bad_camera_name", name=name)

@@ -57,10 +57,7 @@ class CameraLibrary:
         return next((path for path in self._files() if name_key(path.stem) == name_key(name)), None)
 
     def get(self, name: str) -> Camera:
-        """Return the camera of this name.
-
-        Raise CameraError if there is none, or its file is damaged.
-        """
+        """Return the camera of this name. Raise CameraError if there is none, or its file is damaged."""
         return read_camera(self._present(name))
 
     def save(self, camera: Camera, *, overwrite: bool = False) -> Path:
@@ -83,10 +80,7 @@ class CameraLibrary:
         return path
 
     def remove(self, name: str) -> None:
-        """Remove the camera of this name.
-
-        Raise CameraError if there is none, or its file cannot be removed.
-        """
+        """Remove the camera of this name. Raise CameraError if there is none, or its file cannot be removed."""
         path = self._present(name)
         try:
             path.unlink()
@@ -113,19 +107,16 @@ class CameraLibrary:
 
 
 def find_camera(name: str) -> Camera:
-    """Return the camera of this name: the user's own, else one that comes with this project.
-
-    Raise CameraError if there is none, or its file is damaged.
-    """
-    own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    return (own if own.file_of(name) or not shipped.file_of(name) else shipped).get(name)
+    """Return the user's camera of this name, else the shipped one. Raise CameraError as `CameraLibrary.get` does."""
+    user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
+    return (user if user.file_of(name) or not shipped.file_of(name) else shipped).get(name)
 
 
 def known_cameras() -> list[Camera]:
     """Return the user's own cameras, then those that come with this project and have no namesake among them."""
-    own = CameraLibrary.of_user().cameras()
-    names = {name_key(camera.name) for camera in own}
-    return own + [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
+    cameras = CameraLibrary.of_user().cameras()
+    names = {name_key(camera.name) for camera in cameras}
+    return cameras + [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
 
 
 def listed_cameras(text: str = "", models: Collection[str] = ()) -> list[tuple[str, str]]:

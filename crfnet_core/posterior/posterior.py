@@ -131,7 +131,7 @@ def _weighed(
 
 
 def _log_sum(logarithms: Float64Array) -> float:
-    """Return the logarithm of a sum of numbers whose logarithms are given."""
+    """Return the logarithm of a sum of numbers, from their logarithms."""
     largest = logarithms.max()
     return float(largest + np.log(np.exp(logarithms - largest).sum()))
 

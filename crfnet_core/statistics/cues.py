@@ -110,7 +110,7 @@ LENGTH = LENGTHS[-1]
 
 
 def window_statistics(window: Float32Array) -> Float32Array:
-    """Return the statistics of one window, float32 (LENGTH,); those of several windows add up.
+    """Return the statistics of one window, float32 (LENGTH,), which add up over windows.
 
     The window holds code values in [0, 1], shape (227, 227, 3). `unpack` returns the parts by name.
     """

@@ -16,7 +16,7 @@ REMEDIES: Mapping[str, str] = {
     "exposures_span": "--times states them in place of EXIF",
     "frame_edited": "or add --accept-edited to measure what that program makes of them",
     "frame_mistimed": "--times states the times in place of EXIF",
-    "frame_untimed": "add --times 1/60,1/30,... or a CSV file",
+    "frame_untimed": "add --times 1/60,1/30,...",
     # library
     "camera_exists": "give another name with --name, or --overwrite to replace it",
     "no_camera": "crfnet camera list shows them",

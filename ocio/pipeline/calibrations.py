@@ -30,13 +30,13 @@ from .delivery import EarlierRun
 
 @dataclass(frozen=True, eq=False)
 class CalibrationPlan:
-    """What will be written of a calibration, checked before any work is done; see `plan_calibration`."""
+    """The files of a calibration, checked before any work is done; see `plan_calibration`."""
 
     files: OutputFiles  # the files, all in one folder, which need not exist yet; no linear plates are among them
     config: OCIO.Config  # the config of the folder, with the camera's color space
     lut_length: int  # entries of the LUTs
     overwrite: bool = False
-    earlier: EarlierRun = field(default_factory=EarlierRun)  # what an earlier run has left in the folder
+    earlier: EarlierRun = field(default_factory=EarlierRun)  # files of an earlier run in the folder
 
 
 def plan_calibration(

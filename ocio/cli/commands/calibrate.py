@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
-from crfnet_core.calibration import calibrate_stack, parse_times, read_times
+from crfnet_core.calibration import calibrate_stack, parse_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
@@ -19,7 +18,7 @@ def run(arguments: argparse.Namespace) -> None:
     outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
-    seconds = _seconds(arguments.times, frames) if arguments.times else None
+    seconds = parse_times(arguments.times) if arguments.times else None
     with progress_bar("frames") as progress:
         calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
     comparison = calibration.compare(other) if other else None
@@ -31,10 +30,3 @@ def run(arguments: argparse.Namespace) -> None:
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
     print_earlier(plan.earlier, plan.files.config, "this calibration")
-
-
-def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:
-    """Return the times in a list, or in a CSV file."""
-    if Path(times).suffix.lower() == ".csv":
-        return read_times(Path(times), [frame.name for frame in frames])
-    return parse_times(times)

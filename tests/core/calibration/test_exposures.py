@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.calibration.exposures import ExposureLabel, parse_times, read_times, stack_exposures
+from crfnet_core.calibration.exposures import ExposureLabel, parse_times, stack_exposures
 from crfnet_core.errors import CalibrationError
 
 
@@ -59,28 +59,3 @@ def test_a_text_that_is_not_a_time_is_refused(text):
     with pytest.raises(CalibrationError) as caught:
         parse_times(text)
     assert caught.value.code == "bad_seconds"
-
-
-def test_times_are_read_from_csv_by_name(tmp_path):
-    path = tmp_path / "times.csv"
-    path.write_text("file,time\nb.jpg,1/30\nsub/a.jpg,1/60\nother.jpg,1\nsub/other.jpg,2\nb.jpg,1/30\n")
-    assert read_times(path, ["a.jpg", "b.jpg"]) == pytest.approx((1 / 60, 1 / 30))
-
-
-@pytest.mark.parametrize(
-    ("text", "code"),
-    [
-        (None, "times_unreadable"),
-        ("a.jpg,1/60\n", "times_lack_frame"),
-        ("a.jpg\n", "times_row"),
-        ("a.jpg,x1\n", "bad_seconds"),
-        ("one/a.jpg,1/60\ntwo/a.jpg,1/30\nb.jpg,1\n", "times_differ"),
-    ],
-)
-def test_a_csv_file_that_lacks_something_is_refused(tmp_path, text, code):
-    path = tmp_path / "times.csv"
-    if text is not None:
-        path.write_text(text)
-    with pytest.raises(CalibrationError) as caught:
-        read_times(path, ["a.jpg", "b.jpg"])
-    assert caught.value.code == code
