@@ -34,7 +34,6 @@ SENTENCES: Mapping[str, str] = {
     "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",
     "other_kind_of_model": "{path}: is for {found} (basis, weights, window size), needed is {needed}, with evidence of"
     " windows or statistics; export the model again",
-    "other_model_here": "{path}: holds another model than the process that sent it; install the same version",
     "unloadable_graph": "{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})",
     "unreadable_model": "{path}: cannot be read ({reason}); a model is a folder with model.json and model.onnx",
     # posterior

@@ -80,11 +80,7 @@ def estimate_response(
 
 
 def estimate_from_evidence(
-    analyzed: Sequence[AnalyzedPhotograph],
-    *,
-    model: str,
-    prior: Prior | None = None,
-    bank: ResponseBank | None = None,
+    analyzed: Sequence[AnalyzedPhotograph], *, model: str, prior: Prior | None = None, bank: ResponseBank | None = None
 ) -> ResponseEstimate:
     """Return the response of the camera that took photographs, at least one, that one network has analyzed.
 

@@ -36,10 +36,9 @@ class Posterior(EqualByFields):
     def from_evidences(
         cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
     ) -> Posterior:
-        """Return the posterior: Eq.
+        """Return prior times evidence, one of each photograph, without which it is the prior: Eq. 24 of docs/METHOD.md.
 
-        24 of docs/METHOD.md. Without evidence, one of each photograph, it is the prior. `independent` is the fraction
-        of the evidence that is independent, in (0, 1]: see `independent_fraction`.
+        `independent` is the fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
         """
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
