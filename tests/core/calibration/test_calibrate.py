@@ -50,20 +50,6 @@ def test_offsets_of_frames_are_found(plain):
     np.testing.assert_allclose(np.diff([frame.stops for frame in frames]), 1)
 
 
-def test_points_lie_on_the_curve(plain):
-    stops, brightness, residual, _ = plain[1].points.T
-    np.testing.assert_allclose(
-        np.median(np.abs(brightness - plain[1].curve.forward(np.exp2(stops)))), np.median(np.abs(residual)), atol=2e-3
-    )
-
-
-def test_another_response_is_measured_with_its_scale(stack):
-    true = emor_response(3)
-    found = calibrate_stack(stack(response=true, seed=3))
-    assert shape_error(true, found.curve) < SHAPE
-    assert estimation_error(true, found.curve) < E_EST
-
-
 @pytest.mark.parametrize(
     "options",
     [
@@ -92,13 +78,6 @@ def test_a_frame_that_shows_something_else_is_left_out(stack, true_response):
     assert [frame.is_used for frame in found.frames] == [True] * 4 + [False] + [True] * 3
     assert [(warning.code, *warning.facts.values()) for warning in found.warnings] == [("frame_unfit", "stack_04.jpg")]
     assert shape_error(true_response, found.curve) < SHAPE
-
-
-def test_the_frames_that_remain_may_span_two_stops(stack, true_response):
-    """Seven frames a third of a stop apart, after which two show something else."""
-    found = calibrate_stack(stack(frames=9, step=1, shifts=[(0, 0)] * 7 + [(100, 150), (45, 105)]))
-    assert [frame.is_used for frame in found.frames] == [True] * 7 + [False] * 2
-    assert shape_error(true_response, found.curve) < 2 * found.uncertainty.shape_stops
 
 
 def test_the_frames_that_remain_may_span_one_stop(stack, true_response):

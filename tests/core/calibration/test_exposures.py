@@ -43,13 +43,6 @@ def test_iso_and_aperture_count():
     assert found.differing == ("ISO", "aperture")
 
 
-def test_a_setting_that_one_frame_does_not_state_is_left_out():
-    labels = [ExposureLabel(1.0, iso=100.0), ExposureLabel(2.0, iso=None), ExposureLabel(4.0, iso=400.0)]
-    found = stack_exposures(labels)
-    np.testing.assert_allclose(np.diff(found.nominal), 1)
-    assert found.differing == ()
-
-
 def test_times_are_read_from_a_list():
     assert parse_times("1/60, 0.5s,2") == pytest.approx((1 / 60, 0.5, 2))
 

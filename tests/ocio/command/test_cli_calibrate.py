@@ -7,11 +7,10 @@ import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
-from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
@@ -62,9 +61,9 @@ def test_the_luts_hold_the_inverse_of_the_response(camera, true_response):
     assert any(comment.startswith("Standard deviations: shape 0.0") for comment in lut.comments)
 
 
-@pytest.mark.parametrize("code", [255, 240])
-def test_the_lut_reads_the_code_of_white_as_1(crfnet, root, tmp_path, code):
-    """And the codes below it as the light that the camera saw, whether or not it clips at the largest code."""
+def test_the_lut_reads_the_code_of_white_as_1(crfnet, root, tmp_path):
+    """And the codes below it as the light that the camera saw."""
+    code = 240
     light, response = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2], emor_response(100)
     paths = make_stack(tmp_path, light, response, StackOptions(white=code / 255, quality=0))
     done = crfnet("calibrate", *paths, "--out", tmp_path / "out", "--name", "a", "--no-sheet")
@@ -107,22 +106,6 @@ def test_the_config_converts_as_the_lut(camera, frames, oiiotool, tmp_path):
     config = (folder / "config.ocio").read_text(encoding="utf-8")
     assert "as crfnet measured it from 6 exposures" in config
     assert "stack_00" not in config
-
-
-def test_the_picture_is_a_sheet(camera):
-    assert read_image(camera[0] / "eos20d_sheet.png").shape[:2] == (1080, 1800)
-
-
-def test_a_calibration_can_be_compared_with_a_calibration(crfnet, camera, frames, tmp_path):
-    """With itself, by its document and by its LUT: they differ by what they round only."""
-    folder = camera[0]
-    for other, most in ((folder / "eos20d.json", 2e-3), (folder / "eos20d.cube", 5e-3)):
-        done = crfnet(
-            "calibrate", *frames, "--out", tmp_path / other.suffix, "--no-sheet", "--compare", other, "--json"
-        )
-        assert (done.code, done.err) == (0, "")
-        assert json.loads(done.out)["comparison"]["estimation_error"] < most
-    assert "stack_00.spi1d" in listed(tmp_path / ".cube")
 
 
 def test_times_from_a_list(crfnet, frames, tmp_path):
@@ -181,9 +164,3 @@ def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tm
     assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]
     (tmp_path / "eos20d_sheet.png").unlink()
     assert "from an earlier run" not in crfnet(*again).out
-
-
-def test_a_response_from_a_lut_is_gamma(tmp_path):
-    """`response_to_compare` on a LUT of gamma 2.2."""
-    write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
-    assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01
