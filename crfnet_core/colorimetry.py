@@ -33,10 +33,7 @@ def rgb_to_xyz(red: Chromaticity, green: Chromaticity, blue: Chromaticity, white
 
     Source: SMPTE RP 177-1993, Derivation of Basic Television Color Equations.
 
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the three primaries lie on a line.
+    Raise numpy.linalg.LinAlgError if the three primaries lie on a line.
     """
     columns = np.array([(x, y, 1 - x - y) for x, y in (red, green, blue)]).T
     scales: Float64Array = np.linalg.solve(columns, xyz_of(white))
@@ -49,7 +46,7 @@ def adaptation(source: Chromaticity, target: Chromaticity) -> Float64Array:
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
 
 
-#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and ACES's ("D60", SMPTE ST 2065-1).
 D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)
@@ -57,24 +54,14 @@ D60: Chromaticity = (0.32168, 0.33767)
 
 @dataclass(frozen=True)
 class Primaries:
-    """The chromaticities of an RGB.
+    """The chromaticities of an RGB, CIE 1931 x and y."""
 
-    Parameters
-    ----------
-    name : str
-        As people know it, for example "Display P3".
-    red, green, blue, white : (float, float)
-        CIE 1931 x and y.
-    interop_id : str
-        The Color Interop Forum's name of the scene-linear space with these primaries; empty if there is none.
-    """
-
-    name: str
+    name: str  # as people know it, for example "Display P3"
     red: Chromaticity
     green: Chromaticity
     blue: Chromaticity
     white: Chromaticity = D65
-    interop_id: str = ""
+    interop_id: str = ""  # the Color Interop Forum's name of the scene-linear space; empty if there is none
 
     @property
     def corners(self) -> Float64Array:
@@ -110,10 +97,10 @@ PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophot
 
 
 def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
-    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
+    """Return the matrix from linear RGB of one kind to another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
 
-    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
-    configs of OpenColorIO. Colours outside the target's gamut become negative.
+    White stays white: between different white points colors are adapted by the Bradford transform, as in the ACES
+    configs of OpenColorIO. Colors outside the target's gamut become negative.
     """
     if source == target:
         return np.eye(3)

@@ -2,7 +2,7 @@
 
 The code that finds a problem states both and no sentence: ``raise PhotoError("too_small", path=path, width=64)``. Each
 sentence stands once, in `crfnet_core.messages`, and `str` fills it in. An interface that can say more, such as which of
-its options helps, looks the code up in a table of its own.
+its options helps, looks the code up in its own table.
 """
 
 from __future__ import annotations
@@ -72,7 +72,7 @@ def filled(sentence: str, facts: Mapping[str, object]) -> str:
 
 
 class PhotoError(CRFNetError):
-    """A photograph that cannot be read or cannot be analysed."""
+    """A photograph that cannot be read or cannot be analyzed."""
 
 
 class ModelError(CRFNetError):

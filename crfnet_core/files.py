@@ -27,12 +27,8 @@ LONGEST_NAME = 255
 def read_bytes(path: Path, *, most: int) -> bytes:
     """Return the content of a regular file of at most `most` bytes.
 
-    Pipes and devices, which may have no end, are not opened.
-
-    Raises
-    ------
-    OSError
-        If the file cannot be read, is not a regular file, or is larger.
+    Pipes and devices, which may have no end, are not opened. Raise OSError if the file cannot be read, is not a regular
+    file, or is larger.
     """
     if not stat.S_ISREG(path.stat().st_mode):
         raise OSError(errno.EINVAL, "it is not a regular file", str(path))
@@ -52,12 +48,7 @@ def file_sha256(path: Path) -> str:
 def read_json(path: Path) -> Any:
     """Return the content of a JSON file of at most `MAX_JSON_SIZE` bytes; see `parse_json`.
 
-    Raises
-    ------
-    OSError
-        As `read_bytes`.
-    ValueError
-        As `parse_json`.
+    Raise OSError as `read_bytes` does. Raise ValueError as `parse_json` does.
     """
     return parse_json(read_bytes(path, most=MAX_JSON_SIZE))
 
@@ -65,10 +56,7 @@ def read_json(path: Path) -> Any:
 def parse_json(text: bytes) -> Any:
     """Return the content of a JSON text; its numbers are finite, but integers may be too large for a float.
 
-    Raises
-    ------
-    ValueError
-        If it is not JSON, holds NaN or an infinity, or is nested too deeply.
+    Raise ValueError if it is not JSON, holds NaN or an infinity, or is nested too deeply.
     """
     try:
         return json.loads(text, parse_constant=_refused, parse_float=_finite)
@@ -79,19 +67,7 @@ def parse_json(text: bytes) -> Any:
 def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError) -> Path:
     """Return `path` as a Path after checking that a file may be written there.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file to be written.
-    overwrite : bool
-        Whether an existing file may be replaced.
-    error : type of CRFNetError
-        The error to raise.
-
-    Raises
-    ------
-    CRFNetError
-        As `error`, if the folder is absent or read-only, or the file exists and may not be replaced.
+    Raise `error` if the folder is absent or read-only, or the file exists and `overwrite` is False.
     """
     path = Path(path)
     if not path.parent.is_dir():
@@ -109,30 +85,13 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
 def atomic_write(
     path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> Iterator[Path]:
-    """Yield a temporary file in the folder of `path` that takes its name only if the block succeeds.
+    """Yield an empty temporary file in the folder of `path` that takes its name only if the block succeeds.
 
-    The content is on the disk before the name is: `fsync` may fail as a write does. Only the user may
-    open the temporary file; a file that somebody else put in its place is refused.
+    The caller fills it and does not replace it. It has the suffix of `path`, only the user may open it, and a file that
+    somebody else put in its place is refused. The content is on the disk before the name is: `fsync` may fail as a
+    write does. In the end it has the permissions of any new file.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file to be written.
-    overwrite : bool
-        Whether an existing file may be replaced.
-    error : type of CRFNetError
-        The error to raise.
-
-    Yields
-    ------
-    Path
-        An empty file in the same folder and with the same suffix, to be filled by the caller, not replaced. In the end
-        it has the permissions of any new file.
-
-    Raises
-    ------
-    CRFNetError
-        As `check_target`, or when the disk refuses the file.
+    Raise `error` as `check_target` does, or when the disk refuses the file.
     """
     try:
         path = check_target(path, overwrite=overwrite, error=error)

@@ -34,7 +34,6 @@ SENTENCES: Mapping[str, str] = {
     "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",
     "other_kind_of_model": "{path}: is for {found} (basis, weights, window size), needed is {needed}, with evidence of"
     " windows or statistics; export the model again",
-    "other_model_here": "{path}: holds another model than the process that sent it; install the same version",
     "unloadable_graph": "{folder}: onnxruntime cannot load model.onnx; restore it or update ({reason})",
     "unreadable_model": "{path}: cannot be read ({reason}); a model is a folder with model.json and model.onnx",
     # posterior
@@ -171,4 +170,45 @@ SENTENCES: Mapping[str, str] = {
     "narrow_range": "no window covers the range of brightness: expect a poor estimate",
     "recognized": "{reason}",
     "several_cameras": "photographs of different cameras ({cameras}): estimate each camera by itself",
+    # calibration
+    "bad_seconds": "'{text}' is not an exposure time; give seconds such as 1/60 or 0.5",
+    "blocks_left_out": "{part:.0%} of the blocks do not fit and were left out: something moved",
+    "codes_above_unseen": "no code above {highest:.0f} is seen: there the curve is that of known responses",
+    "codes_unseen": "flat parts of the pictures show {part:.0%} of the codes between {first} and {last}; take a scene"
+    " with more range, or frames closer together",
+    "dark_channel": "only {count} flat places are seen well in two frames, {least} are needed: in {channels} nearly"
+    " everything is black or white; use white light and a scene of neutral colors",
+    "exposures_gap": "two neighboring exposures are {step} stops apart; check the times, or take frames one or two"
+    " stops apart",
+    "exposures_span": "the exposures span {span} stops; a stack needs {least:g} or more, from nearly nothing white to"
+    " nearly everything white",
+    "few_flat_places": "only {count} flat places are seen well in two frames, {least} are needed; take more frames,"
+    " closer together, or a scene with even surfaces",
+    "few_frames": "a stack needs at least {least} frames of one scene at different exposures, found {count}; take more,"
+    " a stop apart",
+    "frame_bits": "{path}: has other bits per sample than {first}; give files of one kind",
+    "frame_camera": "{path}: names {camera}, {first} {first_camera}; give frames of one camera",
+    "frame_edited": "{path}: saved by {editor}, which may have changed the tones; give the camera's own files",
+    "frame_mistimed": "{path}: is {stops:.2f} stop {direction} than its exposure time says, relative to the other"
+    " frames; correct its time, or leave the frame out",
+    "frame_off": "{name} is {off:+.2f} stop from its exposure label",
+    "frame_size": "{path}: has {size} pixels, {first} has {first_size}; give the frames of one stack, all as the camera"
+    " wrote them",
+    "frame_twice": "{path}: is given twice; give each frame once",
+    "frame_unfit": "{name} does not fit the other frames and was left out",
+    "frame_untimed": "{path}: names no exposure time; give the times of all frames",
+    "no_single_curve": "no single curve explains the frames: they are off by {residual} codes (RMS), at most {most:g}"
+    " are usual; each was rendered or edited on its own (automatic tones, local tone mapping, HDR): switch that off,"
+    " and give the camera's own files",
+    "rest_span": "without the frames that do not fit the others ({unfit} of {count}), the exposures span {span} stops;"
+    " these need {least:g} or more: use a tripod and a still scene, and take frames one or two stops apart",
+    "scene_moved": "the frames do not show the same scene: {which} differ from the others even after alignment; the"
+    " camera or the scene has moved, so use a tripod and a still scene, or leave these frames out",
+    "settings_differ": "{settings} differ between the frames: exposures are time x ISO / f-number^2",
+    "times_count": "{times} times are given for {frames} frames; give one for each, in order",
+    "unknown_curve": "the curve that explains the frames is far from every known response (E_est {distance}, at most"
+    " {most:g}); the exposure times are probably wrong, so check them, or the files were edited",
+    "unlike_cameras": "unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times",
+    "white_below_largest": "white is {code:.0f} of 255 codes: the codes above it are white too",
+    "white_unseen": "no frame reaches white: the scale is a guess; add a longer exposure",
 }

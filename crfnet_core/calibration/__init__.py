@@ -1,23 +1,23 @@
 """Measure a camera's response from an exposure stack of one static scene: the reference to check an estimate against.
 
 calibrate     the whole of it on one screen: frames in, response and two uncertainties out
-exposures     exposures in stops, from EXIF or given times, as labelled and as cameras really expose
+exposures     exposures in stops, from EXIF or given times, as labeled and as cameras really expose
 frames        the frames of a stack: read, thinned out, checked against each other, aligned
 alignment     integer shifts by phase correlation of rank images
-blocks        blocks of pixels, and the brightness of those that tell most
+blocks        blocks of pixels, and the most informative of them
 start         the known response under which the frames agree best
 curve_model   the responses to choose from: EMoR plus splines
 solver        response, exposures and irradiances by robust least squares
 anchor        the irradiance at which the codes reach white
-measurement   start, fit and anchor, and what does not fit left out
-checks        what is wrong with a stack, in one line
+measurement   start, fit and anchor; frames and samples that do not fit are left out
+checks        reasons to refuse a stack, and doubts
 uncertainty   how far shape and scale may be off
 
-docs/METHOD.md has the equations, docs/CALIBRATE.md how good it is.
+docs/CALIBRATE.md has the equations, and how good it is.
 """
 
 from crfnet_core.calibration.calibrate import Calibration, Comparison, FrameReport, calibrate_stack
-from crfnet_core.calibration.exposures import ExposureLabel, parse_times, read_times
+from crfnet_core.calibration.exposures import ExposureLabel, parse_times
 from crfnet_core.calibration.uncertainty import Uncertainty
 
 __all__ = [
@@ -28,5 +28,4 @@ __all__ = [
     "Uncertainty",
     "calibrate_stack",
     "parse_times",
-    "read_times",
 ]

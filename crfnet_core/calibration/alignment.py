@@ -3,8 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from itertools import pairwise
+from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from crfnet_core.types import Float64Array
 
@@ -24,36 +27,22 @@ Shift = tuple[int, int]
 
 def rank_image(gray: Float64Array) -> Float64Array:
     """Return ranks of brightness in [-1, 1] of an image of shape (H, W): equal under every increasing response."""
-    values, index = np.unique(gray, return_inverse=True)
-    counts = np.bincount(index.ravel(), minlength=values.size)
+    _, index, counts = np.unique(gray, return_inverse=True, return_counts=True)
     middle = np.cumsum(counts) - counts / 2
     return np.asarray(2 * middle[index].reshape(gray.shape) / gray.size - 1, dtype=np.float64)
 
 
 def chain_of_shifts(ranks: Sequence[Float64Array], order: Sequence[int], stride: int) -> tuple[Shift, ...]:
-    """Return by how many pixels each frame is displaced from the middle one of `order`.
+    """Return by how many pixels each frame is displaced from the middle one of `order`, the frames by exposure.
 
-    Neighbours in `order` (of exposure) look most alike, so each is compared with the next and the shifts are added up.
-
-    Parameters
-    ----------
-    ranks : sequence of ndarray, shape (h, w)
-        Rank images of the frames.
-    order : sequence of int
-        The frames by exposure.
-    stride : int
-        Pixels of a frame between two samples of its rank image.
+    Neighbors in `order` look most alike, so each rank image is compared with the next and the shifts are added up.
+    `stride` is the number of pixels between two samples of a rank image.
     """
-    middle = len(order) // 2
-    shifts: dict[int, Float64Array] = {order[middle]: np.zeros(2)}
-    for index in range(middle, len(order) - 1):
-        here, after = order[index], order[index + 1]
-        shifts[after] = shifts[here] + displacement(ranks[here], ranks[after])
-    for index in range(middle, 0, -1):
-        here, before = order[index], order[index - 1]
-        shifts[before] = shifts[here] + displacement(ranks[here], ranks[before])
-    rounded = {frame: np.rint(shift * stride).astype(int).tolist() for frame, shift in shifts.items()}
-    return tuple((rounded[frame][0], rounded[frame][1]) for frame in range(len(order)))
+    steps = [displacement(ranks[first], ranks[second]) for first, second in pairwise(order)]
+    places = np.cumsum([np.zeros(2), *steps], axis=0)
+    shifts = np.zeros((len(order), 2), dtype=int)
+    shifts[list(order)] = np.rint((places - places[len(order) // 2]) * stride)
+    return tuple((int(down), int(right)) for down, right in shifts)
 
 
 def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
@@ -68,40 +57,26 @@ def displacement(first: Float64Array, second: Float64Array) -> Float64Array:
     near = np.roll(surface, (reach, reach), axis=(0, 1))[: 2 * reach + 1, : 2 * reach + 1]
     row, column = (int(index) for index in np.unravel_index(int(near.argmax()), near.shape))
     whole = (row - reach, column - reach)
-    least = max(correlation(first, second, (0, 0)) + LEAST_GAIN, LEAST_CORRELATION)
-    if correlation(first, second, whole) < least:
+    if _correlation(first, second, whole) < max(_correlation(first, second, (0, 0)) + LEAST_GAIN, LEAST_CORRELATION):
         return np.zeros(2)
-    parts = _peak(near[:, column], row), _peak(near[row], column)
-    return np.array(whole, dtype=np.float64) + parts
+    return np.array([whole[0] + _vertex(near[:, column], row), whole[1] + _vertex(near[row], column)])
 
 
-def correlation(first: Float64Array, second: Float64Array, shift: Shift) -> float:
-    """Return the normalised cross-correlation of two images where they overlap, the second displaced by `shift`."""
-    a, b = overlapping(first, second, shift)
-    a, b = a - a.mean(), b - b.mean()
+def common_parts(images: Sequence[NDArray[Any]], shifts: Sequence[Shift]) -> tuple[NDArray[Any], ...]:
+    """Return the parts of displaced images that show the same."""
+    moves = np.array(shifts)
+    first, last = np.maximum(-moves.min(axis=0), 0), images[0].shape[:2] - np.maximum(moves.max(axis=0), 0)
+    areas = [tuple(map(slice, first + move, last + move)) for move in moves]
+    return tuple(image[area] for image, area in zip(images, areas, strict=True))
+
+
+def _correlation(first: Float64Array, second: Float64Array, shift: Shift) -> float:
+    """Return the normalized cross-correlation of two images where they overlap, the second displaced by `shift`."""
+    a, b = (part - part.mean() for part in common_parts((first, second), ((0, 0), shift)))
     return float((a * b).sum() / np.sqrt(max((a * a).sum() * (b * b).sum(), 1e-12)))
 
 
-def overlapping(first: Float64Array, second: Float64Array, shift: Shift) -> tuple[Float64Array, Float64Array]:
-    """Return the parts of two images that show the same, if the second is displaced by `shift` rows and columns."""
-    height, width = first.shape
-    down, right = shift
-    rows = slice(max(0, -down), min(height, height - down))
-    columns = slice(max(0, -right), min(width, width - right))
-    moved = np.s_[rows.start + down : rows.stop + down, columns.start + right : columns.stop + right]
-    return first[rows, columns], second[moved]
-
-
-def common_area(shape: tuple[int, int], shifts: Sequence[Shift]) -> tuple[slice, slice]:
-    """Return the rows and columns of the reference frame that every displaced frame shows."""
-    rows, columns = (
-        slice(max(0, -min(moves)), side - max(0, max(moves)))
-        for side, moves in zip(shape, zip(*shifts, strict=True), strict=True)
-    )
-    return rows, columns
-
-
-def _peak(row: Float64Array, index: int) -> float:
+def _vertex(row: Float64Array, index: int) -> float:
     """Return how far the vertex of the parabola through three samples is from the middle one, at most half a sample."""
     if not 0 < index < len(row) - 1:
         return 0.0

@@ -1,4 +1,4 @@
-"""Where white is: the irradiance at which the codes reach white, which sets the scale of a response (Eq. 45)."""
+"""The irradiance at which the codes reach white, which sets the scale of a response (Eq. C.3)."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from crfnet_core.calibration.blocks import ALL_WHITE, PARTLY_WHITE, Observations
+from crfnet_core.calibration.blocks import PARTLY_WHITE, Observations
 from crfnet_core.calibration.curve_model import CurveModel
 from crfnet_core.calibration.solver import StackFit
 from crfnet_core.types import Float64Array
@@ -26,27 +26,17 @@ BELOW, NOISE_BELOW = 0.5, 0.02
 #: Standard deviation in stops of the anchor where its methods agree: the end of a response is seen in steps of a code.
 LEAST_DEVIATION = 0.02
 
-#: Standard deviation in stops where no frame reaches white: the end is that of the nearest known responses.
+#: Standard deviation in stops where no frame reaches white: the end comes from known responses.
 UNSEEN_DEVIATION = 0.4
 
 
 @dataclass(frozen=True)
 class Anchor:
-    """Where the codes reach white.
+    """The irradiance at which the codes reach white."""
 
-    Parameters
-    ----------
-    log_white : float
-        log2 of the irradiance of white, in the units of the fit; 0 if the fit has it right.
-    deviation : float
-        Its standard deviation in stops.
-    is_seen : bool
-        Whether samples reach white in some frame and are measured in another.
-    """
-
-    log_white: float
-    deviation: float
-    is_seen: bool
+    log_white: float  # log2 of the irradiance of white, in the units of the fit; 0 if the fit has it right
+    deviation: float  # its standard deviation in stops
+    is_seen: bool  # whether samples reach white in some frame and are measured in another
 
 
 def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, fit: StackFit) -> Anchor:
@@ -57,7 +47,7 @@ def find_white(seen: Observations, exposures: Float64Array, model: CurveModel, f
     have texture, samples become white gradually, and both ways find white too high, by about the blur of `_crossing`.
     The deviation holds how far the two are apart, half the blur, and the last half code, which no pixel shows.
     """
-    crosses = (seen.white_fraction >= ALL_WHITE).any(axis=1) & seen.is_used.any(axis=1)
+    crosses = seen.is_white.any(axis=1) & seen.is_used.any(axis=1)
     if crosses.sum() < LEAST_CROSSINGS:
         return Anchor(0.0, UNSEEN_DEVIATION, is_seen=False)
     codes = np.arange(PARABOLA_FROM, LAST_CODE + 1)

@@ -1,4 +1,4 @@
-"""Blocks of pixels that a stack is measured in, and the brightness of those that tell most."""
+"""Blocks of pixels that a stack is measured in, and the most informative of them."""
 
 from __future__ import annotations
 
@@ -31,7 +31,7 @@ DARK_CODE = 10
 CODE_NOISE, SPREAD_NOISE = 0.4, 0.15
 
 #: Factor on the deviation where another channel clips, and the chroma (a part of the brightness) at which the variance
-#: is twice that of gray.
+#: is twice gray's.
 CLIPPED_NEIGHBOR, STRONG_CHROMA = 4.0, 0.35
 
 #: Step in stops of the bins of irradiance that blocks are picked from, and how many blocks are picked in all.
@@ -51,55 +51,33 @@ class BlockMeans(NamedTuple):
 
 @dataclass(frozen=True, eq=False)
 class Observations:
-    """What was seen of M samples (a block in one channel) in T frames.
+    """The brightness of M samples (a block in one channel) in T frames."""
 
-    Parameters
-    ----------
-    brightness : ndarray, float64, shape (M, T)
-        Mean brightness, white = 1.
-    deviation : ndarray, float64, shape (M, T)
-        Its expected standard deviation.
-    is_used : ndarray, bool, shape (M, T)
-        Whether the brightness counts.
-    is_white : ndarray, bool, shape (M, T)
-        Whether the sample is white: it then says only that its irradiance is at least that of white.
-    white_fraction : ndarray, float64, shape (M, T)
-        Fraction of white pixels.
-    spread : ndarray, float64, shape (M,)
-        Typical spread within the block, in brightness.
-    block, channel : ndarray, int, shape (M,)
-        Which block of the picture, and which channel, the sample is.
-    """
+    brightness: Float64Array  # (M, T): mean brightness, white = 1
+    deviation: Float64Array  # (M, T): its expected standard deviation
+    is_used: BoolArray  # (M, T): whether the brightness counts
+    white_fraction: Float64Array  # (M, T): fraction of white pixels
+    spread: Float64Array  # (M,): typical spread within the block, in brightness
+    block: IndexArray  # (M,): the sample's block of the picture
+    channel: IndexArray  # (M,): the sample's channel
 
-    brightness: Float64Array
-    deviation: Float64Array
-    is_used: BoolArray
-    is_white: BoolArray
-    white_fraction: Float64Array
-    spread: Float64Array
-    block: IndexArray
-    channel: IndexArray
+    @property
+    def is_white(self) -> BoolArray:
+        """Whether the sample is white, shape (M, T): its irradiance is then at least that of white."""
+        return self.white_fraction >= ALL_WHITE
 
     def subset(self, samples: BoolArray | IndexArray) -> Observations:
         """Return some of the samples."""
         return Observations(**{name: values[samples] for name, values in vars(self).items()})
 
     def in_frames(self, frames: BoolArray) -> Observations:
-        """Return what some of the frames show."""
+        """Return the samples in some of the frames."""
         cut = {name: values[:, frames] for name, values in vars(self).items() if values.ndim == 2}
         return Observations(**{**vars(self), **cut})
 
 
 def block_means(codes: CodeArray, white: float) -> BlockMeans:
-    """Return the means over the blocks of a frame, row by row.
-
-    Parameters
-    ----------
-    codes : ndarray, uint8 or uint16, shape (H, W, 3)
-        Code values.
-    white : float
-        The code of white.
-    """
+    """Return the means over the blocks of a frame, row by row: `codes` of shape (H, W, 3), and the code of white."""
     cell = cell_size(codes.shape[:2])
     rows, columns = (side // (CELLS * cell) for side in codes.shape[:2])
     cut = codes[: rows * CELLS * cell, : columns * CELLS * cell]
@@ -119,12 +97,11 @@ def cell_size(shape: tuple[int, ...]) -> int:
 
 
 def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
-    """Return every sample of every block: those of one block follow each other, one channel only if gray."""
+    """Return every sample of every block, channel after channel; one channel only if gray."""
     channels = 1 if is_gray else 3
     brightness, spread, white = (
         np.stack([values[:, :channels] for values in parts], axis=-1) for parts in zip(*frames, strict=True)
     )  # (N, C, T)
-    is_white = white >= ALL_WHITE
     is_used = (white <= PARTLY_WHITE) & (brightness * 255 >= DARKEST_CODE)
     deviation = np.hypot(CODE_NOISE / 255, SPREAD_NOISE * spread)
     deviation = deviation * (1 + (DARK_CODE / np.maximum(brightness * 255, 1)) ** 2)
@@ -139,7 +116,6 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
         brightness=brightness.reshape(flat),
         deviation=deviation.reshape(flat),
         is_used=is_used.reshape(flat),
-        is_white=is_white.reshape(flat),
         white_fraction=white.reshape(flat),
         spread=typical.ravel(),
         block=np.repeat(np.arange(blocks), channels),
@@ -150,17 +126,8 @@ def observe(frames: Sequence[BlockMeans], *, is_gray: bool) -> Observations:
 def pick_blocks(seen: Observations, log_irradiance: Float64Array) -> Observations:
     """Return the samples of about `BLOCKS` blocks, the flattest and most neutral ones of every level of irradiance.
 
-    Parameters
-    ----------
-    seen : Observations
-        Every sample.
-    log_irradiance : ndarray, float64, shape (M,)
-        log2 of each sample's irradiance, roughly; NaN where no frame shows it.
-
-    Raises
-    ------
-    CalibrationError
-        If there are fewer than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
+    `log_irradiance`, shape (M,), is rough; NaN where no frame shows a sample. Raise CalibrationError if there are fewer
+    than `LEAST_SAMPLES` samples of blocks that every channel shows in two frames.
     """
     channels = int(seen.channel.max()) + 1
     levels = log_irradiance.reshape(-1, channels)
@@ -182,13 +149,9 @@ def _check_often(is_often: BoolArray) -> None:
         return
     each = channels * is_often.sum(axis=0)
     poor = [name for name, count in zip(("red", "green", "blue"), each, strict=False) if count < LEAST_SAMPLES]
-    advice = "; take more frames, closer together, or a scene with even surfaces"
     if 0 < len(poor) < channels:
-        colors = " and ".join(poor)
-        advice = f": in {colors} nearly everything is black or white; use white light and a scene of neutral colours"
-    raise CalibrationError(
-        f"only {samples} flat places are seen well in two frames, {LEAST_SAMPLES} are needed{advice}"
-    )
+        raise CalibrationError("dark_channel", count=samples, least=LEAST_SAMPLES, channels=" and ".join(poor))
+    raise CalibrationError("few_flat_places", count=samples, least=LEAST_SAMPLES)
 
 
 def _best_of_bins(rank: Float64Array, bins: IndexArray, count: int) -> IndexArray:

@@ -17,14 +17,14 @@ from crfnet_core.calibration.checks import (
     check_range,
     check_seen,
     nearest_known,
-    warnings_of,
+    notices_of,
 )
 from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
 from crfnet_core.calibration.uncertainty import Uncertainty, uncertainty_of
-from crfnet_core.errors import CalibrationError
+from crfnet_core.errors import CalibrationError, Notice
 from crfnet_core.photograph.metadata import FileMetadata
 from crfnet_core.photograph.metadata.devices import Device, device_of
 from crfnet_core.response.curve import ResponseCurve
@@ -41,44 +41,22 @@ SAME_LABELS = 0.005
 
 @dataclass(frozen=True, eq=False)
 class FrameReport:
-    """What was found of one frame.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    label : ExposureLabel
-        Its exposure by EXIF or as given.
-    stops : float
-        Its exposure as it was used, relative to the mean of the stack.
-    offsets : ndarray, float64, shape (C,)
-        Stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
-    shift : (int, int)
-        Rows and columns in pixels by which it was displaced.
-    residual : float
-        Root mean square of brightness less that of the model, in 8-bit codes of the file; NaN if it was left out.
-    is_used : bool
-        Whether it fits the others.
-    """
+    """One frame of a measured stack."""
 
     path: Path
-    label: ExposureLabel
-    stops: float
+    label: ExposureLabel  # its exposure by EXIF or as given
+    stops: float  # its exposure as used, relative to the mean of the stack
+    #: Shape (C,): stops by which it is brighter than that, in each channel (one if gray); NaN if it was left out.
     offsets: Float64Array
-    shift: Shift
+    shift: Shift  # rows and columns in pixels by which it was displaced
+    #: Root mean square of brightness less the model's, in 8-bit codes of the file; NaN if it was left out.
     residual: float
-    is_used: bool
+    is_used: bool  # whether it fits the others
 
 
 @dataclass(frozen=True)
 class Comparison:
-    """How far another response is from a measured one.
-
-    Parameters
-    ----------
-    estimation_error, linearization_error, shape_error, scale_error : float
-        See the functions of these names in `crfnet_core.response.metrics`; E_lin is that of the best exposed frame.
-    """
+    """Errors of another response by the functions of these names; E_lin is of the best exposed frame."""
 
     estimation_error: float
     linearization_error: float
@@ -88,52 +66,24 @@ class Comparison:
 
 @dataclass(frozen=True, eq=False)
 class Calibration:
-    """A measured response, how far it may be off, and what it was measured on.
+    """A measured response, how far it may be off, and its stack."""
 
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response. Its brightness is a part of the file's largest code, as that of `points` and `counts`: where the
-        camera clips below that code, the response reaches `white` and jumps to 1.
-    weights : ndarray, float64, shape (11,)
-        Its EMoR weights.
-    uncertainty : Uncertainty
-        Of its shape and of its scale, in stops.
-    residual : float
-        Root mean square of brightness less that of the model, in 8-bit codes of the file.
-    white : float
-        Code of white as a part of the largest code.
-    reaches_white : bool
-        Whether white was seen; otherwise the scale is that of similar known responses.
-    labels : str
-        How the exposure labels were read: "nominal", or "exact powers of two".
-    nearest_known : float
-        E_est between it and the nearest packaged response, both beside their own white.
-    metadata : FileMetadata
-        What the first frame's file says of its camera.
-    frames : tuple of FrameReport
-        The frames in the order given.
-    points : ndarray, float64, shape (N, 4)
-        What was measured: log2 of irradiance (white = 0), brightness, brightness less that of the model, frame.
-    counts : ndarray, float64, shape (256,)
-        How often each of 256 steps of brightness occurs in the best exposed frame.
-    warnings : tuple of str
-        What to know, in words.
-    """
-
+    #: The response. Its brightness is a part of the file's largest code, as in `points` and `counts`: where the camera
+    #: clips below that code, the response reaches `white` and jumps to 1.
     curve: ResponseCurve
-    weights: Float64Array
-    uncertainty: Uncertainty
-    residual: float
-    white: float
-    reaches_white: bool
-    labels: str
-    nearest_known: float
-    metadata: FileMetadata
-    frames: tuple[FrameReport, ...]
+    weights: Float64Array  # (11,): its EMoR weights
+    uncertainty: Uncertainty  # of its shape and of its scale, in stops
+    residual: float  # root mean square of brightness less the model's, in 8-bit codes of the file
+    white: float  # code of white as a part of the largest code
+    reaches_white: bool  # whether white was seen; otherwise the scale comes from similar known responses
+    labels: str  # the reading of the exposure labels: "nominal", or "exact powers of two"
+    nearest_known: float  # E_est between it and the nearest packaged response, both in parts of their own white
+    metadata: FileMetadata  # the header of the first frame's file
+    frames: tuple[FrameReport, ...]  # in the order of the files
+    #: Shape (N, 4): the samples: log2 of irradiance (white = 0), brightness, brightness less the model's, frame.
     points: Float64Array
-    counts: Float64Array
-    warnings: tuple[str, ...]
+    counts: Float64Array  # (256,): how often each of 256 steps of brightness occurs in the best exposed frame
+    warnings: tuple[Notice, ...]  # doubts about the measurement
 
     def compare(self, other: ResponseCurve) -> Comparison:
         """Return how far another response, such as an estimate, is from this one."""
@@ -155,25 +105,14 @@ def calibrate_stack(
 ) -> Calibration:
     """Measure the response of the camera that took an exposure stack of one static scene.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        The frames, in any order.
-    seconds : sequence of float, optional
-        Their exposure times; by default EXIF's. ISO and f-number count too where EXIF has them.
-    accept_edited : bool
-        Whether files may be measured that a program has edited.
-    progress : callable, optional
-        Called with (done, total) after every frame that is read.
+    `seconds` are the exposure times of the frames, by default EXIF's; ISO and f-number count too where EXIF has them.
+    Files that a program has edited are refused unless `accept_edited`. `progress` is called with (done, total) after
+    every frame that is read.
 
-    Raises
-    ------
-    PhotoError
-        If a frame cannot be read.
-    CalibrationError
-        If the frames are no stack, or no camera response explains them: the message says what is wrong.
+    Raise PhotoError if a frame cannot be read, and CalibrationError if the frames are not a stack, or no camera
+    response explains them.
     """
-    frames = _labelled(read_frames(paths, progress=progress), seconds)
+    frames = _labeled(read_frames(paths, progress=progress), seconds)
     check_labels(frames, accept_edited=accept_edited)
     exposures = stack_exposures([frame.label for frame in frames])
     check_range(exposures)
@@ -200,16 +139,16 @@ def calibrate_stack(
         frames=_frame_reports(frames, measurement, labels.stops, shifts, white=white),
         points=_points(measurement, white=white),
         counts=_best_exposed(frames, measurement).counts,
-        warnings=warnings_of(measurement, names, exposures, white=white),
+        warnings=notices_of(measurement, names, exposures, white=white),
     )
 
 
-def _labelled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
-    """Return the frames with the times that were given, if any were."""
+def _labeled(frames: Sequence[Frame], seconds: Sequence[float] | None) -> tuple[Frame, ...]:
+    """Return the frames with the stated times, if there are any."""
     if seconds is None:
         return tuple(frames)
     if len(seconds) != len(frames):
-        raise CalibrationError(f"{len(seconds)} times are given for {len(frames)} frames; give one for each, in order")
+        raise CalibrationError("times_count", times=len(seconds), frames=len(frames))
     pairs = zip(frames, seconds, strict=True)
     return tuple(replace(frame, label=replace(frame.label, seconds=time)) for frame, time in pairs)
 
@@ -236,7 +175,7 @@ def _readings(exposures: Exposures, first: Frame) -> list[_Reading]:
 def _measured(
     every: Observations, readings: Sequence[_Reading], model: CurveModel
 ) -> tuple[_Reading, Measurement, ResponseCurve | None]:
-    """Return the reading of the labels that costs less, what was measured with it, and the other's response."""
+    """Return the reading of the labels that costs less, its measurement, and the other reading's response."""
     first, *others = readings
     measurement = measure(every, first.stops, model)
     if not others:
@@ -251,7 +190,7 @@ def _measured(
 def _frame_reports(
     frames: Sequence[Frame], measurement: Measurement, stops: Float64Array, shifts: Sequence[Shift], *, white: float
 ) -> tuple[FrameReport, ...]:
-    """Return what was found of each frame."""
+    """Return a report of each frame."""
     offsets = np.full((len(frames), measurement.fit.offsets.shape[1]), np.nan)
     offsets[measurement.frames] = measurement.fit.offsets
     residuals = np.full(len(frames), np.nan)
@@ -263,7 +202,7 @@ def _frame_reports(
 
 
 def _points(measurement: Measurement, *, white: float) -> Float64Array:
-    """Return what was measured, for a picture: see `Calibration.points`."""
+    """Return `Calibration.points`."""
     log_irradiance = measurement.fit.exposed(measurement.exposures, measurement.seen) - measurement.anchor.log_white
     used = np.broadcast_to(np.flatnonzero(measurement.frames), log_irradiance.shape)
     columns = (log_irradiance, white * measurement.seen.brightness, white * measurement.fit.residual, used)

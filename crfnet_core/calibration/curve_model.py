@@ -1,4 +1,4 @@
-"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. 43)."""
+"""The model of the measured response: EMoR plus splines, over the logarithm of irradiance (Eq. C.1)."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ SPLINE_DEVIATION = 0.012
 #: that is not among them.
 WIDENING = 4.0
 
-#: Samples at the end of a response by which its slope at white is measured.
+#: Samples at the end of a response that give its slope at white.
 END_SAMPLES = 24
 
 
@@ -48,25 +48,16 @@ class CurveModel:
 
     Beyond white they go on as straight lines in irradiance, so that the fit can lower an irradiance that began too
     high.
-
-    Parameters
-    ----------
-    mean : ndarray, float64, shape (G,)
-        The response of weights 0.
-    basis : ndarray, float64, shape (G, K)
-        What a unit of each weight adds.
-    precision : ndarray, float64, shape (K, K)
-        Inverse of the weights' prior covariance.
     """
 
-    mean: Float64Array
-    basis: Float64Array
-    precision: Float64Array
+    mean: Float64Array  # (G,): the response of weights 0
+    basis: Float64Array  # (G, K): the change of the response by a unit of each weight
+    precision: Float64Array  # (K, K): inverse of the weights' prior covariance
 
     @classmethod
     @cache
     def load(cls) -> CurveModel:
-        """Return the model of the packaged EMoR, its weights spread around 0 as those of the packaged responses."""
+        """Return the model of the packaged EMoR, with weights as widely spread as in the packaged responses."""
         emor, bank = EmorBasis.load(), ResponseBank.load()
         weights = bank.weights[bank.ordinary]
         covariance = WIDENING * weights.T @ weights / len(weights)
@@ -101,14 +92,9 @@ class CurveModel:
         return np.interp(brightness, rising, table_stops())
 
     def response(self, weights: ArrayLike, *, log_white: float = 0.0) -> ResponseCurve:
-        """Return the response with `weights` as a strictly monotone curve.
+        """Return the response with `weights`, shape (K,), as a strictly monotone curve.
 
-        Parameters
-        ----------
-        weights : array_like, shape (K,)
-            The weights.
-        log_white : float
-            log2 of the model's irradiance that is white; 0 unless the anchor was corrected afterwards.
+        `log_white` is log2 of the model's irradiance that is white; 0 unless the anchor was corrected afterwards.
         """
         irradiance = np.linspace(0, 1, SAMPLES)
         table = self.mean + self.basis @ np.asarray(weights, dtype=np.float64)
@@ -123,15 +109,9 @@ class CurveModel:
 def in_file_codes(curve: ResponseCurve, white: float) -> ResponseCurve:
     """Return a response in parts of the file's largest code, given one in parts of the code of white.
 
-    A camera may clip below the largest code. The response then reaches `white` and jumps to 1 in the last step of its
-    samples, so the codes from white on read as irradiance 1, to within that step (0.0014 stop).
-
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response in parts of white.
-    white : float
-        The code of white as a part of the largest code, above 0 and at most 1.
+    A camera may clip below the largest code, at the part `white` of it. The response then reaches `white` and jumps to
+    1 in the last step of its samples, so the codes from white on read as irradiance 1, to within that step (0.0014
+    stop).
     """
     return ResponseCurve(np.append(white * curve.brightness[:-1], 1.0))
 
@@ -142,7 +122,7 @@ def table_stops() -> Float64Array:
 
 
 def cubic_splines(mean: Float64Array) -> Float64Array:
-    """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both its ends.
+    """Return cubic B-splines of `KNOTS` over the brightness of a response, shape (K, N), which vanish at both ends.
 
     Source: de Boor, "On calculating with B-splines", 1972.
     """

@@ -1,18 +1,15 @@
-"""Exposures of the frames of a stack, in stops: from EXIF or given times, as labelled and as cameras really expose."""
+"""Exposures of the frames of a stack, in stops: from EXIF or given times, as labeled and as cameras really expose."""
 
 from __future__ import annotations
 
-import csv
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from crfnet_core.errors import CalibrationError
-from crfnet_core.files import read_bytes
 from crfnet_core.photograph.metadata.header_colors import header_attribute
 from crfnet_core.types import Float64Array
 
@@ -26,31 +23,18 @@ ROUNDING = 1e-6
 #: 1/60 s means 2^-6 s (0.093), and in half stops 1/20 s means 2^-4.5 s (0.178).
 LABEL_ERRORS = {3: 0.13, 2: 0.18}
 
-#: Size of the largest table of exposure times.
-_MOST_BYTES = 16 * 2**20
-
 
 @dataclass(frozen=True)
 class ExposureLabel:
-    """What a file, or the user, says of a frame's exposure; None where nothing is said.
+    """A frame's exposure by its file or by the user; None where neither states it."""
 
-    Parameters
-    ----------
-    seconds : float, optional
-        Exposure time.
-    f_number : float, optional
-        Focal length over aperture.
-    iso : float, optional
-        Sensitivity.
-    """
-
-    seconds: float | None = None
-    f_number: float | None = None
-    iso: float | None = None
+    seconds: float | None = None  # exposure time
+    f_number: float | None = None  # focal length over aperture
+    iso: float | None = None  # sensitivity
 
     @classmethod
-    def of_header(cls, header: Any) -> ExposureLabel:
-        """Return what EXIF says, from an `OpenImageIO.ImageSpec`."""
+    def from_header(cls, header: Any) -> ExposureLabel:
+        """Return EXIF's exposure, from an `OpenImageIO.ImageSpec`."""
         return cls(
             seconds=_positive(header, "ExposureTime"),
             f_number=_positive(header, "FNumber"),
@@ -60,21 +44,13 @@ class ExposureLabel:
 
 @dataclass(frozen=True, eq=False)
 class Exposures:
-    """The exposures of a stack.
+    """The exposures of a stack."""
 
-    Parameters
-    ----------
-    nominal : ndarray, float64, shape (T,)
-        log2 of seconds x ISO / f-number^2, as labelled, relative to the mean over the stack.
-    snapped : ndarray, float64, shape (T,), optional
-        The same with each factor on the exact power of two that its label stands for; None if labels stand for none.
-    differing : tuple of str
-        Which settings beside the time differ between the frames: "ISO", "aperture".
-    """
-
-    nominal: Float64Array
+    nominal: Float64Array  # (T,): log2 of seconds x ISO / f-number^2, as labeled, relative to the mean over the stack
+    #: Shape (T,): the same with each factor on the exact power of two that its label stands for; None if labels stand
+    #: for none.
     snapped: Float64Array | None
-    differing: tuple[str, ...]
+    differing: tuple[str, ...]  # the settings other than the time that differ between the frames: "ISO", "aperture"
 
     @property
     def range(self) -> float:
@@ -96,52 +72,13 @@ def stack_exposures(labels: Sequence[ExposureLabel]) -> Exposures:
     nominal = np.sum(parts, axis=0)
     known = [part for part in rounded if part is not None]
     snapped = np.sum(known, axis=0) if len(known) == len(parts) else None
-    return Exposures(
-        nominal - nominal.mean(), None if snapped is None else snapped - snapped.mean(), differing=tuple(differing)
-    )
+    centered = None if snapped is None else snapped - snapped.mean()
+    return Exposures(nominal - nominal.mean(), centered, tuple(differing))
 
 
 def parse_times(text: str) -> tuple[float, ...]:
-    """Return the seconds in "1/60,1/30,0.5".
-
-    Raises
-    ------
-    CalibrationError
-        If one is no positive number.
-    """
+    """Return the seconds in "1/60,1/30,0.5". Raise CalibrationError if one is not a positive number."""
     return tuple(_seconds(part) for part in text.split(","))
-
-
-def read_times(path: Path, names: Sequence[str]) -> tuple[float, ...]:
-    """Return the seconds of each of the files `names`, in a CSV file of rows such as "IMG_1.jpg,1/60".
-
-    Rows may be in any order, and may name other files too; folders in them do not count. A first row without a time is
-    a heading.
-
-    Raises
-    ------
-    CalibrationError
-        If the file cannot be read, a row holds no name and time, or a frame has no row, or two times.
-    """
-    try:
-        rows = [
-            row for row in csv.reader(read_bytes(path, most=_MOST_BYTES).decode("utf-8-sig").splitlines()) if any(row)
-        ]
-    except (OSError, UnicodeDecodeError, csv.Error) as problem:
-        reason = getattr(problem, "strerror", None) or problem
-        raise CalibrationError(f"{path}: cannot be read as CSV ({reason}); give rows such as IMG_1.jpg,1/60") from None
-    found: dict[str, float] = {}
-    for number, row in enumerate(rows):
-        if len(row) < 2:
-            raise CalibrationError(f"{path}: row {number + 1} holds no file and time; write it as IMG_1.jpg,1/60")
-        if number == 0 and not any(character.isdigit() for character in row[1]):
-            continue
-        name, seconds = Path(row[0].strip()).name, _seconds(row[1])
-        if found.setdefault(name, seconds) != seconds and name in names:
-            raise CalibrationError(f"{path}: has two times for {name}; give every frame a name and a row of its own")
-    if missing := [name for name in names if name not in found]:
-        raise CalibrationError(f"{path}: has no row for {missing[0]}; add its exposure time")
-    return tuple(found[name] for name in names)
 
 
 def _seconds(text: str) -> float:
@@ -152,7 +89,7 @@ def _seconds(text: str) -> float:
     except (ValueError, ZeroDivisionError):
         value = 0.0
     if not 0 < value < math.inf:
-        raise CalibrationError(f"{text.strip()!r} is no exposure time; give seconds such as 1/60 or 0.5")
+        raise CalibrationError("bad_seconds", text=text.strip())
     return value
 
 

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from crfnet_core.calibration.alignment import LONGEST_SIDE, chain_of_shifts, common_area, rank_image
+from crfnet_core.calibration.alignment import LONGEST_SIDE, Shift, chain_of_shifts, common_parts, rank_image
 from crfnet_core.calibration.exposures import ExposureLabel
 from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
@@ -20,49 +20,29 @@ from crfnet_core.types import Float64Array, Progress, show_progress
 #: Frames that a stack needs: fewer leave the response and the exposures to explain each other.
 LEAST_FRAMES = 4
 
-#: Longest side in pixels that is kept: every second pixel, or fewer, of larger frames.
+#: Longest side of the samples in pixels; larger frames are thinned out.
 KEPT_SIDE = 3000
 
 #: 8-bit code from which samples that pile up may be white, their least fraction, and the frames in which they have to.
 WHITE_FROM, WHITE_FRACTION, WHITE_FRAMES = 236, 0.002, 2
 
-#: How many times the fraction of the codes beside it, and of those further below, a pile has at least. Of 90 simulated
+#: Least ratio of a pile to the fraction of the codes next to it, and of the codes further below. Of 90 simulated
 #: stacks that clip at code 255 none has such a pile; of 180 that clip at 238 to 254, 175 have.
 ABOVE_NEIGHBORS, ABOVE_REST = 1.5, 2.0
 
 
 @dataclass(frozen=True, eq=False)
 class Frame:
-    """One frame of a stack.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    codes : ndarray, uint8 or uint16, shape (H, W, 3)
-        Its code values, every `stride`-th in both directions.
-    stride : int
-        Distance of the samples in the file.
-    largest : int
-        The largest code that the file can hold.
-    counts : ndarray, float64, shape (256,)
-        How often each brightness occurs over all channels, in 256 steps.
-    label : ExposureLabel
-        What EXIF says of its exposure.
-    metadata : FileMetadata
-        What the file says beside the pixels.
-    is_gray : bool
-        Whether the three channels are equal everywhere.
-    """
+    """One frame of a stack."""
 
     path: Path
-    codes: CodeArray
-    stride: int
-    largest: int
-    counts: Float64Array
-    label: ExposureLabel
-    metadata: FileMetadata
-    is_gray: bool
+    codes: CodeArray  # (H, W, 3): its code values, every `stride`-th in both directions
+    stride: int  # distance of the samples in the file
+    largest: int  # the largest code that the file can hold
+    counts: Float64Array  # (256,): how often each brightness occurs over all channels, in 256 steps
+    label: ExposureLabel  # its exposure by EXIF
+    metadata: FileMetadata  # the rest of the file's header
+    is_gray: bool  # whether the three channels are equal everywhere
 
     @property
     def size(self) -> tuple[int, int]:
@@ -73,29 +53,16 @@ class Frame:
 def read_frames(paths: Sequence[Path], *, progress: Progress | None = None) -> tuple[Frame, ...]:
     """Read the frames of one static scene, checked to be of one size, bit depth and camera.
 
-    Parameters
-    ----------
-    paths : sequence of Path
-        JPEG, HEIC, PNG, TIFF, DPX and other files: see `crfnet_core.photograph.image_io.read_photo`.
-    progress : callable, optional
-        Called with (done, total) after every frame.
-
-    Raises
-    ------
-    PhotoError
-        If a frame cannot be read.
-    CalibrationError
-        If there are fewer than `LEAST_FRAMES`, or they differ in what a stack has in common.
+    Raise PhotoError if a frame cannot be read, and CalibrationError if there are fewer than `LEAST_FRAMES`, or they
+    differ in what a stack has in common.
     """
     if len(paths) < LEAST_FRAMES:
         for path in paths:
             read_metadata(path)  # refuses a folder, and the name of no file
-        raise CalibrationError(
-            f"a stack needs at least {LEAST_FRAMES} frames of one scene at different exposures, found {len(paths)};"
-            " take more, a stop apart"
-        )
-    if twice := [path for index, path in enumerate(paths) if path.resolve() in {p.resolve() for p in paths[:index]}]:
-        raise CalibrationError(f"{twice[0]}: is given twice; give each frame once")
+        raise CalibrationError("few_frames", least=LEAST_FRAMES, count=len(paths))
+    path, times = Counter(path.resolve() for path in paths).most_common(1)[0]
+    if times > 1:
+        raise CalibrationError("frame_twice", path=path)
     frames = []
     for number, path in enumerate(paths):
         frames.append(_frame(path, read_codes(path)))
@@ -109,7 +76,7 @@ def white_level(frames: Sequence[Frame]) -> float:
 
     Most cameras clip at the largest code, some a little below. Their samples pile up at one code in several frames,
     though the frames are exposed differently: no surface does that. JPEG rings on both sides of it, as far as the
-    largest code, where it piles up again, but less.
+    largest code, where samples pile up again, but less.
     """
     green = [frame.codes[::2, ::2, 1] for frame in frames]
     steps = [_steps(codes, frame.largest) for codes, frame in zip(green, frames, strict=True)]
@@ -137,29 +104,19 @@ def _pile(fractions: Float64Array) -> int | None:
     pile = WHITE_FROM + int(fractions[WHITE_FROM:].argmax())
     if pile == 255 or fractions[pile] < WHITE_FRACTION:
         return None
-    beside, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
-    return pile if fractions[pile] > ABOVE_NEIGHBORS * beside and fractions[pile] > ABOVE_REST * below else None
+    near, below = fractions[[pile - 1, pile + 1]].max(), fractions[WHITE_FROM : pile - 2].max(initial=0)
+    return pile if fractions[pile] > ABOVE_NEIGHBORS * near and fractions[pile] > ABOVE_REST * below else None
 
 
-def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[tuple[int, int], ...]]:
+def align(frames: Sequence[Frame], order: Sequence[int]) -> tuple[tuple[CodeArray, ...], tuple[Shift, ...]]:
     """Return the codes of all frames cut to what they have in common, and by how many pixels each was displaced.
 
-    Parameters
-    ----------
-    frames : sequence of Frame
-        The stack.
-    order : sequence of int
-        The frames from the shortest to the longest exposure.
+    `order` lists the frames from the shortest to the longest exposure.
     """
-    height, width = frames[0].codes.shape[:2]
-    stride = max(1, -(-max(height, width) // LONGEST_SIDE))
+    stride = max(1, -(-max(frames[0].codes.shape) // LONGEST_SIDE))
     ranks = [rank_image(frame.codes[::stride, ::stride].mean(axis=2, dtype=np.float64)) for frame in frames]
     shifts = chain_of_shifts(ranks, order, stride)
-    rows, columns = common_area((height, width), shifts)
-    cut = tuple(
-        frame.codes[rows.start + down : rows.stop + down, columns.start + right : columns.stop + right]
-        for frame, (down, right) in zip(frames, shifts, strict=True)
-    )
+    cut = common_parts([frame.codes for frame in frames], shifts)
     return cut, tuple((down * frames[0].stride, right * frames[0].stride) for down, right in shifts)
 
 
@@ -173,24 +130,21 @@ def _frame(path: Path, values: CodeValues) -> Frame:
         stride=stride,
         largest=values.largest,
         counts=np.bincount(_steps(codes, values.largest).ravel(), minlength=256).astype(np.float64),
-        label=ExposureLabel.of_header(values.header),
+        label=ExposureLabel.from_header(values.header),
         metadata=values.metadata,
         is_gray=values.is_gray,
     )
 
 
 def _check_like_first(first: Frame, frame: Frame) -> None:
-    """Refuse a frame whose size, bit depth or camera is not that of the first."""
+    """Refuse a frame whose size, bit depth or camera differs from the first frame's."""
+    path, first_name = frame.path, first.path.name
     if frame.size != first.size:
-        sizes = "{} x {} pixels, {} has {} x {}".format(*frame.size, first.path.name, *first.size)
-        raise CalibrationError(f"{frame.path}: has {sizes}; give the frames of one stack, all as the camera wrote them")
+        sizes = [f"{width} x {height}" for width, height in (frame.size, first.size)]
+        raise CalibrationError("frame_size", path=path, size=sizes[0], first=first_name, first_size=sizes[1])
     if frame.largest != first.largest:
-        raise CalibrationError(
-            f"{frame.path}: has other bits per sample than {first.path.name}; give files of one kind"
-        )
-    cameras = [(each.metadata.make, each.metadata.model) for each in (first, frame)]
-    if cameras[0] != cameras[1]:
-        names = [" ".join(filter(None, camera)) or "no camera" for camera in cameras]
-        raise CalibrationError(
-            f"{frame.path}: names {names[1]}, {first.path.name} {names[0]}; give frames of one camera"
-        )
+        raise CalibrationError("frame_bits", path=path, first=first_name)
+    makers = [(each.metadata.make, each.metadata.model) for each in (frame, first)]
+    if makers[0] != makers[1]:
+        cameras = [" ".join(filter(None, maker)) or "no camera" for maker in makers]
+        raise CalibrationError("frame_camera", path=path, camera=cameras[0], first=first_name, first_camera=cameras[1])

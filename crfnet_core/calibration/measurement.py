@@ -1,4 +1,4 @@
-"""From observations to an anchored response: start, fit, anchor, and what does not fit left out."""
+"""From observations to an anchored response: start, fit, anchor; frames and samples that do not fit are left out."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crfnet_core.types import BoolArray, Float64Array
 #: Fits with the anchor corrected in between.
 ROUNDS = 2
 
-#: Residual in 8-bit codes from which a frame does not fit, and how many times it has to be that of the others.
+#: Residual in 8-bit codes from which a frame does not fit, and by which factor it has to exceed the others.
 WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
 #: Stops that the frames that fit each other have to span, fewer than a whole stack: over one stop, whose labels may be
@@ -34,33 +34,15 @@ OUTLIER = 5.0
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
-    """An anchored response, and what it was measured on.
+    """An anchored response, and the samples that it was measured on."""
 
-    Parameters
-    ----------
-    seen : Observations
-        The samples that were used, in the frames that were used.
-    exposures : ndarray, float64, shape (T,)
-        The labels of these frames, in stops.
-    frames : ndarray, bool, shape (all frames,)
-        Which frames these are.
-    fit : StackFit
-        The fit; its unit of irradiance is white but for `anchor`.
-    anchor : Anchor
-        Where white is in that unit.
-    curve : ResponseCurve
-        The response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`.
-    outliers : float
-        Fraction of the samples that were left out.
-    """
-
-    seen: Observations
-    exposures: Float64Array
-    frames: BoolArray
-    fit: StackFit
-    anchor: Anchor
-    curve: ResponseCurve
-    outliers: float
+    seen: Observations  # the samples that were used, in the frames that were used
+    exposures: Float64Array  # (T,): the labels of these frames, in stops
+    frames: BoolArray  # (all frames,): which frames these are
+    fit: StackFit  # its unit of irradiance is white but for `anchor`
+    anchor: Anchor  # where white is in that unit
+    curve: ResponseCurve  # the response, in parts of white; see `crfnet_core.calibration.curve_model.in_file_codes`
+    outliers: float  # fraction of the samples that were left out
 
     @property
     def residual(self) -> float:
@@ -71,35 +53,26 @@ class Measurement:
 def measure(every: Observations, exposures: Float64Array, model: CurveModel) -> Measurement:
     """Return the response that explains the samples of all blocks; frames and samples that do not fit are left out.
 
-    Parameters
-    ----------
-    every : Observations
-        Every sample of the stack.
-    exposures : ndarray, float64, shape (T,)
-        Labels of the exposures, in stops.
-    model : CurveModel
-        The responses to choose from.
+    `exposures` are the labels in stops, shape (T,).
 
-    Raises
-    ------
-    CalibrationError
-        If too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans too few stops.
+    Raise CalibrationError if too few blocks are seen often (see `pick_blocks`), or frames do not fit and the rest spans
+    too few stops.
     """
     frames = np.ones(len(exposures), dtype=bool)
     while True:
         within, stops = every.in_frames(frames), exposures[frames]
         known = best_known_response(within, stops)
         seen = pick_blocks(within, rough_irradiance(within, stops, known))
-        found = fit_and_anchor(seen, stops, model, known)
-        worst = _worst_frame(found.fit)
+        measurement = fit_and_anchor(seen, stops, model, known)
+        worst = _worst_frame(measurement.fit)
         if worst is None or frames.sum() < LEAST_FRAMES:
             break
         frames[np.flatnonzero(frames)[worst]] = False
         _check_rest(exposures[frames], len(frames))
-    is_outlier = _outliers(seen, found.fit)
+    is_outlier = _outliers(seen, measurement.fit)
     if is_outlier.any() and not is_outlier.all():
-        found = fit_and_anchor(seen.subset(~is_outlier), stops, model, found.curve)
-    return replace(found, frames=frames, outliers=float(is_outlier.mean()))
+        measurement = fit_and_anchor(seen.subset(~is_outlier), stops, model, measurement.curve)
+    return replace(measurement, frames=frames, outliers=float(is_outlier.mean()))
 
 
 def fit_and_anchor(
@@ -134,11 +107,8 @@ def _worst_frame(fit: StackFit) -> int | None:
 def _check_rest(stops: Float64Array, count: int) -> None:
     """Refuse the frames that fit each other, of `count` frames, if their exposures span too few stops."""
     if (span := float(np.ptp(stops))) < LEAST_REST:
-        raise CalibrationError(
-            f"without the frames that do not fit the others ({count - len(stops)} of {count}), the exposures span"
-            f" {beside_limits(span, LEAST_REST)} stops; these need {LEAST_REST:g} or more: use a tripod and a still"
-            " scene, and take frames one or two stops apart"
-        )
+        span_text = beside_limits(span, LEAST_REST)
+        raise CalibrationError("rest_span", unfit=count - len(stops), count=count, span=span_text, least=LEAST_REST)
 
 
 def _outliers(seen: Observations, fit: StackFit) -> BoolArray:

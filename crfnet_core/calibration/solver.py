@@ -1,4 +1,4 @@
-"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. 44)."""
+"""Response, exposures and irradiances that explain a stack, by robust nonlinear least squares (Eq. C.2)."""
 
 from __future__ import annotations
 
@@ -10,15 +10,15 @@ from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import HIGHEST, LOWEST, STEPS, CurveModel, CurveValues
 from crfnet_core.types import BoolArray, Float64Array
 
-#: Factor by which every observation is down-weighted, because errors of neighbouring blocks are correlated.
+#: Factor by which every observation is down-weighted, because errors of neighboring blocks are correlated.
 DEFLATION = 10.0
 
-#: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around that of
-#: green: cameras that change the white balance between frames leave green alone.
+#: Prior standard deviations in stops of a frame's exposure around its label, and of the other channels' around
+#: green's: cameras that change the white balance between frames leave green alone.
 TIME_DEVIATION, BALANCE_DEVIATION = 0.05, 0.3
 
-#: The same, in stops a stop, of green's offsets' trend over the exposures. A power of the exposures cannot be told from
-#: a power in the response, so the labels decide.
+#: The same, in stops a stop, of the trend of green's offsets over the exposures. A power of the exposures cannot be
+#: distinguished from a power in the response, so the labels decide.
 TREND_DEVIATION = 5e-4
 
 #: Standard deviations from which errors of brightness, and of exposures, count linearly.
@@ -36,30 +36,15 @@ MOST_ITERATIONS, ENOUGH = 40, 2e-4
 
 @dataclass(frozen=True, eq=False)
 class StackFit:
-    """What explains a stack.
+    """The response, exposures and irradiances that explain a stack."""
 
-    Parameters
-    ----------
-    weights : ndarray, float64, shape (K,)
-        Of the response: see `CurveModel`.
-    offsets : ndarray, float64, shape (T, C)
-        Stops by which each frame is brighter than its label says, in each channel.
-    log_irradiance : ndarray, float64, shape (M,)
-        log2 of each sample's irradiance at the mean exposure of the stack; that of white is 0.
-    covariance : ndarray, float64, shape (K, K)
-        Posterior covariance of the weights.
-    residual : ndarray, float64, shape (M, T)
-        Brightness less that of the model; NaN where nothing was seen.
-    cost : float
-        What was minimised.
-    """
-
-    weights: Float64Array
-    offsets: Float64Array
+    weights: Float64Array  # (K,): of the response: see `CurveModel`
+    offsets: Float64Array  # (T, C): stops by which each frame is brighter than its label, in each channel
+    #: Shape (M,): log2 of each sample's irradiance at the mean exposure of the stack; white is 0.
     log_irradiance: Float64Array
-    covariance: Float64Array
-    residual: Float64Array
-    cost: float
+    covariance: Float64Array  # (K, K): posterior covariance of the weights
+    residual: Float64Array  # (M, T): brightness less the model's; NaN where nothing was seen
+    cost: float  # Eq. C.2
 
     def exposed(self, exposures: Float64Array, seen: Observations) -> Float64Array:
         """Return log2 of the irradiance of every sample in every frame, shape (M, T)."""
@@ -69,26 +54,13 @@ class StackFit:
 def fit_stack(
     seen: Observations, exposures: Float64Array, model: CurveModel, weights: Float64Array, log_irradiance: Float64Array
 ) -> StackFit:
-    """Return the most likely response, exposures and irradiances.
+    """Return the most likely response, exposures and irradiances, from a start: weights (K,) and log_irradiance (M,).
 
     Gauss-Newton with Levenberg and Marquardt's damping. The irradiances, thousands of unknowns that each touch one
-    sample only, are eliminated from the normal equations (Schur complement). Iteratively reweighted least squares
-    make the cost Huber's.
+    sample only, are eliminated from the normal equations (Schur complement). Iteratively reweighted least squares make
+    the cost Huber's.
 
     Source: the model of Mann and Picard (1995) and of Debevec and Malik (1997), with the response as a forward model.
-
-    Parameters
-    ----------
-    seen : Observations
-        Brightness of M samples in T frames.
-    exposures : ndarray, float64, shape (T,)
-        Labels of the exposures, in stops.
-    model : CurveModel
-        The responses to choose from.
-    weights : ndarray, float64, shape (K,)
-        Where to begin.
-    log_irradiance : ndarray, float64, shape (M,)
-        Where to begin.
     """
     problem = _Problem(seen, exposures, model)
     state = _State(weights, np.zeros((len(exposures), problem.channels)), log_irradiance)
@@ -131,11 +103,11 @@ class _System:
 
     cost: float
     residual: Float64Array
-    matrix: Float64Array  # (P, P), of weights and offsets
-    right: Float64Array  # (P,), their right-hand side
-    coupling: Float64Array  # (M, P), of irradiances with weights and offsets
-    diagonal: Float64Array  # (M,), of the irradiances, which have no terms with each other
-    irradiance_right: Float64Array  # (M,), their right-hand side
+    matrix: Float64Array  # (P, P): of weights and offsets
+    right: Float64Array  # (P,): their right-hand side
+    coupling: Float64Array  # (M, P): of irradiances with weights and offsets
+    diagonal: Float64Array  # (M,): of the irradiances, which have no terms with each other
+    irradiance_right: Float64Array  # (M,): their right-hand side
 
 
 class _Problem:

@@ -1,4 +1,4 @@
-"""Where the fit begins: the known response under which the frames agree best (Mitsunaga and Nayar's criterion)."""
+"""The start of the fit: the known response under which the frames agree best (Mitsunaga and Nayar's criterion)."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ COMPARED, SEED = 400, 0
 #: Largest disagreement in 8-bit codes that counts: beyond, a sample is an outlier.
 LARGEST_SPREAD = 20.0
 
-#: Stops that a code is at least worth: no response can be told from another where a code says less.
+#: Stops that a code is at least worth: where it is worth less, it does not separate responses.
 LEAST_STOPS = 0.004
 
 

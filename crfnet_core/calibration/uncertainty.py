@@ -1,4 +1,4 @@
-"""How far a measured response may be off: its shape and its scale, both in stops (Eq. 46 and 47 of docs/METHOD.md)."""
+"""How far a measured response may be off: its shape and its scale, both in stops (Eq. C.4 and C.5)."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ from crfnet_core.types import Float64Array
 #: Draws from the posterior of the curve's weights, and their seed.
 DRAWS, SEED = 64, 0
 
-#: What remains in stops where nothing disagrees: blocks are not flat, JPEG, the model.
+#: The rest in stops where nothing disagrees: blocks are not flat, JPEG, the model.
 LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
 
 #: Part of the difference between the channels' own responses that counts: they have a response in common.
@@ -31,18 +31,10 @@ LEAST_SAMPLES = 60
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """Standard deviations in stops, each with its parts by name.
+    """Standard deviations in stops, each with its parts by name."""
 
-    Parameters
-    ----------
-    shape : dict
-        Parts of the shape's: see `crfnet_core.response.metrics.shape_error`.
-    scale : dict
-        Parts of the scale's: see `crfnet_core.response.metrics.scale_error`.
-    """
-
-    shape: dict[str, float]
-    scale: dict[str, float]
+    shape: dict[str, float]  # parts of the shape's: see `crfnet_core.response.metrics.shape_error`
+    scale: dict[str, float]  # parts of the scale's: see `crfnet_core.response.metrics.scale_error`
 
     @property
     def shape_stops(self) -> float:
@@ -60,16 +52,8 @@ def uncertainty_of(
 ) -> Uncertainty:
     """Return how far a measured response may be off, at the codes of the file.
 
-    Parameters
-    ----------
-    measurement : Measurement
-        The response.
-    other_labels : ResponseCurve, optional
-        The response by the other reading of the exposure labels, if there is one.
-    model : CurveModel
-        The responses to choose from.
-    white : float
-        The code of white as a part of the largest code.
+    `white` is the code of white as a part of the largest. `other_labels` is the response by the other reading of the
+    exposure labels, if there is one.
     """
     curve = in_file_codes(measurement.curve, white)
     even = measurement.seen.block % 2 == 0
@@ -104,7 +88,7 @@ def uncertainty_of(
 def _curve_of(
     seen: Observations, exposures: Float64Array, measurement: Measurement, model: CurveModel
 ) -> ResponseCurve:
-    """Return the response of a part of the samples; that of all if the part is too small."""
+    """Return the response of a part of the samples, or of all if the part is too small."""
     if len(seen.block) < LEAST_SAMPLES:
         return measurement.curve
     return fit_and_anchor(seen, exposures, model, measurement.curve, rounds=1).curve

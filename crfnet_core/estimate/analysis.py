@@ -26,58 +26,26 @@ DARKEST, BRIGHTEST = 0.5 / 255, 254.5 / 255
 
 @dataclass(frozen=True, eq=False)
 class CutPhotograph:
-    """The windows of a photograph, and the facts about it that an estimate needs.
-
-    Parameters
-    ----------
-    name : str
-        The file's name.
-    windows : tuple of Window
-        Where the windows lie; empty for a photograph that was kept for later.
-    samples : ndarray, float32, shape (N, side, side, 3)
-        The pixels of the windows.
-    thumbnail : ndarray, float64, shape (16, 16)
-        Ranks of brightness on a coarse grid: no exposure or response changes them.
-    levels : Levels
-        Where its darkest, its middle and its brightest samples lie.
-    make : str
-        The camera's maker, as the file writes it; empty if metadata is ignored.
-    origin : FileOrigin, optional
-        How the file was made, by its metadata and the user; None if neither says anything.
-    is_gray : bool
-        Whether its three channels are equal.
-    clipped : float
-        Fraction of the samples of its windows at the ends of the range.
-    """
+    """The windows of a photograph, and the facts about it that an estimate needs."""
 
     name: str
-    windows: tuple[Window, ...]
-    samples: Float32Array
-    thumbnail: Float64Array
-    levels: Levels
-    make: str
-    origin: FileOrigin | None
-    is_gray: bool
-    clipped: float
+    windows: tuple[Window, ...]  # empty for a photograph that was kept for later
+    samples: Float32Array  # (N, side, side, 3): pixels of the windows
+    thumbnail: Float64Array  # (16, 16): ranks of brightness, which no exposure or response changes
+    levels: Levels  # its darkest, its middle and its brightest samples
+    make: str  # the camera's maker, as the file writes it; empty if metadata is ignored
+    origin: FileOrigin | None  # how the file was made, by its metadata and the user; None if neither says anything
+    is_gray: bool  # whether its three channels are equal
+    clipped: float  # fraction of the samples of its windows at the ends of the range
 
 
 @dataclass(frozen=True, eq=False)
 class AnalyzedPhotograph:
-    """A photograph and its evidence.
-
-    Parameters
-    ----------
-    photograph : CutPhotograph
-        The photograph.
-    evidence : Evidence
-        How likely each response makes it.
-    window_evidences : tuple of Evidence
-        The same for each of its windows alone.
-    """
+    """A photograph and its evidence."""
 
     photograph: CutPhotograph
-    evidence: Evidence
-    window_evidences: tuple[Evidence, ...] = ()
+    evidence: Evidence  # how likely each response makes the photograph
+    window_evidences: tuple[Evidence, ...] = ()  # the same for each of its windows alone
 
 
 #: One photograph or several; those that are cut already need no memory for their pixels.
@@ -87,11 +55,8 @@ Photographs = Photo | CutPhotograph | Iterable[Photo | CutPhotograph]
 def cut_photograph(photo: Photo, options: AnalysisOptions | None = None) -> CutPhotograph:
     """Return the windows of a photograph.
 
-    Raises
-    ------
-    PhotoError
-        If it is smaller than a window, its file names an encoding with a published curve, or `options.device` is not a
-        `Device`.
+    Raise PhotoError if it is smaller than a window, its file names an encoding with a published curve, or
+    `options.device` is not a `Device`.
     """
     options = options or AnalysisOptions()
     metadata = photo.metadata if options.use_metadata else None

@@ -80,22 +80,11 @@ def estimate_response(
 
 
 def estimate_from_evidence(
-    analyzed: Sequence[AnalyzedPhotograph],
-    *,
-    model: str,
-    prior: Prior | None = None,
-    bank: ResponseBank | None = None,
+    analyzed: Sequence[AnalyzedPhotograph], *, model: str, prior: Prior | None = None, bank: ResponseBank | None = None
 ) -> ResponseEstimate:
-    """Return the response of the camera that took photographs whose evidence is known.
+    """Return the response of the camera that took photographs, at least one, that one network has analyzed.
 
-    Parameters
-    ----------
-    analyzed : sequence of AnalyzedPhotograph
-        At least one; all analyzed by one network.
-    model : str
-        The label of this network.
-    prior, bank : Prior and ResponseBank, optional
-        As of `estimate_response`.
+    `model` is the label of this network; `prior` and `bank` are as of `estimate_response`.
     """
     bank = bank or ResponseBank.load()
     photographs = [one.photograph for one in analyzed]

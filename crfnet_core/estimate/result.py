@@ -28,44 +28,23 @@ SCHEMA_VERSION = 1
 
 @dataclass(frozen=True, eq=False)
 class WindowEstimate(EqualByFields):
-    """One window's part in an estimate.
+    """One window's part in an estimate."""
 
-    Parameters
-    ----------
-    photo : int
-        Which of the photographs the window was cut from.
-    window : Window
-        Where it lies and how much of the range it covers.
-    weights : ndarray, float64, shape (11,)
-        The EMoR weights that follow from this window alone.
-    expected_error : float
-        The E_est that is expected of them.
-    kept : bool
-        Whether the window agrees with the photograph's others (`pooling.agreeing`). Without learned pooling, only such
-        windows count.
-    """
-
-    photo: int
-    window: Window
-    weights: Float64Array
-    expected_error: float
+    photo: int  # which of the photographs the window was cut from
+    window: Window  # its place, and how much of the range it covers
+    weights: Float64Array  # (11,): the EMoR weights that follow from this window alone
+    expected_error: float  # the E_est that is expected of them
+    #: Whether the window agrees with the photograph's others (`pooling.agreeing`). Without learned pooling, only such
+    #: windows count.
     kept: bool
 
 
 @dataclass(frozen=True)
 class CameraAnswer:
-    """A stored camera whose measured response is the answer, or could be.
+    """A stored camera whose measured response is the answer, or could be."""
 
-    Parameters
-    ----------
-    name : str
-        The camera's, in the library.
-    basis : str
-        The measurement that its response rests on, in words.
-    """
-
-    name: str
-    basis: str
+    name: str  # the camera's, in the library
+    basis: str  # the measurement that its response rests on, in words
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:

@@ -45,17 +45,10 @@ def camera_estimate(camera: Camera) -> ResponseEstimate:
 
 
 def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
-    """Return the answer of a camera for photographs, in the place of their estimate.
+    """Return the answer of a stored camera for photographs, in the place of their estimate.
 
     The response, its errors and its band are the camera's. The photographs keep their windows, metadata and
     recognition: no stored response makes log footage a photograph.
-
-    Parameters
-    ----------
-    estimate : ResponseEstimate
-        The estimate from the photographs alone.
-    camera : Camera
-        The camera.
     """
     answer = camera_estimate(camera)
     notices = [Notice("recognized", {"reason": estimate.recognition.reason})] if estimate.recognition else []

@@ -18,22 +18,12 @@ NAME = re.compile(r"(?!(?:con|prn|aux|nul|com\d|lpt\d)(?:\.|$))[^\W_][\w '.,+()-
 
 @dataclass(frozen=True)
 class CameraSettings:
-    """A camera and its settings as files name them; the picture mode, which matters more than ISO, is unknown.
+    """A camera and its settings as files name them; the picture mode, which matters more than ISO, is unknown."""
 
-    Parameters
-    ----------
-    make, model : str
-        As the camera writes itself; empty if unknown.
-    software : str
-        The camera's firmware, or the program that wrote the file last.
-    iso : tuple of int
-        Sensitivities, sorted.
-    """
-
-    make: str = ""
+    make: str = ""  # as the camera writes itself; empty if unknown
     model: str = ""
-    software: str = ""
-    iso: tuple[int, ...] = ()
+    software: str = ""  # the camera's firmware, or the program that wrote the file last
+    iso: tuple[int, ...] = ()  # sensitivities, sorted
 
     @classmethod
     def from_metadata(cls, metadata: FileMetadata | None) -> CameraSettings:
@@ -51,31 +41,15 @@ class CameraSettings:
 
 @dataclass(frozen=True)
 class Camera:
-    """A camera in one picture mode, whose response was measured.
+    """A camera in one picture mode, whose response was measured."""
 
-    Parameters
-    ----------
-    name : str
-        The name that its owner gives it, and its file: see `checked_name`.
-    curve : ResponseCurve
-        The response.
-    shape_stops, scale_stops : float
-        Standard deviations of the shape of the linear light, and of its scale against white, in stops.
-    source : str
-        The photographs that it was measured from, in words.
-    settings : CameraSettings
-        Of the photographs that it was measured on.
-    warnings : tuple of str
-        Reasons why the measurement is less certain, in words.
-    """
-
-    name: str
+    name: str  # the name that its owner gives it, and its file: see `checked_name`
     curve: ResponseCurve
-    shape_stops: float
+    shape_stops: float  # standard deviations of the shape of the linear light, and of its scale against white, in stops
     scale_stops: float
-    source: str
-    settings: CameraSettings
-    warnings: tuple[str, ...] = ()
+    source: str  # the photographs that it was measured from, in words
+    settings: CameraSettings  # of the photographs that it was measured on
+    warnings: tuple[str, ...] = ()  # reasons why the measurement is less certain, in words
 
     @property
     def basis(self) -> str:
@@ -86,13 +60,7 @@ class Camera:
 
 
 def checked_name(name: str) -> str:
-    """Return a camera's name in Unicode's composed form, with single spaces.
-
-    Raises
-    ------
-    CameraError
-        If it is not a name by the rule of `NAME`.
-    """
+    """Return a camera's name in Unicode's composed form, with single spaces. Raise CameraError if `NAME` forbids it."""
     plain = " ".join(unicodedata.normalize("NFC", name).split())
     if not NAME.fullmatch(plain):
         raise CameraError("bad_camera_name", name=name)

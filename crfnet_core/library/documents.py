@@ -44,10 +44,7 @@ def camera_document(camera: Camera) -> dict[str, Any]:
 def read_camera(path: Path) -> Camera:
     """Return the camera in a JSON file, whose name is the camera's.
 
-    Raises
-    ------
-    CameraError
-        If the file cannot be read, is damaged, holds no measured response, or is of a later version.
+    Raise CameraError if the file cannot be read, is damaged, holds no measured response, or is of a later version.
     """
     name, document = checked_name(path.stem), _read_object(path, kind="camera")
     if (version := document.get("camera_version")) != CAMERA_VERSION:
@@ -61,19 +58,9 @@ def read_camera(path: Path) -> Camera:
 
 
 def read_calibration(path: Path, name: str | None = None) -> Camera:
-    """Return the camera that a calibration measured, from its JSON document.
+    """Return the camera that a calibration measured, from its JSON document; by default named as the file.
 
-    Parameters
-    ----------
-    path : Path
-        The document.
-    name : str, optional
-        The camera's name; by default the name of the file.
-
-    Raises
-    ------
-    CameraError
-        If the file cannot be read, holds no calibration, or the name breaks the rule of `checked_name`.
+    Raise CameraError if the file cannot be read, holds no calibration, or the name breaks the rule of `checked_name`.
     """
     name, document = checked_name(path.stem if name is None else name), _read_object(path, kind="calibration")
     try:

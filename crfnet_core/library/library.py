@@ -27,14 +27,9 @@ class CameraLibrary:
 
     A file is named after its camera and written whole, so that nothing needs a lock, and copying a file hands its
     camera on.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder; it need not exist.
     """
 
-    folder: Path
+    folder: Path  # the folder; it need not exist
 
     @classmethod
     def of_user(cls) -> CameraLibrary:
@@ -62,22 +57,14 @@ class CameraLibrary:
         return next((path for path in self._files() if name_key(path.stem) == name_key(name)), None)
 
     def get(self, name: str) -> Camera:
-        """Return the camera of this name.
-
-        Raises
-        ------
-        CameraError
-            If there is none, or its file is damaged.
-        """
+        """Return the camera of this name. Raise CameraError if there is none, or its file is damaged."""
         return read_camera(self._present(name))
 
     def save(self, camera: Camera, *, overwrite: bool = False) -> Path:
         """Write a camera and return its file; the folder is made if it is absent.
 
-        Raises
-        ------
-        CameraError
-            If there is a camera of this name that may not be replaced, or the folder cannot be written to.
+        Raise CameraError if there is a camera of this name that may not be replaced, or the folder cannot be written
+        to.
         """
         path = self.file_of(camera.name)
         if path and not overwrite:
@@ -93,13 +80,7 @@ class CameraLibrary:
         return path
 
     def remove(self, name: str) -> None:
-        """Remove the camera of this name.
-
-        Raises
-        ------
-        CameraError
-            If there is none, or its file cannot be removed.
-        """
+        """Remove the camera of this name. Raise CameraError if there is none, or its file cannot be removed."""
         path = self._present(name)
         try:
             path.unlink()
@@ -126,33 +107,22 @@ class CameraLibrary:
 
 
 def find_camera(name: str) -> Camera:
-    """Return the camera of this name: the user's own, else one that comes with this project.
-
-    Raises
-    ------
-    CameraError
-        If there is none, or its file is damaged.
-    """
-    own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    return (own if own.file_of(name) or not shipped.file_of(name) else shipped).get(name)
+    """Return the user's camera of this name, else the shipped one. Raise CameraError as `CameraLibrary.get` does."""
+    user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
+    return (user if user.file_of(name) or not shipped.file_of(name) else shipped).get(name)
 
 
 def known_cameras() -> list[Camera]:
     """Return the user's own cameras, then those that come with this project and have no namesake among them."""
-    own = CameraLibrary.of_user().cameras()
-    names = {name_key(camera.name) for camera in own}
-    return own + [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
+    cameras = CameraLibrary.of_user().cameras()
+    names = {name_key(camera.name) for camera in cameras}
+    return cameras + [camera for camera in CameraLibrary.shipped().cameras() if name_key(camera.name) not in names]
 
 
 def listed_cameras(text: str = "", models: Collection[str] = ()) -> list[tuple[str, str]]:
-    """Return the names of all cameras that hold a text, each with its `basis`, to choose from.
+    """Return the names of all cameras that hold a text, in upper or lower case, each with its `basis`.
 
-    Parameters
-    ----------
-    text : str
-        The text typed so far, in upper or lower case.
-    models : collection of str
-        Make and model of a plate's cameras, as in `FileOrigin.camera`: such cameras come first.
+    Cameras of `models` (make and model, as in `FileOrigin.camera`) come first.
     """
     wanted = {model.casefold() for model in models}
     cameras = [camera for camera in known_cameras() if text.casefold() in camera.name.casefold()]

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from pathlib import Path
@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network.model import MODELS, ModelConfig, model_folder, read_graph
+from crfnet_core.network.model import ModelConfig, model_folder, read_graph
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.network.session import Session
 from crfnet_core.posterior import Evidence
@@ -20,38 +20,19 @@ from crfnet_core.types import Float32Array, Progress, cores, show_progress
 
 @dataclass(frozen=True)
 class Predictions:
-    """The evidence that a network sees in one photograph.
+    """The evidence that a network sees in one photograph."""
 
-    Parameters
-    ----------
-    windows : tuple of Evidence
-        Of each window by itself.
-    pooled : Evidence
-        Of all windows together: by the network, or their robust mean if it does not pool.
-    """
-
-    windows: tuple[Evidence, ...]
-    pooled: Evidence
+    windows: tuple[Evidence, ...]  # of each window by itself
+    pooled: Evidence  # of all windows together: by the network, or their robust mean if it does not pool
 
 
 class ResponseNetwork:
-    """An onnxruntime session, made once, and its configuration.
+    """An onnxruntime session, made once, and its configuration; threads may share one, processes load their own."""
 
-    Threads may share one. Another process, as of `multiprocessing` or joblib, loads it from its folder again, which
-    must still hold the same model.
-    """
-
-    def __init__(self, config: ModelConfig, session: Session, *, folder: Path, threads: int) -> None:
+    def __init__(self, config: ModelConfig, session: Session, *, threads: int = 0) -> None:
         self.config = config
         self._session = session
-        self._folder = folder
         self._threads = threads
-
-    def __reduce__(self) -> tuple[Callable[[str, str, int], ResponseNetwork], tuple[str, str, int]]:
-        """Return how another process loads the same network: by its name if it is packaged, else by its folder."""
-        folder = self._folder.resolve()
-        place = folder.name if folder.parent == MODELS.resolve() else str(folder)
-        return _load_same, (place, self.config.sha256, self._threads)
 
     @classmethod
     def load(cls, folder: str | Path | None = None, *, threads: int = 0) -> ResponseNetwork:
@@ -75,22 +56,13 @@ class ResponseNetwork:
             raise ModelError("negative_threads", threads=threads)
         folder = model_folder(folder)
         config = ModelConfig.read(folder / "model.json")
-        return cls(config, Session(folder, read_graph(folder, config), config), folder=folder, threads=threads)
+        return cls(config, Session(folder, read_graph(folder, config), config), threads=threads)
 
     def predict(self, windows: Float32Array, *, progress: Progress | None = None) -> Predictions:
-        """Return the evidence in the windows of one photograph.
+        """Return the evidence in the windows of one photograph, code values in [0, 1], shape (N, 227, 227, 3).
 
-        Parameters
-        ----------
-        windows : ndarray, float32, shape (N, 227, 227, 3)
-            At least one window, code values in [0, 1]; not changed.
-        progress : callable, optional
-            Called with (done, total) after every window.
-
-        Raises
-        ------
-        ModelError
-            If the network fails, or answers with numbers that are not finite or of another shape than evidence.
+        `progress` is called with (done, total) after every window. Raise ModelError if the network fails, or answers
+        with numbers that are not finite or of another shape than evidence.
         """
         if self.config.reads_statistics:
             outputs = self._session.run(_statistics(windows, progress))
@@ -123,14 +95,6 @@ def _statistics(windows: Float32Array, progress: Progress | None) -> Float32Arra
         rows.append(window_statistics(window))
         show_progress(progress, number, len(windows))
     return np.stack(rows)
-
-
-def _load_same(place: str, sha256: str, threads: int) -> ResponseNetwork:
-    """Return the network that another process had, from the same folder or from this process's packaged models."""
-    network = ResponseNetwork.load(MODELS / place, threads=threads)  # an absolute path stays as it is
-    if network.config.sha256 != sha256:
-        raise ModelError("other_model_here", path=MODELS / place)
-    return network
 
 
 def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:

@@ -27,59 +27,30 @@ INPUTS = ("windows", "statistics")
 
 @dataclass(frozen=True)
 class ModelConfig:
-    """The entries of model.json.
+    """The entries of model.json."""
 
-    Parameters
-    ----------
-    name : str
-        The model's and its folder's.
-    sha256 : str
-        Of model.onnx; checked at load.
-    basis : str
-        The response model of the outputs: "emor".
-    components : int
-        Number of its first weights that the evidence is about.
-    window_size : int
-        Side of a window in samples.
-    input_name : str
-        "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, LENGTH): see
-        `crfnet_core.statistics`.
-    output_names : tuple of str
-        Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, 5), factors (N, 5, 5) and log-odds
-        (N, 3); of a network that pools its windows, then the same of all of them together, (1, ...).
-    normalization : str
-        The scale of the input, in words.
-    opset : int
-        Of the ONNX graph.
-    training_commit : str
-        The commit of this project that the training run began from; see run.json.
-    training : dict
-        "scene_kinds" that it was trained on, and "held_out_curves", the DoRF curves that it has not seen.
-    accuracy : dict
-        Figures of the model card.
-    """
-
-    name: str
-    sha256: str
-    basis: str
-    components: int
-    window_size: int
+    name: str  # the model's and its folder's
+    sha256: str  # of model.onnx; checked at load
+    basis: str  # the response model of the outputs: "emor"
+    components: int  # number of its first weights that the evidence is about
+    window_size: int  # side of a window in samples
+    #: "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, LENGTH): see `crfnet_core.statistics`.
     input_name: str
+    #: Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, 5), factors (N, 5, 5) and log-odds (N,
+    #: 3); of a network that pools its windows, then the same of all of them together, (1, ...).
     output_names: tuple[str, ...]
-    normalization: str
-    opset: int
-    training_commit: str
+    normalization: str  # the scale of the input, in words
+    opset: int  # of the ONNX graph
+    training_commit: str  # the commit of this project that the training run began from; see run.json
+    #: "scene_kinds" that it was trained on, and "held_out_curves", the DoRF curves that it has not seen.
     training: dict[str, Any]
-    accuracy: dict[str, Any]
+    accuracy: dict[str, Any]  # figures of the model card
 
     @classmethod
     def read(cls, path: str | Path) -> ModelConfig:
         """Return the configuration in a model.json.
 
-        Raises
-        ------
-        ModelError
-            If the file is absent or is not JSON, lacks an entry, or describes a network of another kind.
+        Raise ModelError if the file is absent or is not JSON, lacks an entry, or describes a network of another kind.
         """
         path = Path(path)
         entries = _read_object(path)

@@ -44,19 +44,8 @@ _FATAL = 4
 class Session:
     """The network of a model folder on one thread of the CPU; threads may share it.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder that errors name.
-    graph : bytes
-        The content of model.onnx.
-    config : ModelConfig
-        The content of model.json.
-
-    Raises
-    ------
-    ModelError
-        If the graph has weights in another file, cannot be loaded, or has other inputs or outputs than model.json says.
+    Raise ModelError if the graph has weights in another file, cannot be loaded, or has other inputs or outputs than
+    model.json says.
     """
 
     def __init__(self, folder: Path, graph: bytes, config: ModelConfig) -> None:
@@ -76,12 +65,8 @@ class Session:
     def run(self, inputs: Float32Array) -> list[Float32Array]:
         """Return the network's outputs for some rows: finite, and of the shapes of evidence.
 
-        Of statistics it reads the first cues, as many as it was trained with.
-
-        Raises
-        ------
-        ModelError
-            If they are not, or onnxruntime fails.
+        Of statistics it reads the first cues, as many as it was trained with. Raise ModelError if they are not, or
+        onnxruntime fails.
         """
         options = onnxruntime.RunOptions()
         options.log_severity_level = _FATAL

@@ -24,19 +24,12 @@ class Evidence(EqualByFields):
 
     Of ordinary responses it is Student's t in their first EMoR weights. Of the families `UNUSUAL`, whose pictures
     show more than their curve, it is one number for all members.
-
-    Parameters
-    ----------
-    location : ndarray, float64, shape (5,)
-        The EMoR weights that explain the photograph best.
-    factor : ndarray, float64, shape (5, 5)
-        A factor of the precision matrix P = factor @ factor.T.
-    log_odds : ndarray, float64, shape (3,)
-        Logarithms of the likelihoods of the families `UNUSUAL`, relative to an ordinary response at `location`.
     """
 
-    location: Float64Array
-    factor: Float64Array
+    location: Float64Array  # (5,): the EMoR weights that explain the photograph best
+    factor: Float64Array  # (5, 5): a factor of the precision matrix P = factor @ factor.T
+    #: Shape (3,): logarithms of the likelihoods of the families `UNUSUAL`, relative to an ordinary response at
+    #: `location`.
     log_odds: Float64Array
 
     def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
@@ -53,24 +46,16 @@ class Evidence(EqualByFields):
 def independent_fraction(similarities: Float64Array) -> float:
     """Return the independent fraction of the photographs' evidence: Eq. 23 of docs/METHOD.md.
 
-    Photographs of one scene repeat each other's errors. With similarities r between 0 and 1, n photographs count as
-    n^2 / sum(r) independent ones: n if all differ, one if all are alike.
-
-    Parameters
-    ----------
-    similarities : ndarray, shape (n, n)
-        Between each two photographs; 1 on the diagonal.
+    Photographs of one scene repeat each other's errors. With similarities r between 0 and 1, shape (n, n), n
+    photographs count as n^2 / sum(r) independent ones: n if all differ, one if all are alike.
     """
     return float(len(similarities) / np.sum(similarities))
 
 
 def scene_similarities(thumbnails: Sequence[Float64Array]) -> Float64Array:
-    """Return the similarities of the scenes of photographs, shape (n, n): correlations of their thumbnails, at least 0.
+    """Return the similarities of the scenes of photographs, shape (n, n): correlations of thumbnails, at least 0.
 
-    Parameters
-    ----------
-    thumbnails : sequence of ndarray, shape (16, 16)
-        Ranks of brightness on a coarse grid, which no exposure or response changes.
+    A thumbnail, shape (16, 16), holds ranks of brightness on a coarse grid, which no exposure or response changes.
     """
     if len(thumbnails) == 1:
         return np.ones((1, 1))

@@ -47,21 +47,11 @@ FAMILY_WORDS: Mapping[tuple[Family, ...], str] = {
 
 @dataclass(frozen=True)
 class LikelyKind:
-    """The most probable kind of response.
+    """The most probable kind of response."""
 
-    Parameters
-    ----------
-    families : tuple of Family
-        The families that make up the kind.
-    words : str
-        The kind in words.
-    probability : float
-        That the response is of this kind.
-    """
-
-    families: tuple[Family, ...]
-    words: str
-    probability: float
+    families: tuple[Family, ...]  # the families that make up the kind
+    words: str  # the kind in words
+    probability: float  # that the response is of this kind
 
     @classmethod
     def from_probabilities(cls, families: Mapping[Family, float]) -> LikelyKind | None:

@@ -25,41 +25,20 @@ ROWS = 64
 
 @dataclass(frozen=True, eq=False)
 class Posterior(EqualByFields):
-    """Weights over a bank of responses.
-
-    Parameters
-    ----------
-    bank : ResponseBank
-        The responses.
-    weights : ndarray, float64, shape (N,)
-        The probability of each response, given that one of them is right; their sum is 1.
-    unexplained : float
-        The probability that none of them is.
-    prior : Prior, optional
-        The knowledge before photographs were seen; None if there were none.
-    """
+    """Weights over a bank of responses."""
 
     bank: ResponseBank
-    weights: Float64Array
-    unexplained: float
-    prior: Prior | None = None
+    weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
+    unexplained: float  # the probability that none of them is
+    prior: Prior | None = None  # the knowledge before photographs were seen; None if there were none
 
     @classmethod
     def from_evidences(
         cls, bank: ResponseBank, prior: Prior, evidences: Sequence[Evidence] = (), *, independent: float = 1.0
     ) -> Posterior:
-        """Return the posterior: Eq. 24 of docs/METHOD.md.
+        """Return prior times evidence, one of each photograph, without which it is the prior: Eq. 24 of docs/METHOD.md.
 
-        Parameters
-        ----------
-        bank : ResponseBank
-            The responses.
-        prior : Prior
-            Shares of the families.
-        evidences : sequence of Evidence
-            One of each photograph; without any, this is the prior.
-        independent : float
-            Fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
+        `independent` is the fraction of the evidence that is independent, in (0, 1]: see `independent_fraction`.
         """
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
@@ -151,7 +130,7 @@ def _weighed(
 
 
 def _log_sum(logarithms: Float64Array) -> float:
-    """Return the logarithm of a sum of numbers whose logarithms are given."""
+    """Return the logarithm of a sum of numbers, from their logarithms."""
     largest = logarithms.max()
     return float(largest + np.log(np.exp(logarithms - largest).sum()))
 

@@ -17,25 +17,15 @@ DEFAULT_PRIOR = "camera"
 
 @dataclass(frozen=True)
 class Prior:
-    """Shares of the families (Eq. 22 of docs/METHOD.md), and how much a photograph's evidence counts against them.
+    """Shares of the families (Eq. 22 of docs/METHOD.md), and how much a photograph's evidence counts against them."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in reports.
-    shares : dict
-        Family -> share; at least 0, and their sum is 1.
-    evidence : float
-        Exponent on the likelihood of ordinary responses, in [0, 1]. Evidence is learned from simulated photographs; on
-        real ones it is worth less, and this is how much.
-    lookalikes : float
-        Share of ordinary photographs that look to the network as unusual pictures do, in [0, 1). The pixels alone
-        never raise the odds of an unusual family by more than 1 / lookalikes; 0 sets no bound.
-    """
-
-    name: str
-    shares: Mapping[Family, float]
+    name: str  # its name in reports
+    shares: Mapping[Family, float]  # family -> share; at least 0, and their sum is 1
+    #: Exponent on the likelihood of ordinary responses, in [0, 1]. Evidence is learned from simulated photographs; on
+    #: real ones it is worth less, and this is how much.
     evidence: float
+    #: Share of ordinary photographs that look to the network as unusual pictures do, in [0, 1). The pixels alone never
+    #: raise the odds of an unusual family by more than 1 / lookalikes; 0 sets no bound.
     lookalikes: float = 0.0
 
     @classmethod
@@ -43,12 +33,8 @@ class Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
         The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.15, "lookalikes": 0.03}`; families that it leaves
-        out have no share, and "lookalikes" is 0 unless it is given.
-
-        Raises
-        ------
-        PriorError
-            If there is no such prior, or the file does not describe one.
+        out have no share, and "lookalikes" is 0 unless it is given. Raise PriorError if there is no such prior, or the
+        file does not describe one.
         """
         path = PRIORS / f"{wanted}.json"
         path = path if path.is_file() else Path(wanted)

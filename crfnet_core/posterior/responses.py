@@ -34,18 +34,10 @@ BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
 @dataclass(frozen=True, eq=False)
 class ResponseBank(EqualByFields):
-    """Responses of every family; before a photograph is seen, all of one family are equally likely.
+    """Responses of every family; before a photograph is seen, all of one family are equally likely."""
 
-    Parameters
-    ----------
-    brightness : ndarray, float32, shape (N, 1024)
-        Responses at uniform irradiances, non-decreasing from 0 to 1.
-    families : tuple of Family
-        The family of each.
-    """
-
-    brightness: Float32Array
-    families: tuple[Family, ...]
+    brightness: Float32Array  # (N, 1024): responses at uniform irradiances, non-decreasing from 0 to 1
+    families: tuple[Family, ...]  # the family of each
 
     @classmethod
     @cache

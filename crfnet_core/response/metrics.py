@@ -31,19 +31,8 @@ def linearization_error(
 ) -> float:
     """Return E_lin, the RMSE between a photograph linearized by the true and by the estimated inverse response: Eq. 33.
 
-    Parameters
-    ----------
-    brightness : array_like
-        Code values in [0, 1], of any shape: a photograph, or its distinct values.
-    true, estimated : ResponseCurve
-        The responses to compare.
-    counts : array_like, optional
-        How often each of `brightness` occurs, of the same shape; once by default.
-
-    Returns
-    -------
-    float
-        The error, relative to the peak of the photograph linearized by the true response.
+    `brightness` holds code values in [0, 1]: a photograph, or its distinct values with `counts`, how often each occurs.
+    The error is relative to the peak of the photograph linearized by the true response.
     """
     brightness = np.asarray(brightness, dtype=np.float64)
     irradiance = true.inverse(brightness)
@@ -63,7 +52,7 @@ def shape_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
 
 
 def scale_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
-    """Return by how many stops the estimated linear light is too bright relative to white: Eq. 42.
+    """Return by how many stops the estimated linear light is too bright relative to white: Eq. 38.
 
     The mean of log2(g_hat(B) / g(B)) over the 8-bit codes B from 16 to 240, which `shape_error` takes out. Both
     responses have white at 1.

@@ -30,24 +30,13 @@ IDENTITY_FRACTION = 0.02
 
 @dataclass(frozen=True)
 class CandidateResponses:
-    """The candidates' inverse responses at every code, each array float32 (256, CANDIDATE_COUNT).
+    """The candidates' inverse responses at every code, each array float32 (256, CANDIDATE_COUNT)."""
 
-    Parameters
-    ----------
-    irradiance : ndarray
-        g.
-    slope : ndarray
-        g', per code.
-    log_slope, log_irradiance : ndarray
-        Their natural logarithms; the irradiance of code 0 counts as that of code 1.
-    log_variance : ndarray
-        The variance of a difference of two logarithms of irradiances around a code that rounding to codes makes.
-    """
-
-    irradiance: Float32Array
-    slope: Float32Array
-    log_slope: Float32Array
+    irradiance: Float32Array  # g
+    slope: Float32Array  # g', per code
+    log_slope: Float32Array  # natural logarithms, as the next; the irradiance of code 0 counts as code 1's
     log_irradiance: Float32Array
+    #: The variance of a difference of two logarithms of irradiances around a code that rounding to codes makes.
     log_variance: Float32Array
 
 

@@ -33,29 +33,15 @@ from crfnet_core.types import Float32Array
 
 @dataclass(frozen=True)
 class Cue:
-    """One kind of sums over the samples of a window.
+    """One kind of sums over the samples of a window."""
 
-    Parameters
-    ----------
-    name : str
-        Its name in the layout.
-    shape : tuple of int
-        Shape of the sums.
-    count : callable
-        From the samples of a window to the sums; of a cue with `terms`, to the sums and their numbers of terms.
-    meaning : str
-        The sums in words.
-    symbol : str
-        The same in docs/METHOD.md.
-    terms : tuple of int, optional
-        Shape of the numbers of terms, which the network divides the sums by; None if the sums include them.
-    """
-
-    name: str
-    shape: tuple[int, ...]
+    name: str  # its name in the layout
+    shape: tuple[int, ...]  # shape of the sums
+    #: From the samples of a window to the sums; of a cue with `terms`, to the sums and their numbers of terms.
     count: Callable[[Samples], NDArray[Any] | tuple[NDArray[Any], NDArray[Any]]]
-    meaning: str
-    symbol: str
+    meaning: str  # the sums in words
+    symbol: str  # the same in docs/METHOD.md
+    #: Shape of the numbers of terms, which the network divides the sums by; None if the sums include them.
     terms: tuple[int, ...] | None = None
 
 
@@ -124,17 +110,9 @@ LENGTH = LENGTHS[-1]
 
 
 def window_statistics(window: Float32Array) -> Float32Array:
-    """Return the statistics of one window, float32 (LENGTH,); those of several windows add up.
+    """Return the statistics of one window, float32 (LENGTH,), which add up over windows.
 
-    Parameters
-    ----------
-    window : ndarray, float32, shape (227, 227, 3)
-        Code values in [0, 1]; not changed.
-
-    Returns
-    -------
-    ndarray
-        The parts of `SHAPES` one behind the other: `unpack` returns them by name.
+    The window holds code values in [0, 1], shape (227, 227, 3). `unpack` returns the parts by name.
     """
     samples = Samples.from_window(window)
     parts = [part.ravel() for cue in CUES for part in _parts(cue.count(samples))]

@@ -77,11 +77,7 @@ def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
 
     The sums (Eq. 13) are (i) the logarithm of the density of b, log g'(b) - log |g(c) - g(a)|, if all mixing ratios are
     equally likely (Eq. 4), relative to its mean over the candidates; (ii) the mixing ratio of the brighter side, less a
-    half; (iii) its square.
-
-    Returns
-    -------
-    ndarray, float32, shape (SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT), and ndarray, shape (SUMMED_CLASSES, 1, 1)
+    half; (iii) its square. Their shapes are (SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT) and (SUMMED_CLASSES, 1, 1).
     """
     log_slope = candidate_responses().log_slope
     sums = np.zeros((SUMMED_CLASSES, MIXING_SUMS, CANDIDATE_COUNT), np.float32)
@@ -104,12 +100,8 @@ def mixing_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
 def disagreement_sums(mixtures: Mixtures) -> tuple[Float32Array, Float32Array]:
     """Return how much the channels disagree on mixing ratios under each candidate, and of how many comparisons.
 
-    The sums are relative to their means over the candidates.
-
-    Returns
-    -------
-    ndarray, float32, shape (COMPARED_CLASSES, LEVEL_BANDS, CANDIDATE_COUNT), and ndarray, shape (COMPARED_CLASSES,
-    LEVEL_BANDS, 1)
+    The sums are relative to their means over the candidates. The shapes are (COMPARED_CLASSES, LEVEL_BANDS,
+    CANDIDATE_COUNT) and (COMPARED_CLASSES, LEVEL_BANDS, 1).
     """
     sums = np.zeros((*_DISAGREEMENT, CANDIDATE_COUNT), np.float32)
     counts = np.zeros(_DISAGREEMENT, np.float32)

@@ -67,22 +67,14 @@ class Triples(NamedTuple):
 
 @dataclass(frozen=True)
 class Mixtures:
-    """Samples a, b, c in a row, codes as int16 (3, M): b may be a mixture of a and c in two channels or more.
+    """Samples a, b, c in a row, codes as int16 (3, M): b may be a mixture of a and c in two channels or more."""
 
-    Parameters
-    ----------
-    a, b, c : ndarray
-        The samples.
-    is_mixture : ndarray, bool, shape (3, M)
-        Whether a and c differ enough, and b lies between them.
-    is_isolated : ndarray, bool, shape (len(ISOLATION), 3, M)
-        Whether the samples before a and behind c hardly differ from these, where `is_mixture`.
-    """
-
-    a: Int16Array
+    a: Int16Array  # the samples
     b: Int16Array
     c: Int16Array
-    is_mixture: BoolArray
+    is_mixture: BoolArray  # (3, M): whether a and c differ enough, and b lies between them
+    #: Shape (len(ISOLATION), 3, M): whether the samples before a and behind c hardly differ from these, where
+    #: `is_mixture`.
     is_isolated: BoolArray
 
     @classmethod
@@ -102,14 +94,9 @@ class Mixtures:
 
 
 class Samples:
-    """The codes of a window, and the triples and mixtures in them, which several cues share.
+    """The codes of a window, uint8 planes (3, N, N), and the triples and mixtures in them, which several cues share.
 
     Only every second row and every second column is looked at: adjacent ones are nearly the same.
-
-    Parameters
-    ----------
-    planes : ndarray, uint8, shape (3, N, N)
-        The codes of each channel.
     """
 
     def __init__(self, planes: Uint8Array) -> None:

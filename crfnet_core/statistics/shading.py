@@ -45,18 +45,12 @@ def shading(samples: Samples) -> tuple[Float32Array, Float32Array]:
 
 @dataclass(frozen=True)
 class Pairs:
-    """Two samples of all channels in a row, codes (3, M), and whether shading can be seen in them.
+    """Two samples of all channels in a row, codes (3, M), and whether shading can be seen in them."""
 
-    Parameters
-    ----------
-    first, second : ndarray, uint8, shape (3, M)
-        The samples.
-    difference : ndarray, uint8, shape (M,)
-        The largest difference of a channel, in codes; 0 where the first sample is gray, or either is black or clipped.
-    """
-
-    first: Uint8Array
+    first: Uint8Array  # (3, M): the samples
     second: Uint8Array
+    #: Shape (M,): the largest difference of a channel, in codes; 0 where the first sample is gray, or either is black
+    #: or clipped.
     difference: Uint8Array
 
     @classmethod
@@ -74,14 +68,7 @@ def shading_sums(pairs: Pairs, change: tuple[int, int]) -> tuple[Float32Array, F
 
     The disagreement of a pair of channels is the Geman-McClure penalty d^2 / (d^2 + r) of the difference d of their
     logarithmic ratios, in which r is the variance that rounding and other causes explain (Eq. 14). The sums are
-    relative to their mean over the candidates.
-
-    Parameters
-    ----------
-    pairs : Pairs
-        Pairs of samples.
-    change : tuple of int
-        Codes between the samples, least and most; above 0.
+    relative to their mean over the candidates. Only samples that differ by codes in the range `change` are compared.
     """
     responses = candidate_responses()
     is_shading = (pairs.difference >= change[0]) & (pairs.difference <= change[1])

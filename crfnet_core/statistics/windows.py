@@ -90,30 +90,15 @@ def select_windows(
     step: int | None = None,
     coverage: int = FULL_COVERAGE,
 ) -> tuple[Window, ...]:
-    """Return the windows to analyze (CRF-net paper, Sec. 3.2).
+    """Return the windows of a photograph to analyze (CRF-net paper, Sec. 3.2).
 
     Even positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least
-    `coverage` bins filled. If `POSITIONS_TRIED` positions do not give enough of them, the best-covering others fill
-    the number: look at `Window.covers_range`.
+    `coverage` bins filled; 0 takes the first positions. If `POSITIONS_TRIED` positions do not give enough of them, the
+    best-covering others fill the number: look at `Window.covers_range`. The same seed gives the same windows; there are
+    fewer than `count` only if the photograph has fewer positions. `step` is `sampling_step` by default.
 
-    Parameters
-    ----------
-    pixels : Photo, or ndarray, float32, shape (H, W, 3)
-        A photograph, code values in [0, 1]; not changed.
-    count : int
-        Number of windows; fewer only if the photograph has fewer positions.
-    seed : int
-        Seed of the positions: the same seed gives the same windows.
-    step : int, optional
-        Pixels between samples; by default `sampling_step`.
-    coverage : int
-        Code values, of 256, that a window should hold; 0 takes the first positions.
-
-    Raises
-    ------
-    PhotoError
-        If the photograph is smaller than a window, with `step` pixels between its samples, `count` or `step` is less
-        than 1, or `seed` is negative.
+    Raise PhotoError if the photograph is smaller than a window of this step, `count` or `step` is below 1, or `seed` is
+    negative.
     """
     if count < 1:
         raise PhotoError("no_windows_asked", count=count, usual=WINDOWS_PER_PHOTOGRAPH)

@@ -11,6 +11,12 @@ from crfnet_core.errors import CRFNetError
 
 #: Code of an error -> what the user can do with an option, behind "; " at the end of its sentence.
 REMEDIES: Mapping[str, str] = {
+    # calibration
+    "exposures_gap": "--times states them in place of EXIF",
+    "exposures_span": "--times states them in place of EXIF",
+    "frame_edited": "or add --accept-edited to measure what that program makes of them",
+    "frame_mistimed": "--times states the times in place of EXIF",
+    "frame_untimed": "add --times 1/60,1/30,...",
     # library
     "camera_exists": "give another name with --name, or --overwrite to replace it",
     "no_camera": "crfnet camera list shows them",

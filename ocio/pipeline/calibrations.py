@@ -30,27 +30,13 @@ from .plan import EarlierRun
 
 @dataclass(frozen=True, eq=False)
 class CalibrationPlan:
-    """What will be written of a calibration, checked before any work is done; see `plan_calibration`.
+    """The files of a calibration, checked before any work is done; see `plan_calibration`."""
 
-    Parameters
-    ----------
-    files : OutputFiles
-        The files, all in one folder, which need not exist yet; no linear plates are among them.
-    config : PyOpenColorIO.Config
-        The config of the folder, with the camera's color space.
-    lut_length : int
-        Entries of the LUTs.
-    overwrite : bool
-        Whether existing files may be replaced.
-    earlier : EarlierRun
-        What an earlier run has left in the folder.
-    """
-
-    files: OutputFiles
-    config: OCIO.Config
-    lut_length: int
+    files: OutputFiles  # the files, all in one folder, which need not exist yet; no linear plates are among them
+    config: OCIO.Config  # the config of the folder, with the camera's color space
+    lut_length: int  # entries of the LUTs
     overwrite: bool = False
-    earlier: EarlierRun = field(default_factory=EarlierRun)
+    earlier: EarlierRun = field(default_factory=EarlierRun)  # files of an earlier run in the folder
 
 
 def plan_calibration(
@@ -58,26 +44,9 @@ def plan_calibration(
 ) -> CalibrationPlan:
     """Return which files are written of a stack, after checking that they can be; create nothing.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder to write to.
-    frames : sequence of Path
-        The frames; at least one.
-    outputs : OutputOptions
-        Which files there are beside the LUTs, and how long the LUTs are.
-    name : str, optional
-        How the files and the color space are called; by default as the first frame.
-    overwrite : bool
-        Whether existing files may be replaced.
-
-    Raises
-    ------
-    PlateError
-        If the name cannot be that of a file, or a file cannot be written or would replace another, or a frame: see
-        `check_outputs`.
-    ConfigError
-        If the color space cannot be in a config.
+    `name` is the name of the files and of the color space, by default the first frame's. Raise PlateError if the name
+    cannot be a file's, or a file cannot be written or would replace another, or a frame (see `check_outputs`); raise
+    ConfigError if the color space cannot be in a config.
     """
     if name is not None and (not name.strip(" .") or Path(name).name != name):
         raise PlateError("not_a_file_name", name=repr(name))
@@ -95,19 +64,7 @@ def write_calibration(
 ) -> dict[str, Any]:
     """Write every file of a plan and return the document that its JSON file holds.
 
-    Parameters
-    ----------
-    plan : CalibrationPlan
-        See `plan_calibration`.
-    calibration : Calibration
-        The measured response.
-    comparison : Comparison, optional
-        How far another response is from it; kept in the document.
-
-    Raises
-    ------
-    CRFNetError
-        If a file cannot be written, or the LUT length is out of range. The folder is then as it was.
+    Raise CRFNetError if a file cannot be written, or the LUT length is out of range. The folder is then as it was.
     """
     lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
     folder = plan.files.report.parent
@@ -126,12 +83,8 @@ def write_calibration(
 def response_to_compare(path: Path) -> ResponseCurve:
     """Return the response in the JSON document of an estimate or a calibration, or in a LUT file.
 
-    Raises
-    ------
-    PlateError
-        If the document cannot be read or holds no response.
-    CRFNetError
-        If a LUT file holds none: see `crfnet.luts.response.read_response`.
+    Raise PlateError if the document cannot be read or holds no response. Raise CRFNetError if a LUT file holds none:
+    see `crfnet.luts.response.read_response`.
     """
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)

@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ..configs.files import loaded_or_empty
 from ..configs.plate_color_space import PlateColorSpace
-from ..configs.portable import portable_config
 from ..configs.plates import plates_in_config
+from ..configs.portable import portable_config
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles, check_outputs
 from .photographs import check_distinct

@@ -1,4 +1,4 @@
-"""A measured response in words, as JSON, and as the provenance that LUT files carry."""
+"""A measured response in words, as JSON, and as the provenance in LUT files."""
 
 from __future__ import annotations
 
@@ -21,13 +21,13 @@ STILL_BALANCE = 0.05
 
 
 def calibration_lines(calibration: Calibration) -> list[str]:
-    """Return what was measured and how far to trust it, in plain words: one line each."""
+    """Return the measurement and how far to trust it, in plain words: one line each."""
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
     drift = _balance_drift(calibration)
     return [
         f"{_frames_words(calibration)}.",
-        f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale beside white to"
+        f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale relative to white to"
         f" {scale:.2f} stop (standard deviations); {white}.",
         f"The curve explains the frames to {calibration.residual:.1f} of 255 codes (RMS); their exposures were read as"
         f" {calibration.labels} and are {_largest_offset(calibration):.2f} stop from that at most.",
@@ -44,14 +44,14 @@ def comparison_lines(comparison: Comparison) -> list[str]:
     percent = brightness_percent(comparison.estimation_error)
     return [
         "",
-        f"Beside it the other response is off by {comparison.shape_error:.2f} stop in shape and"
+        f"The other response is off by {comparison.shape_error:.2f} stop in shape and"
         f" {comparison.scale_error:+.2f} stop in scale: E_est {comparison.estimation_error:.2f} ({percent:.1f} % of the"
         f" brightness range), E_lin {comparison.linearization_error:.4f} on the best exposed frame.",
     ]
 
 
 def calibration_provenance(calibration: Calibration) -> tuple[str, ...]:
-    """Return the comment lines of LUT files: what the LUT is, its frames, and how far to trust it."""
+    """Return the comment lines of LUT files: the LUT, its frames, and how far to trust it."""
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     return (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
@@ -63,7 +63,7 @@ def calibration_provenance(calibration: Calibration) -> tuple[str, ...]:
 def calibration_document(
     calibration: Calibration, files: OutputFiles, comparison: Comparison | None = None
 ) -> dict[str, Any]:
-    """Return everything known about a measured response, ready for JSON; file names are relative to the folder."""
+    """Return a measured response, ready for JSON; file names are relative to the folder."""
     metadata, uncertainty = calibration.metadata, calibration.uncertainty
     return {
         "kind": "calibration",
@@ -78,7 +78,7 @@ def calibration_document(
         "white": rounded(calibration.white),
         "reaches_white": calibration.reaches_white,
         "nearest_known_response": rounded(calibration.nearest_known),
-        "warnings": list(calibration.warnings),
+        "warnings": [str(warning) for warning in calibration.warnings],
         "comparison": None if comparison is None else _parts(vars(comparison)),
         "weights": rounded(calibration.weights),
         "response": {"brightness": plain_values(calibration.curve.brightness)},
@@ -88,7 +88,7 @@ def calibration_document(
 
 
 def _frame_document(frame: FrameReport) -> dict[str, Any]:
-    """Return what was found of a frame; null where it was left out."""
+    """Return the report of a frame for JSON; null where it was left out."""
     return {
         "name": frame.path.name,
         "seconds": frame.label.seconds,
@@ -108,7 +108,7 @@ def _parts(values: Mapping[str, float]) -> dict[str, Any]:
 
 
 def _frames_words(calibration: Calibration) -> str:
-    """Return how many frames of which camera, and at which exposures."""
+    """Return the number of frames, their camera and their exposures, in words."""
     labels = [frame.label for frame in calibration.frames]
     times = sorted(label.seconds for label in labels if label.seconds)
     camera = camera_name(calibration.metadata.make, calibration.metadata.model) or "an unnamed camera"
@@ -136,7 +136,7 @@ def _largest_offset(calibration: Calibration) -> float:
 
 
 def _balance_drift(calibration: Calibration) -> float:
-    """Return by how many stops red or blue change beside green, between the used frames."""
+    """Return by how many stops red or blue change relative to green, between the used frames."""
     offsets = np.stack([frame.offsets for frame in calibration.frames if frame.is_used])
     drift = float(np.ptp(offsets - offsets[:, offsets.shape[1] // 2, None], axis=0).max())
     return drift if math.isfinite(drift) else 0.0

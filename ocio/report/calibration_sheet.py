@@ -1,4 +1,4 @@
-"""The sheet of a calibration: the measured response under every frame's points, and what is left of them.
+"""The sheet of a calibration: the measured response, every frame's points, and their residuals.
 
 It needs matplotlib, which is an optional dependency.
 """
@@ -36,7 +36,7 @@ from .sheet import (
 #: Darkest irradiance that is drawn, log2; white is 0.
 DARKEST = -12
 
-#: Colours of the frames, the darkest first.
+#: Colors of the frames, the darkest first.
 FRAMES = "viridis"
 
 #: Largest residual that is drawn, in 8-bit codes.
@@ -45,24 +45,12 @@ LARGEST_RESIDUAL = 8
 _WARNING = VERDICT_INK[Verdict.USABLE]
 
 
-def draw_calibration(path: Path, calibration: Calibration, *, overwrite: bool = False) -> None:
+def draw_calibration(path: Path, calibration: Calibration) -> None:
     """Write the picture of a calibration as PNG; the same input gives the same bytes.
 
-    Parameters
-    ----------
-    path : Path
-        The file to write.
-    calibration : Calibration
-        The measured response.
-    overwrite : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    PlateError
-        If the file cannot be written.
+    Raise PlateError if that fails.
     """
-    with sheet_figure(path, overwrite=overwrite) as figure:
+    with sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)
         colors = _frame_colors(calibration)
@@ -72,7 +60,7 @@ def draw_calibration(path: Path, calibration: Calibration, *, overwrite: bool = 
 
 
 def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
-    """Draw what was measured, both uncertainties, and the warnings."""
+    """Draw the camera, both uncertainties, and the warnings."""
     uncertainty = calibration.uncertainty
     name = path.stem.removesuffix("_sheet")
     figure.text(0.058, 0.945, ellipsized(f"Measured response {name}", 60), size=15, weight="bold", va="center")
@@ -85,12 +73,12 @@ def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
     figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
     lines = calibration_lines(calibration)
     figure.text(0.058, 0.868, ellipsized(lines[0], LONGEST_LINE), va="center", color=QUIET)
-    warnings = ellipsized(DOT.join(calibration.warnings), LONGEST_LINE)
+    warnings = ellipsized(DOT.join(map(str, calibration.warnings)), LONGEST_LINE)
     figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
 
 
 def _draw_curve(axes: Axes, calibration: Calibration) -> None:
-    """Draw the response beside gamma 2.2."""
+    """Draw the response and gamma 2.2."""
     irradiance = np.linspace(0, 1, SAMPLES)
     gamma = ResponseCurve.gamma().brightness
     axes.plot(irradiance, calibration.curve.brightness, color=CURVE, linewidth=2.2, label="measured")
@@ -102,7 +90,7 @@ def _draw_curve(axes: Axes, calibration: Calibration) -> None:
 
 
 def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
-    """Draw what every frame shows over its irradiance in stops, and the curve through it."""
+    """Draw every frame's points over their irradiance in stops, and the curve through them."""
     stops, brightness, _, frame = calibration.points.T
     axes.scatter(stops, brightness, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
     dense = np.linspace(DARKEST, 0.5, 600)
@@ -114,10 +102,10 @@ def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> 
 
 
 def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
-    """Draw what the curve leaves of every point."""
+    """Draw the residual of every point."""
     stops, _, residual, frame = calibration.points.T
-    left = np.clip(255 * residual, -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
-    axes.scatter(stops, left, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
+    residual = np.clip(255 * residual, -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
+    axes.scatter(stops, residual, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
     axes.axhline(0, color=INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL))
     axes.set(xlabel="Irradiance in stops, white = 0", ylabel="Residual (codes)")
@@ -125,7 +113,7 @@ def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) 
 
 
 def _frame_colors(calibration: Calibration) -> Float64Array:
-    """Return a colour for each frame by its exposure, shape (T, 4)."""
+    """Return a color for each frame by its exposure, shape (T, 4)."""
     stops = np.array([frame.stops for frame in calibration.frames])
     place = (stops - stops.min()) / max(float(np.ptp(stops)), 1e-9)
     return np.asarray(colormaps[FRAMES](0.9 * place))

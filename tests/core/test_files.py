@@ -38,12 +38,6 @@ def test_an_existing_file_is_replaced_only_when_asked(tmp_path):
     assert target.read_text() == "new"
 
 
-def test_the_folder_has_to_exist(tmp_path):
-    with pytest.raises(CRFNetError) as caught, atomic_write(tmp_path / "no" / "plate.cube"):
-        pass
-    assert caught.value.code == "folder_absent"
-
-
 @pytest.mark.parametrize("name", [".", "", "../folder"])
 def test_a_folder_is_not_a_target(tmp_path, monkeypatch, name):
     (tmp_path / "folder").mkdir()
@@ -102,7 +96,7 @@ def test_a_call_that_fails_leaves_nothing(tmp_path, monkeypatch, call):
     assert list(tmp_path.iterdir()) == []
 
 
-@pytest.mark.parametrize("character", ["a", "\u00e9", "\u5199", "\U0001f4f7"])
+@pytest.mark.parametrize("character", ["a", "\U0001f4f7"])
 def test_the_longest_names_are_written(tmp_path, character):
     ending = ".cube"
     name = cut_to_bytes(character * LONGEST_NAME, LONGEST_NAME - len(ending)) + ending

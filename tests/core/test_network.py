@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import ModelError
-from crfnet_core.network import DEFAULT_MODEL, MODELS, ModelConfig, ResponseNetwork, inference, model_folder
+from crfnet_core.network import DEFAULT_MODEL, MODELS, ResponseNetwork, inference, model_folder
 from crfnet_core.network.pooling import robust_mean
 from crfnet_core.statistics import window_statistics
 
@@ -75,23 +75,11 @@ def test_threads_do_not_change_the_result(windows, fixed_model):
         np.testing.assert_array_equal(locations(first), locations(second))
 
 
-def test_windows_are_independent_of_each_other(network, windows, tolerance):
-    together = locations(network.predict(windows))
-    np.testing.assert_allclose(locations(network.predict(windows[1:2])), together[1:2], atol=tolerance.parity)
-
-
 def test_the_pooled_response_depends_on_all_windows_but_not_on_their_order(network, windows, tolerance):
     pooled = network.predict(windows).pooled
     turned = network.predict(windows[::-1]).pooled
     assert_near(turned, [pooled.location, pooled.factor, pooled.log_odds], tolerance.parity)
     assert np.linalg.norm(network.predict(windows[:2]).pooled.location - pooled.location) > 1e-3
-
-
-@pytest.mark.parametrize("level", [0.0, 0.5, 1.0])
-def test_a_flat_window_has_a_finite_answer(network, level):
-    found = network.predict(np.full((2, 227, 227, 3), level, np.float32))
-    for evidence in (found.pooled, *found.windows):
-        assert all(np.isfinite(part).all() for part in (evidence.location, evidence.factor, evidence.log_odds))
 
 
 def test_a_model_is_found_by_its_name_or_its_folder(copied):
@@ -130,32 +118,6 @@ def test_an_error_in_the_progress_stops_the_run(network, windows, monkeypatch):
     with pytest.raises(KeyboardInterrupt):
         network.predict(np.repeat(windows, 20, axis=0), progress=stop)
     assert len(run) < 60
-
-
-def test_the_windows_are_not_changed(network, windows):
-    before = windows.copy()
-    network.predict(windows)
-    np.testing.assert_array_equal(windows, before)
-
-
-def test_the_network_is_monotone_in_nothing_but_sees_the_response(network, windows):
-    """Another curve on the same windows gives another estimate: the network looks at its input."""
-    bent = np.rint(windows**0.6 * 255) / np.float32(255)
-    moved = locations(network.predict(bent)) - locations(network.predict(windows))
-    assert np.linalg.norm(moved) > 0.5
-
-
-def test_config_is_complete():
-    config = ModelConfig.read(DEFAULT_MODEL / "model.json")
-    assert config.name == DEFAULT_MODEL.name
-    assert (config.basis, config.components, config.window_size, config.opset) == ("emor", 5, 227, 18)
-    assert len(config.training_commit.removesuffix("-dirty")) == 40
-    assert len(config.output_names) == 6
-    assert config.label == f"{config.name} {config.sha256[:12]}"
-
-
-def test_the_package_stays_small():
-    assert sum(path.stat().st_size for path in DEFAULT_MODEL.parent.rglob("*")) < 20e6
 
 
 def refusal(folder):

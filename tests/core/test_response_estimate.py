@@ -8,7 +8,7 @@ import math
 import numpy as np
 import pytest
 
-from crfnet_core.errors import CRFNetError, CurveError, EstimateError, Notice, PhotoError
+from crfnet_core.errors import CRFNetError, EstimateError, Notice, PhotoError
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import SCHEMA_VERSION, CameraAnswer, ResponseEstimate
@@ -17,7 +17,7 @@ from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.recognition import Kind, Recognition
-from crfnet_core.posterior import FAMILY_WORDS, IN_CAMERA, Family, Posterior, ResponseBank, Verdict
+from crfnet_core.posterior import Family, Posterior, ResponseBank, Verdict
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
 
@@ -69,12 +69,6 @@ def test_estimates_differ_in_any_field(estimate, field):
     assert estimate != dataclasses.replace(twin(estimate), **{field: CHANGES[field]})
 
 
-def test_windows_differ_in_any_field(estimate):
-    window = estimate.windows[0]
-    for changed in ({"weights": window.weights + 1e-12}, {"kept": not window.kept}, {"photo": 7}):
-        assert window != dataclasses.replace(window, **changed)
-
-
 def test_what_is_not_known_is_equal(estimate):
     """NaN: as of a response that was loaded from a LUT."""
     unknown = dataclasses.replace(estimate, shape_uncertainty=math.nan, families={})
@@ -102,10 +96,6 @@ def test_posteriors_compare():
     assert one == copy.deepcopy(one)
 
 
-def test_the_likely_kind(estimate):
-    assert estimate.likely_kind.words == FAMILY_WORDS[IN_CAMERA]
-
-
 def test_an_estimate_comes_back_from_json(estimate):
     document = json.loads(json.dumps(estimate.to_dict(), allow_nan=False))
     assert document == estimate.to_dict()
@@ -114,17 +104,6 @@ def test_an_estimate_comes_back_from_json(estimate):
     assert isinstance(again.origins[-1].device, Device)
     assert {type(family) for family in again.families} == {Family}
     assert again.verdict is estimate.verdict
-
-
-def test_its_document_holds_plain_values(estimate):
-    """Exactly: neither our enumerations nor NumPy's numbers."""
-
-    def kinds(value):
-        if isinstance(value, dict):
-            return {dict}.union(*map(kinds, value), *map(kinds, value.values()))
-        return {list}.union(*map(kinds, value)) if isinstance(value, list) else {type(value)}
-
-    assert kinds(estimate.to_dict()) == {dict, list, str, int, float, bool, type(None)}
 
 
 def test_what_is_not_known_is_null(estimate):
@@ -140,32 +119,23 @@ def test_what_a_later_version_adds_is_left_out(estimate):
     assert ResponseEstimate.from_dict(document) == estimate
 
 
-@pytest.mark.parametrize("name", ["response", "weights", "windows", "verdict", "photographs", "metadata", "families"])
-def test_an_absent_entry_is_named(estimate, name):
-    document = estimate.to_dict()
-    del document[name]
-    with pytest.raises(EstimateError, match=f"lacks '{name}'"):
-        ResponseEstimate.from_dict(document)
-
-
 @pytest.mark.parametrize(
-    ("change", "said"),
+    ("change", "code"),
     [
-        ({"schema_version": SCHEMA_VERSION + 1}, f"schema_version {SCHEMA_VERSION + 1}, .*update"),
-        ({"verdict": "splendid"}, "damaged.*splendid"),
-        ({"families": {"daguerreotype": 1}}, "damaged.*daguerreotype"),
-        ({"weights": "many"}, "damaged"),
-        ({"weights": [10**400] * 11}, "damaged"),
-        ({"uncertainty": 10**400}, "damaged"),
-        ({"windows": 3}, "damaged"),
-        ({"families": []}, "damaged"),
-        ({"estimates": []}, "give document\\['estimates'\\]\\[0\\]"),
+        ({"schema_version": SCHEMA_VERSION + 1}, "other_schema"),
+        ({"response": {}}, "estimate_lacks"),
+        ({"verdict": "splendid"}, "damaged_estimate"),
+        ({"families": {"daguerreotype": 1}}, "damaged_estimate"),
+        ({"weights": [10**400] * 11}, "damaged_estimate"),
+        ({"windows": 3}, "damaged_estimate"),
+        ({"families": []}, "damaged_estimate"),
+        ({"estimates": []}, "list_of_estimates"),
     ],
 )
-def test_a_damaged_document_is_refused_in_one_line(estimate, change, said):
-    with pytest.raises(EstimateError, match=said) as caught:
+def test_a_damaged_document_is_refused(estimate, change, code):
+    with pytest.raises(EstimateError) as caught:
         ResponseEstimate.from_dict(estimate.to_dict() | change)
-    assert "\n" not in str(caught.value)
+    assert caught.value.code == code
 
 
 @pytest.mark.parametrize("document", [{}, [], "text", None])
@@ -173,13 +143,6 @@ def test_another_document_is_refused(document):
     with pytest.raises(EstimateError) as caught:
         ResponseEstimate.from_dict(document)
     assert caught.value.code == "not_an_estimate"
-
-
-def test_a_curve_that_does_not_increase_is_refused(estimate):
-    document = estimate.to_dict()
-    document["response"]["brightness"][5] = 0.9
-    with pytest.raises(CurveError, match="increase strictly"):
-        ResponseEstimate.from_dict(document)
 
 
 @pytest.mark.parametrize("given", ["plate.jpg", np.zeros((300, 300, 3), np.float32), ["plate.jpg"], 3])
@@ -190,13 +153,14 @@ def test_an_argument_that_is_not_a_photograph_is_refused(given, fixed_model):
 
 
 @pytest.mark.parametrize(
-    ("choices", "words"),
+    ("choices", "code"),
     [
-        ({"options": AnalysisOptions(seed=-1)}, "a seed of -1 draws no windows; give 0 or more"),
-        ({"prior": "any"}, r"a str is not a Prior; Prior\.load makes one"),
-        ({"options": AnalysisOptions(device="nokia")}, r"'nokia' is not a device; give one of Device: PHONE,"),
+        ({"options": AnalysisOptions(seed=-1)}, "in_file"),
+        ({"prior": "any"}, "not_a_prior"),
+        ({"options": AnalysisOptions(device="nokia")}, "not_a_device"),
     ],
 )
-def test_options_that_cannot_be_are_refused_with_what_to_do(plate, fixed_model, choices, words):
-    with pytest.raises(CRFNetError, match=words):
+def test_options_that_cannot_be_are_refused(plate, fixed_model, choices, code):
+    with pytest.raises(CRFNetError) as caught:
         estimate_response(read_photo(plate), network=ResponseNetwork.load(fixed_model), **choices)
+    assert caught.value.code == code

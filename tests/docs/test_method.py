@@ -105,31 +105,40 @@ def test_a_name_is_found_in_modules_classes_and_facades(root):
     assert [exists(root, name) for name in names] == [True] * 4
 
 
-def test_the_equations_are_numbered_without_a_gap(root):
-    numbers = re.findall(r"\\tag\{(\d+)\}", (root / "docs" / "METHOD.md").read_text(encoding="utf-8"))
-    assert [int(number) for number in numbers] == list(range(1, len(numbers) + 1))
+def equations(root):
+    """The numbers of the equations: of the method, of log footage (L.1), and of a calibration (C.1)."""
+    texts = [(root / "docs" / name).read_text(encoding="utf-8") for name in ("METHOD.md", "CALIBRATE.md")]
+    return [number for text in texts for number in re.findall(r"\\tag\{(.*?)\}", text)]
+
+
+@pytest.mark.parametrize("prefix", ["", "L.", "C."])
+def test_the_equations_are_numbered_without_a_gap(root, prefix):
+    numbers = [number for number in equations(root) if re.fullmatch(re.escape(prefix) + r"\d+", number)]
+    assert numbers
+    assert numbers == [f"{prefix}{index + 1}" for index in range(len(numbers))]
 
 
 def test_every_equation_that_is_cited_is_there(root):
     """In the documents, and in the docstrings and comments of the code."""
-    last = len(re.findall(r"\\tag\{", (root / "docs" / "METHOD.md").read_text(encoding="utf-8")))
     code = [path for package in ("crfnet_core", "ocio", "training") for path in (root / package).rglob("*.py")]
     sources = [*code, *documents(root)]
     cited = {
-        int(number)
+        number
         for path in sources
-        for text in re.findall(r"\bEq\. (\d+(?:(?:, | and | to )\d+)*)", path.read_text(encoding="utf-8"))
-        for number in re.findall(r"\d+", text)
+        for text in re.findall(
+            r"\bEq\. ((?:[LC]\.)?\d+(?:(?:, | and | to )(?:[LC]\.)?\d+)*)", path.read_text(encoding="utf-8")
+        )
+        for number in re.findall(r"(?:[LC]\.)?\d+", text)
     }
     assert cited
-    assert not [number for number in cited if not 1 <= number <= last]
+    assert not cited - set(equations(root))
 
 
 def test_the_six_main_equations_have_the_numbers_that_the_code_cites(root):
     text = (root / "docs" / "METHOD.md").read_text(encoding="utf-8")
-    equations = {int(number): body for body, number in re.findall(r"```math\n(.*?)\\tag\{(\d+)\}", text, re.DOTALL)}
+    bodies = {int(number): body for body, number in re.findall(r"```math\n(.*?)\\tag\{(\d+)\}", text, re.DOTALL)}
     parts = {1: "f_0(E)", 2: "(1 - \\alpha) \\, g(a)", 3: "h \\, k(m)", 4: "\\log p(b)", 5: "\\rho(d)", 6: "\\log g(a)"}
-    assert not [number for number, part in parts.items() if part not in equations[number]]
+    assert not [number for number, part in parts.items() if part not in bodies[number]]
 
 
 @pytest.mark.parametrize(

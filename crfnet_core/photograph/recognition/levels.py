@@ -10,7 +10,7 @@ import numpy as np
 
 from crfnet_core.types import Float32Array, Float64Array, Pixels
 
-#: Fractions of the samples below which black, the middle and white lie: Eq. 38 of docs/METHOD.md. What lies
+#: Fractions of the samples below which black, the middle and white lie: Eq. L.1 of docs/METHOD.md. What lies
 #: below black is dead pixels, and what lies above white is reflections.
 BLACK, MIDDLE, WHITE = 1e-5, 0.5, 0.999
 

@@ -57,7 +57,7 @@ class NearCurve:
 
 
 def log_factor(levels: Levels) -> float:
-    """Return the likelihood ratio of the levels under log footage and under ordinary photographs: Eq. 40.
+    """Return the likelihood ratio of the levels under log footage and under ordinary photographs: Eq. L.3.
 
     It is 1 if black is not lifted, which proves nothing: log footage whose legal range was stretched when it was
     decoded has a low black too. It is also 1 if black lies too high, or the picture spans too little of the range.
@@ -69,7 +69,7 @@ def log_factor(levels: Levels) -> float:
 
 
 def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCurve, ...]:
-    """Return up to four published curves that explain the levels best, the likeliest first: Eq. 41.
+    """Return up to four published curves that explain the levels best, the likeliest first: Eq. L.4.
 
     Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
     count as equally frequent.

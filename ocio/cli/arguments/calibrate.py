@@ -9,7 +9,6 @@ from .parts import Commands, add_command, add_json, written_path
 EXAMPLES = """examples:
   crfnet calibrate stack/*.jpg --out camera --name eos20d
   crfnet calibrate a.jpg b.jpg c.jpg d.jpg --times 1/60,1/30,1/15,1/8 --out camera
-  crfnet calibrate stack/*.png --times times.csv --out camera           rows such as IMG_1.jpg,1/60
   crfnet calibrate stack/*.jpg --out camera --compare look/plate01.json       how good was that estimate?
 
 A stack is one still scene, from a tripod, in 4 or more frames a stop or so apart: the darkest shows nearly nothing
@@ -23,9 +22,9 @@ def add(commands: Commands) -> None:
     parser = add_command(commands, "calibrate", "measure a camera's response from an exposure stack", EXAMPLES)
     parser.add_argument("photos", nargs="+", type=Path, metavar="FRAME", help="JPEG, HEIC, PNG, TIFF, DPX and others")
     parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
-    parser.add_argument("--name", metavar="NAME", help="how the files and the color space are called (first frame)")
+    parser.add_argument("--name", metavar="NAME", help="the name of the files and of the color space (first frame's)")
     parser.add_argument(
-        "--times", metavar="LIST|CSV", help="exposure times in seconds, one for each frame, instead of EXIF's"
+        "--times", metavar="LIST", help="exposure times in seconds, one for each frame, instead of EXIF's"
     )
     parser.add_argument(
         "--compare", type=Path, metavar="FILE", help="a response to check: JSON of an estimate, or a LUT"

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Sequence
 from pathlib import Path
 
-from crfnet_core.calibration import calibrate_stack, parse_times, read_times
+from crfnet_core.calibration import calibrate_stack, parse_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
@@ -14,27 +13,20 @@ from .printing import prepare_matplotlib, print_earlier, print_json, print_lines
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Measure a response; write every file; say what was found, and how far another response is from it."""
+    """Measure a response, write every file, and print the result, with the distance of another response."""
     frames: list[Path] = arguments.photos
     outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
-    seconds = _seconds(arguments.times, frames) if arguments.times else None
+    seconds = parse_times(arguments.times) if arguments.times else None
     with progress_bar("frames") as progress:
-        found = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
-    comparison = found.compare(other) if other else None
-    document = pipeline.write_calibration(plan, found, comparison)
+        calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
+    comparison = calibration.compare(other) if other else None
+    document = pipeline.write_calibration(plan, calibration, comparison)
     if arguments.json:
         print_json(document | plan.earlier.document)
         return
-    print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
+    print_lines([*report.calibration_lines(calibration), *(report.comparison_lines(comparison) if comparison else [])])
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
     print_earlier(plan.earlier, plan.files.config, "this calibration")
-
-
-def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:
-    """Return the times in a list, or in a CSV file."""
-    if Path(times).suffix.lower() == ".csv":
-        return read_times(Path(times), [frame.name for frame in frames])
-    return parse_times(times)

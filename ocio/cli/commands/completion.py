@@ -11,7 +11,7 @@ import shtab
 from ..arguments.command_line import build_parser
 
 #: What the arguments that name files and folders are called in the help.
-FILES = {"CONFIG", "FILE", "FILE|MODEL", "FRAME", "LIST|CSV", "LOOK", "OUT", "PATTERN", "PHOTO", "PLATES", "SOURCE"}
+FILES = {"CONFIG", "FILE", "FILE|MODEL", "FRAME", "LOOK", "OUT", "PATTERN", "PHOTO", "PLATES", "SOURCE"}
 FOLDERS = {"DIR", "MODEL"}
 
 

@@ -27,23 +27,21 @@ def white_of(root, tmp_path):
 
 
 @pytest.mark.parametrize("scene", SCENES)
-@pytest.mark.parametrize("code", [240, 251])
-@pytest.mark.parametrize("quality", [0, 92])
+@pytest.mark.parametrize(("code", "quality"), [(240, 92), (251, 0)])
 def test_a_camera_that_clips_below_the_largest_code_is_found(white_of, scene, code, quality):
     assert white_of(scene, white=code / 255, quality=quality) == pytest.approx(code)
 
 
-@pytest.mark.parametrize("scene", SCENES)
 @pytest.mark.parametrize(
-    "options",
-    [{"quality": 0}, {"quality": 75, "shot_noise": 1e-3}, {"brightest": 97, "ceiling": 0.5}, {"step": 1}],
-    ids=["PNG", "noisy", "white unseen", "third stops"],
+    ("scene", "options"),
+    [("interior", {"quality": 0}), ("forest", {"quality": 75, "shot_noise": 1e-3}), ("courtyard", {"ceiling": 0.5})],
+    ids=["PNG", "noisy", "white unseen"],
 )
 def test_a_camera_that_clips_at_the_largest_code_is_left_alone(white_of, scene, options):
     assert white_of(scene, **options) == 255
 
 
-@pytest.mark.parametrize(("code", "found"), [(65532, 65535), (65520, 65535), (64000, 64000), (63123, 63123)])
+@pytest.mark.parametrize(("code", "found"), [(65532, 65535), (63123, 63123)])
 def test_the_white_of_16_bits_is_found_to_its_code(tmp_path, code, found):
     """The scene's own brightness is spread over all codes; rounding down took 65532 for 254 of 255."""
     light = 2.0 ** np.kron(np.random.default_rng(0).uniform(-8, 0, (20, 30, 1)), np.ones((8, 8, 3)))
@@ -69,4 +67,4 @@ def test_the_scale_of_a_detailed_stack_that_clips_at_code_251_is_right(root, tmp
     light, response = light_of(root / "tests" / "data" / "lights" / "forest.exr"), emor_response(100)
     found = calibrate_stack(make_stack(tmp_path, light, response, StackOptions(white=251 / 255)))
     assert abs(scale_error(in_file_codes(response, 251 / 255), found.curve)) < 0.03
-    assert "white is 251 of 255 codes: the codes above it are white too" in found.warnings
+    assert "white_below_largest" in {warning.code for warning in found.warnings}

@@ -16,7 +16,7 @@ from tests.helpers.images import write_image
 
 
 @pytest.fixture(scope="module")
-def own(plate, fixed_model, tmp_path_factory):
+def estimate(plate, fixed_model, tmp_path_factory):
     """The estimate from a photograph of a SONY ILCE-7M3."""
     photo = photograph(plate, tmp_path_factory.mktemp("photos") / "a.jpg")
     return estimate_response(read_photo(photo), network=ResponseNetwork.load(fixed_model))
@@ -36,33 +36,34 @@ def test_the_errors_of_a_camera_follow_from_its_stops():
     assert (answer.band[1] >= curve.brightness).all()
 
 
-def test_a_photograph_keeps_its_windows_and_gets_the_camera_s_response(own):
-    answer = with_camera(own, camera("a", make="SONY", model="ILCE-7M3"))
+def test_a_photograph_keeps_its_windows_and_gets_the_camera_s_response(estimate):
+    answer = with_camera(estimate, camera("a", make="SONY", model="ILCE-7M3"))
     assert answer.curve == ResponseCurve.gamma(2.2)
-    assert (answer.windows, answer.photos, answer.origins) == (own.windows, own.photos, own.origins)
+    assert (answer.windows, answer.photos, answer.origins) == (estimate.windows, estimate.photos, estimate.origins)
     assert (answer.verdict, answer.warnings, answer.camera.name) == (Verdict.GOOD, (), "a")
     assert ResponseEstimate.from_dict(answer.to_dict()) == answer
 
 
-def test_a_photograph_of_another_camera_is_warned_of(own):
-    answer = with_camera(own, camera("a", make="NIKON", model="NIKON D90"))
-    assert [warning.code for warning in answer.warnings] == ["other_camera"]
+def test_a_photograph_of_another_camera_is_warned_of(estimate):
+    answer = with_camera(estimate, camera("a", make="NIKON", model="NIKON D90"))
+    (warning,) = answer.warnings
+    assert (warning.code, warning.facts["other"]) == ("other_camera", "SONY ILCE-7M3")
 
 
 def test_footage_stays_untrusted(tmp_path):
     footage = np.rint(log_picture("Sony S-Log3") * 255).astype(np.uint8)
     photo = read_photo(write_image(tmp_path / "log.png", footage))
-    own = estimate_response(photo, network=ResponseNetwork.load())
-    answer = with_camera(own, camera("a"))
-    assert (answer.verdict, answer.recognition) == (Verdict.DO_NOT_TRUST, own.recognition)
+    alone = estimate_response(photo, network=ResponseNetwork.load())
+    answer = with_camera(alone, camera("a"))
+    assert (answer.verdict, answer.recognition) == (Verdict.DO_NOT_TRUST, alone.recognition)
 
 
-def test_cameras_of_the_make_and_model_are_offered(own, tmp_path, monkeypatch):
+def test_cameras_of_the_make_and_model_are_offered(estimate, tmp_path, monkeypatch):
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path))
-    assert offered_cameras(own) == ()
+    assert offered_cameras(estimate) == ()
     for name, model in (("low", "ILCE-7M3"), ("high", "ilce-7m3"), ("other", "ILCE-7M2")):
         CameraLibrary.of_user().save(camera(name, make="SONY", model=model))
-    assert [offer.name for offer in offered_cameras(own)] == ["high", "low"]
+    assert [offer.name for offer in offered_cameras(estimate)] == ["high", "low"]
     developed = file_origin(FileMetadata(make="SONY", model="ILCE-7M3", raw_file="1.ARW"))
     for origins in ((), (file_origin(FileMetadata()),), (developed,)):
-        assert offered_cameras(replace(own, origins=origins)) == ()
+        assert offered_cameras(replace(estimate, origins=origins)) == ()

@@ -1,7 +1,6 @@
 """The library of cameras: one file each, its name, and damage."""
 
 import json
-from concurrent.futures import ThreadPoolExecutor
 
 import numpy as np
 import pytest
@@ -63,20 +62,6 @@ def test_a_camera_is_replaced_only_when_asked(library):
     assert library.get("a").settings.iso == (100,)
     library.save(camera("A", iso=(200,)), overwrite=True)
     assert [one.settings.iso for one in library.cameras()] == [(200,)]
-
-
-def test_a_file_that_is_copied_hands_its_camera_on(library, tmp_path):
-    other = CameraLibrary(tmp_path / "other")
-    other.folder.mkdir()
-    (other.folder / "b.json").write_bytes(library.save(camera("a")).read_bytes())
-    assert other.get("b").curve == camera("a").curve
-
-
-def test_a_file_of_an_earlier_version_that_holds_a_measured_response_is_read(library):
-    path = library.save(camera("a"))
-    document = json.loads(path.read_text()) | {"name": "another", "photographs": []}
-    path.write_text(json.dumps(document))
-    assert library.get("a") == camera("a")
 
 
 DAMAGES = {
@@ -154,16 +139,6 @@ def test_other_files_are_no_calibration(tmp_path, text, code):
     if text is not None:
         (tmp_path / "a.json").write_text(text)
     assert code_of(read_calibration, tmp_path / "a.json") == code
-
-
-def test_several_may_add_at_once_and_a_killed_one_blocks_nobody(library):
-    library.folder.mkdir()
-    (library.folder / ".lock").touch()
-    (library.folder / ".a.0badcafe.json").write_text("{")  # what a killed process leaves
-    with ThreadPoolExecutor(8) as pool:
-        list(pool.map(library.save, (camera(f"camera {n}") for n in range(24))))
-    assert len(library.cameras()) == 24
-    assert library.problems() == []
 
 
 def test_a_camera_is_removed(library):

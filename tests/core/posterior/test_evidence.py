@@ -33,22 +33,10 @@ def test_the_families_of_stated_odds_have_one_number_each(bank):
     assert found[bank.members(Family.LOG)].tolist() == [-2]
 
 
-def test_a_response_at_the_location_is_the_most_likely(bank):
-    at = bank.weights[3, :5]
-    found = Evidence(at, 9 * np.eye(5), np.full(3, -50.0)).log_likelihoods(bank)
-    assert found.argmax() == 3
-    assert found[3] == pytest.approx(0)
-
-
 @pytest.mark.parametrize("count", [1, 2, 5])
 def test_photographs_of_one_scene_count_as_one_and_different_ones_each(count):
     assert independent_fraction(np.ones((count, count))) * count == pytest.approx(1)
     assert independent_fraction(np.eye(count)) * count == pytest.approx(count)
-
-
-def test_similar_photographs_count_for_something_between():
-    similarities = np.array([[1, 0.5, 0], [0.5, 1, 0], [0, 0, 1]])
-    assert independent_fraction(similarities) * 3 == pytest.approx(9 / 4)
 
 
 def test_scenes_are_recognised_by_the_order_of_their_brightness():

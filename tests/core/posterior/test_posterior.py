@@ -82,13 +82,6 @@ def test_lookalikes_bound_what_pixels_say_for_unusual_families(bank, lookalikes,
     assert posterior.families[Family.LOG] == pytest.approx(share)
 
 
-def test_a_family_without_a_share_stays_without(bank):
-    prior = Prior("p", {Family.PHONE: 1.0}, 1.0)
-    posterior = Posterior.from_evidences(bank, prior, [evidence_for(bank.weights[3], precision=300)])
-    assert posterior.families[Family.PHONE] == pytest.approx(1)
-    assert posterior.unexplained == pytest.approx(0)
-
-
 def test_the_unexplained_compete_with_all_responses_together(bank):
     """By hand: prior times evidence of the family, against the sum over the bank."""
     prior, evidence = even_prior(unexplained=0.3), evidence_for(bank.weights[3], log_odds=(-6, -6, -1.5))
@@ -140,21 +133,6 @@ def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
         assert posterior.expected_error == pytest.approx(expected, rel=1e-2)
 
 
-@pytest.mark.parametrize("exponent", [0.0, 1.0])
-def test_evidence_that_counts_in_full_or_not_at_all_leaves_no_such_doubt(bank, exponent):
-    evidence = evidence_for(bank.weights[3], precision=1.0)
-    posterior = Posterior.from_evidences(bank, even_prior(evidence=exponent), [evidence])
-    errors = [estimation_error(true, posterior.curve) for true in curves(bank)]
-    assert posterior.expected_error == pytest.approx(posterior.weights @ errors, rel=1e-2)
-
-
-def test_the_answer_has_nearly_the_least_expected_shape_error(blurred, bank):
-    """Hardly any member of the bank would have been the better answer."""
-    members = curves(bank)
-    by_member = [blurred.weights @ [shape_error(true, one) for true in members] for one in members]
-    assert blurred.expected_shape_error <= 1.1 * min(by_member)
-
-
 def test_the_band_holds_nine_tenths_of_the_weight():
     """Of many responses, so that quantiles are fine."""
     irradiance = np.linspace(0, 1, 1024)
@@ -168,13 +146,6 @@ def test_the_band_holds_nine_tenths_of_the_weight():
         knot = round(sample / 1023 * 64) * 1023 // 64
         inside = (bank.brightness[:, knot] >= lower[knot]) & (bank.brightness[:, knot] <= upper[knot])
         assert posterior.weights[inside].sum() == pytest.approx(0.9, abs=0.02)
-
-
-def test_the_band_of_a_certain_answer_lies_between_its_neighbors(bank):
-    lower, upper = Posterior.from_evidences(bank, even_prior(), [evidence_for(bank.weights[3], precision=3000)]).band()
-    knots = np.linspace(0, 1023, 65).round().astype(int)
-    assert (lower >= bank.brightness[4] - 1e-6)[knots].all()
-    assert (upper <= bank.brightness[2] + 1e-6)[knots].all()
 
 
 @pytest.mark.parametrize(

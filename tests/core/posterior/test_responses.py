@@ -1,7 +1,7 @@
 import numpy as np
 import pytest
 
-from crfnet_core.posterior import BANK_FILE, FAMILY_WORDS, Family, ResponseBank
+from crfnet_core.posterior import Family, ResponseBank
 from tests.helpers.posteriors import SMALL_BANK, small_bank
 
 
@@ -24,15 +24,6 @@ def test_every_family_but_the_unexplained_has_responses(bank):
     assert counts.pop(Family.UNEXPLAINED) == 0
     assert min(counts.values()) >= 30
     assert sum(counts.values()) == len(bank.families)
-
-
-def test_the_words_for_people_name_every_family_once():
-    assert sorted(family for families in FAMILY_WORDS for family in families) == sorted(Family)
-
-
-def test_the_bank_is_read_once_and_is_small(bank):
-    assert ResponseBank.load() is bank
-    assert BANK_FILE.stat().st_size < 2e6
 
 
 def test_weights_and_logarithms_are_those_of_the_curves():

@@ -1,4 +1,4 @@
-"""Levels: Eq. 38."""
+"""Levels: Eq. L.1."""
 
 import numpy as np
 import pytest
