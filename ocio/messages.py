@@ -29,7 +29,6 @@ SENTENCES: Mapping[str, str] = {
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
-    "frames_twice": "{path}: names the frames {frames} itself; give them once",
     "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
     " as in plate.%04d.exr",
     "no_such_frames": "{path}: there are {frames}; check the name and the frames",
