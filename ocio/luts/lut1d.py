@@ -213,17 +213,9 @@ def inverse_response_lut(
 
 
 def strictly_increasing(values: ArrayLike) -> Float64Array:
-    """Return `values` rounded to float32, with equal neighbors moved apart by units in the last place.
+    """Return finite, increasing values, shape (N,), rounded to float32 and as float64, so that they increase strictly.
 
-    Parameters
-    ----------
-    values : array_like, shape (N,)
-        Finite and increasing, though perhaps no longer strictly as float32; the last entry stays as it is.
-
-    Returns
-    -------
-    ndarray, float64, shape (N,)
-        float32 values that increase strictly.
+    Neighbors that became equal are moved apart by units in the last place; the last entry stays as it is.
     """
     # The bits of positive float32 numbers, read as integers, are in the order of the numbers: + 1 is the next number.
     bits = single_precision(values).astype(np.float32).view(np.int32).astype(np.int64)

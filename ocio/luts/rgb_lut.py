@@ -17,19 +17,9 @@ from .lut1d import Lut1D, clean_comments, table_identity
 
 @dataclass(frozen=True)
 class RgbLut1D:
-    """Three tables of one length and one domain, for R, G and B.
+    """Three tables of one length and one domain, for R, G and B, with provenance, one line a comment.
 
-    Parameters
-    ----------
-    channels : tuple of Lut1D
-        Three, in the order R, G, B; their own comments are dropped.
-    comments : tuple of str
-        Provenance, one line each.
-
-    Raises
-    ------
-    LutError
-        If there are not three, or they differ in length or domain.
+    Raise a LutError if there are not three, or they differ in length or domain.
     """
 
     channels: tuple[Lut1D, ...]
@@ -84,21 +74,9 @@ def lut_of_channels(tables: Sequence[Lut1D]) -> AnyLut:
 def lut_of_columns(
     columns: ArrayLike, *, domain: tuple[float, float] = (0.0, 1.0), comments: Sequence[str] = ()
 ) -> AnyLut:
-    """Return the LUT of a table: one for all channels if its columns are equal, else one for each.
+    """Return the LUT of a table, shape (N, 1) or (N, 3): one for all channels if its columns are equal, else three.
 
-    Parameters
-    ----------
-    columns : array_like, shape (N, 1) or (N, 3)
-        Outputs at N uniform inputs; R, G and B.
-    domain : tuple of float
-        The first and the last input.
-    comments : sequence of str
-        Provenance.
-
-    Raises
-    ------
-    LutError
-        As `Lut1D`.
+    The inputs are N uniform ones over `domain`. Raises as `Lut1D`.
     """
     table = np.asarray(columns, dtype=np.float64)
     if (table == table[:, :1]).all():
@@ -109,12 +87,7 @@ def lut_of_columns(
 def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:
     """Return the rows of a table with nine digits, which keep float32 values bit for bit.
 
-    Parameters
-    ----------
-    lut : Lut1D or RgbLut1D
-        The LUT.
-    columns : int
-        Values in each row; by default as many as the LUT has channels. A single one is repeated.
+    There are as many `columns` as the LUT has channels by default; a single value is repeated for more.
     """
     table = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
     if columns > 1:
