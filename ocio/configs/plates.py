@@ -13,18 +13,9 @@ from .reference_space import steps_to_reference
 
 @dataclass(frozen=True)
 class PlateInConfig:
-    """A plate's color space in a config.
+    """A plate's color space in a config: its name, its LUT as the config names it, and the stops added after the LUT.
 
-    Parameters
-    ----------
-    name : str
-        The name of the space.
-    lut_file : str
-        Its LUT, as the config names it.
-    exposure : float
-        Stops added after the LUT.
-    rules : dict of str to str
-        The color space that each of its file rules gives, by the rule's regular expression.
+    `rules` holds the color space that each of its file rules gives, by the rule's regular expression.
     """
 
     name: str

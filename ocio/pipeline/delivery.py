@@ -16,11 +16,11 @@ from crfnet_core.colorimetry import REC709
 from crfnet_core.files import atomic_write_text, check_target, json_text
 from crfnet_core.types import Progress
 
-from ..configs.files import loaded_or_empty, write_config
+from ..configs.files import load_config, write_config
 from ..configs.plate_color_space import PlateColorSpace
 from ..configs.plates import plates_in_config
 from ..configs.portable import portable_config
-from ..errors import PlateError
+from ..errors import ConfigError, PlateError
 from ..luts.files import write_lut
 from ..luts.forward import forward_lut
 from ..options import OutputOptions, PlateOptions
@@ -304,8 +304,8 @@ def stale_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool
 
 def _other_spaces(files: OutputFiles) -> tuple[str, ...]:
     """Return the color spaces of other plates in the config that is there; none if it cannot be read."""
-    with suppress(UnicodeError):  # a name, or the error's text, may not be UTF-8
-        plates = plates_in_config(loaded_or_empty(files.config))
+    with suppress(ConfigError, UnicodeError):  # a name, or the error's text, may not be UTF-8
+        plates = plates_in_config(load_config(files.config))
         return tuple(plate.name for plate in plates if plate.name != files.color_space)
     return ()
 

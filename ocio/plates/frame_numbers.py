@@ -19,16 +19,9 @@ MAX_FRAMES = 1_000_000
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     """Return the frame numbers of a specification, ascending and each once.
 
-    Parameters
-    ----------
-    frames : str or iterable of int
-        Numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2" (every second), "1,5,9",
-        "-3--1". A range may run backwards; the frames come in ascending order all the same.
-
-    Raises
-    ------
-    PlateError
-        If it is malformed, holds parts of frames, or there are more than `MAX_FRAMES` frames.
+    They are numbers, or a text of numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2"
+    (every second), "1,5,9", "-3--1", also backwards. Raise a PlateError if it is malformed, holds parts of frames, or
+    there are more than `MAX_FRAMES` frames.
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
