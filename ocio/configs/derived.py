@@ -24,8 +24,7 @@ from ..staging import staged_files
 from .file_rules import is_counter_name
 from .files import write_config
 from .looks import Look
-from .plate_color_space import PlateColorSpace, add_plate_color_spaces
-from .plates import PlateInConfig, plates_in_config
+from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, plates_in_config
 from .sources import ConfigSource
 
 

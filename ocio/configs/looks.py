@@ -121,7 +121,5 @@ def _primaries(document: dict[str, Any]) -> Primaries:
 
 def _linear_primaries(document: dict[str, Any]) -> Primaries | None:
     """Return the primaries of the plate's linear files, by the Color Interop Forum's name; None if it is not known."""
-    name = document["output_space"]["interop_id"]
-    return next(
-        (primaries for primaries in LINEAR_NAMES if primaries.interop_id and primaries.interop_id == name), None
-    )
+    by_id = {primaries.interop_id: primaries for primaries in LINEAR_NAMES if primaries.interop_id}
+    return by_id.get(str(document["output_space"]["interop_id"]))

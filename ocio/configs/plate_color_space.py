@@ -14,8 +14,17 @@ import PyOpenColorIO as OCIO
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 
 from ..errors import ConfigError
-from .file_rules import FAMILY, LINEAR_SUFFIX, add_file_rule, color_space_of_file, linear_patterns, plate_pattern
-from .reference_space import linear_space_name, matrix_transform, rec709_to_reference
+from .file_rules import (
+    FAMILY,
+    LINEAR_SUFFIX,
+    add_file_rule,
+    color_space_of_file,
+    linear_patterns,
+    plate_pattern,
+    plate_rules,
+)
+from .files import plate_exposure
+from .reference_space import linear_space_name, matrix_transform, rec709_to_reference, steps_to_reference
 
 if TYPE_CHECKING:
     from ..output_files import OutputFiles
@@ -137,3 +146,29 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
 def _aliases(color_space: str) -> tuple[str, ...]:
     """Return the alias of a color space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
     return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
+
+
+@dataclass(frozen=True)
+class PlateInConfig:
+    """A plate's color space in a config: its name, its LUT as the config names it, and the stops added after the LUT.
+
+    `rules` holds the color space that each of its file rules gives, by the rule's regular expression.
+    """
+
+    name: str
+    lut_file: str
+    exposure: float
+    rules: dict[str, str]
+
+
+def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
+    """Return the plates of a config, in its order."""
+    spaces = [space for space in config.getColorSpaces() if space.getFamily() == FAMILY]
+    return [_plate(config, space) for space in spaces]
+
+
+def _plate(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:
+    """Return the plate of a color space; its LUT comes first."""
+    name, first = str(space.getName()), next(iter(steps_to_reference(space)), None)
+    lut_file = str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
+    return PlateInConfig(name, lut_file, plate_exposure(space), plate_rules(config, name))

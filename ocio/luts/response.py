@@ -50,9 +50,9 @@ def read_response(path: str | Path) -> ResponseFile:
         return ResponseFile(path, table, table)
     codes = np.linspace(0, 1, LUT_LENGTH)
     inverse = lut_of_channels([Lut1D(strictly_increasing(each.apply_inverse(codes))) for each in table.channels])
-    found = ResponseFile(path, table, inverse)
-    comments = (f"Read from {path.name}: {found.words}; this is its inverse", *table.comments)
-    return replace(found, lut=replace(inverse, comments=comments))
+    response = ResponseFile(path, table, inverse)
+    comments = (f"Read from {path.name}: {response.words}; this is its inverse", *table.comments)
+    return replace(response, lut=replace(inverse, comments=comments))
 
 
 def response_of_lut(lut: AnyLut) -> ResponseCurve:

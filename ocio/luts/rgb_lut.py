@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -49,17 +49,13 @@ class RgbLut1D:
 
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
-        return self._by_channel([channel.apply for channel in self.channels], pixels)
+        inputs = np.asarray(pixels)
+        return np.stack([lut.apply(inputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
     def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the input of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply_inverse`."""
-        return self._by_channel([channel.apply_inverse for channel in self.channels], pixels)
-
-    @staticmethod
-    def _by_channel(steps: Sequence[Callable[..., NDArray[np.floating]]], pixels: ArrayLike) -> NDArray[np.floating]:
-        """Return pixels, each channel through a step of its own."""
-        given = np.asarray(pixels)
-        return np.stack([step(given[..., channel]) for channel, step in enumerate(steps)], axis=-1)
+        outputs = np.asarray(pixels)
+        return np.stack([lut.apply_inverse(outputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
 
 #: A LUT for all channels, or one for each.

@@ -17,8 +17,7 @@ from crfnet_core.files import atomic_write_text, check_target, json_text
 from crfnet_core.types import Progress
 
 from ..configs.files import load_config, write_config
-from ..configs.plate_color_space import PlateColorSpace
-from ..configs.plates import plates_in_config
+from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
 from ..errors import ConfigError, PlateError
 from ..luts.files import write_lut

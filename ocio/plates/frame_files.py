@@ -128,22 +128,10 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
-        _seek_colors(source)
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
     finally:
         source.close()
-
-
-def _seek_colors(source: Any) -> None:
-    """Go to the first part that holds R, G and B; stay at the first if none does."""
-    part = 0
-    while source.seek_subimage(part, 0):
-        if set(source.spec().channelnames) >= set("RGB"):
-            return
-        part += 1
-    source.seek_subimage(0, 0)
-    oiio_message(source)
 
 
 def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
@@ -169,7 +157,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 def _plane(source: Any, channel: int) -> Float32Array | None:
     """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
+    plane = source.read_image(0, 0, channel, channel + 1, "float")
     return None if plane is None else np.asarray(plane)[..., 0]
 
 

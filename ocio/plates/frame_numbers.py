@@ -28,19 +28,19 @@ def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
     from fileseq.frameset import FrameSet
 
-    found: Collection[Any] = ()
+    numbers: Collection[Any] = ()
     try:
         if frames.isascii() and all(frames.split(",")):
-            found = FrameSet(frames)
+            numbers = FrameSet(frames)
     except MaxSizeException:
-        found = range(MAX_FRAMES + 1)
+        numbers = range(MAX_FRAMES + 1)
     except ParseException:
-        found = ()
-    if len(found) > MAX_FRAMES:
+        numbers = ()
+    if len(numbers) > MAX_FRAMES:
         raise PlateError("too_many_frames", frames=frames, most=MAX_FRAMES)
-    if not found or any(number != int(number) for number in found):
+    if not numbers or any(number != int(number) for number in numbers):
         raise PlateError("bad_frames", frames=frames)
-    return tuple(sorted(map(int, found)))
+    return tuple(sorted(map(int, numbers)))
 
 
 def format_frames(numbers: Sequence[int], limit: int = 5) -> str:

@@ -84,10 +84,8 @@ def _only_sequence(folder: Path) -> FramePattern:
     from fileseq.filesequence import FileSequence  # only here: see the module
 
     names = [path.name for path in listed(folder) if not path.name.startswith(".") and path.is_file()]
-    sequences = [found for found in FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
-    patterns = [
-        _pattern(folder, found.basename(), found.zfill(), found.extension(), found.start()) for found in sequences
-    ]
+    sequences = [each for each in FileSequence.findSequencesInList(sorted(names)) if len(each) > 1]
+    patterns = [_pattern(folder, each.basename(), each.zfill(), each.extension(), each.start()) for each in sequences]
     if len(patterns) == 1:
         return patterns[0]
     if not patterns:

@@ -101,7 +101,7 @@ def _attributes(path: Path) -> dict[str, Any]:
         return {}
     try:
         header = source.spec()
-        own = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
-        return {attribute.name: attribute.value for attribute in header.extra_attribs} | own
+        form = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
+        return {attribute.name: attribute.value for attribute in header.extra_attribs} | form
     finally:
         source.close()

@@ -1,4 +1,4 @@
-"""The primaries of an encoded plate: as its file tags them, as the user says, or by convention."""
+"""The primaries of an encoded plate: as its file tags them, as the user states, or by convention."""
 
 from __future__ import annotations
 
@@ -51,13 +51,13 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
 
 def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0]) -> PlatePrimaries:
     """Return the primaries that several plates have in common; raise a PlateError if two differ."""
-    (first, found), *others = ((path, plate_primaries(each, choice)) for path, each in tags.items())
-    for path, other in others:
-        check_same_primaries(path, other, first, found)
-    return found
+    (first, expected), *others = ((path, plate_primaries(each, choice)) for path, each in tags.items())
+    for path, primaries in others:
+        check_same_primaries(path, primaries, first, expected)
+    return expected
 
 
-def check_same_primaries(path: Path, found: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
+def check_same_primaries(path: Path, plate: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
     """Raise a PlateError if a plate has other primaries than the first one that it goes together with."""
-    if found.primaries != expected.primaries:
-        raise PlateError("primaries_differ", path=path, primaries=found, first=first.name, expected=expected)
+    if plate.primaries != expected.primaries:
+        raise PlateError("primaries_differ", path=path, primaries=plate, first=first.name, expected=expected)
