@@ -4,8 +4,6 @@ from collections.abc import Mapping
 
 SENTENCES: Mapping[str, str] = {
     # movies
-    "dolby_vision": "{path}: is Dolby Vision of profile {profile}, whose samples only its own decoder shows; give a"
-    " version in SDR",
     "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"
@@ -29,7 +27,6 @@ SENTENCES: Mapping[str, str] = {
     " plate.%04d.png or plate.####.png",
     "frames_failed": "{count} of {total} frames failed ({frames}) and the others are written{gaps}; the first: {first}",
     "frames_far_apart": "{path}: frames {first} to {last} are too far apart; say which frames to use",
-    "frames_twice": "{path}: names the frames {frames} itself; give them once",
     "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
     " as in plate.%04d.exr",
     "no_such_frames": "{path}: there are {frames}; check the name and the frames",
@@ -56,14 +53,14 @@ SENTENCES: Mapping[str, str] = {
     "lut_black_or_white": "the LUT makes {black:g} of black and {white:g} of white; a response needs 0 and more than 0",
     "lut_brightens": "the LUT brightens, so it leads from light to code values; give its inverse",
     "lut_channels_differ": "the LUT treats R, G and B apart; give one that treats the channels alike",
-    "lut_codes": "found integers up to {found}, but the LUT ends at {last:g}: divide code values by the largest code,"
+    "lut_codes": "found integers up to {largest}, but the LUT ends at {last:g}: divide code values by the largest code,"
     " such as 255",
     "lut_domain": "a LUT needs a finite domain from low to high, found {low:.9g} to {high:.9g}",
     "lut_domain_short": "the LUT is defined from {low:g} to {high:g}; the inverse of a response needs 0 to 1",
     "lut_entry": "entry {entry} of the LUT, {value:.9g}, is not finite or not above the one before",
     "lut_invalid": "{path}: {problem}",
     "lut_length": "a LUT has 2 to {most} entries, found a length of {length}; {usual} suits most",
-    "lut_not_1d": "{path}: holds {found}; give a 1D LUT of the camera's response, which treats all channels alike",
+    "lut_not_1d": "{path}: holds {steps}; give a 1D LUT of the camera's response, which treats all channels alike",
     "lut_not_increasing": "{path}: entry {entry} is not above the one before; a LUT that can be inverted increases, and"
     " its decimals have points",
     "lut_refused": "{path}: OpenColorIO reads no LUT from it ({reason}); write the LUT again",

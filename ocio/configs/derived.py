@@ -24,25 +24,16 @@ from ..staging import staged_files
 from .file_rules import is_counter_name
 from .files import write_config
 from .looks import Look
-from .plate_color_space import PlateColorSpace, add_plate_color_spaces
-from .plates import PlateInConfig, plates_in_config
+from .plate_color_space import PlateColorSpace, PlateInConfig, add_plate_color_spaces, plates_in_config
 from .sources import ConfigSource
 
 
 @dataclass(frozen=True)
 class DerivedConfig:
-    """A config that was written with plates added.
+    """A config that was written with plates added: its path, all files written, and the plates.
 
-    Parameters
-    ----------
-    path : Path
-        The config.
-    files : tuple of Path
-        All files that were written, the config among them.
-    plates : tuple of PlateInConfig
-        The plates that were added.
-    without_rule : tuple of str
-        The file names, or patterns, that have no rule: many cameras give such a name, or several plates have it.
+    `without_rule` holds the file names, or patterns, that have no rule: many cameras give such a name, or several
+    plates have it.
     """
 
     path: Path
@@ -59,29 +50,15 @@ def write_derived_config(
     others: Mapping[str, Lut1D] | None = None,
     overwrite: bool = False,
 ) -> DerivedConfig:
-    """Write a config with plates' color spaces and file rules added to a base, and the plates' LUTs next to it.
+    """Write `CONFIG_NAME` to `folder`: a base with plates' color spaces and file rules; and the LUTs next to it.
 
     A plate whose name the base has already gets the name of its folder, too: "CRF plate01 (s020)". Names that cameras
-    give again and again ("IMG_0001.JPG") get no file rule: it would catch files of others.
+    give again and again ("IMG_0001.JPG") get no file rule: it would catch files of others. `others` are further LUT
+    files, by their names. The folder is made if need be, and may not be the base's.
 
-    Parameters
-    ----------
-    base : ConfigSource
-        The config to build on; it stays as it is.
-    folder : Path
-        The folder for `CONFIG_NAME` and the LUTs; it is made if need be.
-    looks : sequence of Look
-        The plates.
-    others : mapping of str to Lut1D, optional
-        Further LUT files, by their names.
-    overwrite : bool
-        Whether existing files may be replaced; it is never the folder of the base.
-
-    Raises
-    ------
-    ConfigError, LutError, PlateError
-        If the folder cannot be written to, a file exists and may not be replaced, the base cannot be built on, or
-        OpenColorIO refuses the config or converts otherwise than the LUTs. The folder is as it was then.
+    Raise a ConfigError, LutError or PlateError, and leave the folder as it was, if it cannot be written to, a file
+    exists and may not be replaced, the base cannot be built on, or OpenColorIO refuses the config or converts otherwise
+    than the LUTs.
     """
     check_config_folder(folder)
     if base.path is not None and folder.is_dir() and folder.samefile(base.path.parent):

@@ -32,13 +32,7 @@ FRAME_NUMBER = re.compile(r"\.\d{2,}$")
 
 
 def plate_pattern(name: str) -> str:
-    """Return the pattern of a plate's file: its full name, where a frame number at the end stands for any number.
-
-    Parameters
-    ----------
-    name : str
-        The name without folder, for example "shot.0001.jpg", whose pattern is "shot.#.jpg".
-    """
+    """Return the pattern of a plate's file name: a frame number at the end stands for any, as in shot.#.jpg."""
     stem, dot, suffix = name.rpartition(".")
     stem = stem.replace("#", "?")
     return FRAME_NUMBER.sub(".#", stem) + dot + suffix if stem else name.replace("#", "?")
@@ -47,12 +41,8 @@ def plate_pattern(name: str) -> str:
 def linear_patterns(stem: str, names: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
-    Parameters
-    ----------
-    stem : str
-        The stem of the plate's files, for example "clip" or "shot.0001".
-    names : sequence of str
-        The names of its linear files without folder. For more than `MOST_PATTERNS` of them, one pattern stands for all.
+    `stem` is that of the plate's files, for example "clip" or "shot.0001". One pattern stands for more than
+    `MOST_PATTERNS` names.
     """
     named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]
     return tuple(dict.fromkeys([*named, FRAME_NUMBER.sub("", stem) + ".#.exr"]))
@@ -68,11 +58,8 @@ def is_counter_name(name: str) -> bool:
 def rule_regex(patterns: Iterable[str]) -> str:
     """Return the regular expression of file names, in a syntax that every host shares.
 
-    Parameters
-    ----------
-    patterns : iterable of str
-        Names with `*` (any characters), `?` (any character) and `#` (a number of any length); none of them matches a
-        separator of folders. A pattern holds for full names, in any folder, in upper and lower case (ASCII).
+    In the patterns, `*` stands for any characters, `?` for any character and `#` for a number of any length; none of
+    them matches a separator of folders. A pattern holds for full names, in any folder, in upper and lower case (ASCII).
     """
     return r"(.*[/\\])?(" + "|".join(map(_pattern_regex, patterns)) + ")"
 
@@ -80,20 +67,10 @@ def rule_regex(patterns: Iterable[str]) -> str:
 def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence[str]) -> bool:
     """Put the file rule of a plate before all others of a config, in place, and return whether it is there.
 
-    Where a rule of another plate leads one of the files to another space, the name does not say whose file it is, and
-    neither plate gets it: the other rule then leads to the space that the file has without both, and stays, so that a
-    third plate of the name finds it.
-
-    Parameters
-    ----------
-    config : PyOpenColorIO.Config
-        The config, of profile 2.
-    name : str
-        The name of the plate's color space, perhaps with `LINEAR_SUFFIX`.
-    space : str
-        The color space of the files.
-    patterns : sequence of str
-        See `rule_regex`; at least one.
+    `name` is the plate's color space, perhaps with `LINEAR_SUFFIX`; `space` is the color space of the files; `patterns`
+    are at least one. Where a rule of another plate leads one of the files to another space, the name alone does not
+    identify the plate, and neither gets the file: the other rule then leads to the space that the file has without
+    both, and stays, so that a third plate of the name finds it.
     """
     is_shared = [_release(config, pattern, space) for pattern in patterns]
     if any(is_shared):

@@ -42,10 +42,7 @@ HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_
 def load_config(path: str | Path) -> OCIO.Config:
     """Return the config in a file of at most `MAX_CONFIG_SIZE` bytes and `MOST_ALIASES` aliases.
 
-    Raises
-    ------
-    ConfigError
-        If there is none, it is larger, or OpenColorIO refuses it.
+    Raise a ConfigError if it is absent, larger, or OpenColorIO refuses it.
     """
     path = Path(path)
     if not os.path.lexists(path):
@@ -60,22 +57,8 @@ def load_config(path: str | Path) -> OCIO.Config:
         raise ConfigError("config_refused", path=path, reason=problem) from None
 
 
-def loaded_or_empty(path: Path) -> OCIO.Config:
-    """Return the config in a file; an empty one if it cannot be loaded."""
-    try:
-        return load_config(path)
-    except ConfigError:
-        return OCIO.Config()
-
-
 def role_name(path: str | Path, role: str) -> str:
-    """Return the name of the color space that has a role in a config file.
-
-    Raises
-    ------
-    ConfigError
-        If there is none, or the config cannot be loaded.
-    """
+    """Return the name of the color space that has a role in a config file; raise a ConfigError if none has."""
     space = load_config(path).getColorSpace(role)
     if space is None:
         raise ConfigError("role_absent", path=path, role=role)
@@ -85,22 +68,9 @@ def role_name(path: str | Path, role: str) -> str:
 def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, Lut1D], overwrite: bool = False) -> None:
     """Write a config; the file gets its name only after OpenColorIO has loaded it and converts as its LUTs do.
 
-    Parameters
-    ----------
-    path : str or Path
-        The file to be written, in the folder that holds the LUTs.
-    config : PyOpenColorIO.Config
-        The config.
-    check : mapping of str to Lut1D
-        The LUT of each plate's color space, by the name of the space. OpenColorIO's processor must equal the LUT,
-        times the exposure that the config gives the plate, in both directions to `TOLERANCE`.
-    overwrite : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    ConfigError
-        If the config does not load, is not valid, converts otherwise, or cannot be written; no file is left behind.
+    `check` holds the LUT of each plate's color space, by the name of the space. OpenColorIO's processor must equal the
+    LUT, times the exposure that the config gives the plate, in both directions to `TOLERANCE`. Raise a ConfigError, and
+    leave no file, if the config does not load, is not valid, converts otherwise, or cannot be written.
     """
     OCIO.ClearAllCaches()
     try:

@@ -28,38 +28,17 @@ MOVIE_FRAME = re.compile(r" frame \d+$")
 
 @dataclass(frozen=True, eq=False)
 class Look:
-    """The look of a plate's camera.
-
-    Parameters
-    ----------
-    space : PlateColorSpace
-        The plate's color space; its LUT is a .spi1d file next to the config.
-    lut : Lut1D
-        The inverse response.
-    folder : str
-        The name of the folder that it comes from, which sets it apart from other plates of the name.
-    """
+    """The color space of a plate, its LUT (a .spi1d file next to the config), and the name of its folder."""
 
     space: PlateColorSpace
     lut: Lut1D
-    folder: str
+    folder: str  # sets it apart from other plates of the name
 
 
 def read_looks(path: Path) -> list[Look]:
-    """Return the looks that an estimate wrote.
+    """Return the looks in a folder of one or several estimates, a JSON document, or a LUT file of an inverse response.
 
-    Parameters
-    ----------
-    path : Path
-        The folder, with one or several estimates; the JSON document of one; or a LUT file of an inverse response, which
-        may come from elsewhere.
-
-    Raises
-    ------
-    ConfigError
-        If there is nothing of the kind.
-    LutError
-        If a LUT cannot be read, or is not one of an inverse response.
+    Raise a ConfigError if there is no estimate, and a LutError if a LUT cannot be read or is not an inverse response.
     """
     path = path.resolve()
     if path.is_dir():
@@ -142,7 +121,5 @@ def _primaries(document: dict[str, Any]) -> Primaries:
 
 def _linear_primaries(document: dict[str, Any]) -> Primaries | None:
     """Return the primaries of the plate's linear files, by the Color Interop Forum's name; None if it is not known."""
-    name = document["output_space"]["interop_id"]
-    return next(
-        (primaries for primaries in LINEAR_NAMES if primaries.interop_id and primaries.interop_id == name), None
-    )
+    by_id = {primaries.interop_id: primaries for primaries in LINEAR_NAMES if primaries.interop_id}
+    return by_id.get(str(document["output_space"]["interop_id"]))

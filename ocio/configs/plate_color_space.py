@@ -14,8 +14,17 @@ import PyOpenColorIO as OCIO
 from crfnet_core.colorimetry import REC709, Primaries, conversion_matrix
 
 from ..errors import ConfigError
-from .file_rules import FAMILY, LINEAR_SUFFIX, add_file_rule, color_space_of_file, linear_patterns, plate_pattern
-from .reference_space import linear_space_name, matrix_transform, rec709_to_reference
+from .file_rules import (
+    FAMILY,
+    LINEAR_SUFFIX,
+    add_file_rule,
+    color_space_of_file,
+    linear_patterns,
+    plate_pattern,
+    plate_rules,
+)
+from .files import plate_exposure
+from .reference_space import linear_space_name, matrix_transform, rec709_to_reference, steps_to_reference
 
 if TYPE_CHECKING:
     from ..output_files import OutputFiles
@@ -31,47 +40,19 @@ USUAL_LINEAR_FILE = "crfnet_linear.exr"
 class PlateColorSpace:
     """The color space of a plate: its camera's inverse response, an exposure, and its primaries.
 
-    Parameters
-    ----------
-    name : str
-        The name in menus, for example "CRF plate01".
-    lut_file : str
-        The LUT from brightness to irradiance; its name is relative to the config's folder.
-    aliases : tuple of str
-        Other names of the space. A config gets those that it does not use already.
-    description : str
-        The origin of the response.
-    encoding : str
-        OpenColorIO's name of the encoding.
-    file_patterns : tuple of str
-        The names of the plate's files with `*`, `?` and `#` for a number, for example "shot_plate01.#.png", for a file
-        rule: see `crfnet.configs.file_rules.rule_regex`.
-    exposure : float
-        Stops added after the response. They stand in the config as a transform of their own, to be edited there.
-    primaries : Primaries
-        The primaries in which the plate is encoded.
-    linear_patterns : tuple of str
-        The names of the plate's linear OpenEXR files, for a file rule of their own.
-    linear_primaries : Primaries or None
-        The primaries of those files. None if they are not known: then there is no rule.
-
-    Raises
-    ------
-    ConfigError
-        If the name is empty, the exposure is not finite, the LUT lies outside the config's folder, or its name holds
-        a character that OpenColorIO interprets as a variable.
+    Raise a ConfigError if the name is empty, the exposure is not finite, the LUT lies outside the config's folder, or
+    its name holds a character that OpenColorIO interprets as a variable.
     """
 
-    name: str
-    lut_file: str
-    aliases: tuple[str, ...] = ()
+    name: str  # in menus, for example "CRF plate01"
+    lut_file: str  # from brightness to irradiance, relative to the config's folder
+    aliases: tuple[str, ...] = ()  # a config gets those that it does not use already
     description: str = ""
-    encoding: str = "sdr-video"
-    file_patterns: tuple[str, ...] = ()
-    exposure: float = 0.0
-    primaries: Primaries = REC709
-    linear_patterns: tuple[str, ...] = ()
-    linear_primaries: Primaries | None = None
+    file_patterns: tuple[str, ...] = ()  # the plate's file names, for a file rule: see `file_rules.rule_regex`
+    exposure: float = 0.0  # stops after the response: a transform of its own, to be edited in the config
+    primaries: Primaries = REC709  # of the encoded plate
+    linear_patterns: tuple[str, ...] = ()  # the names of the plate's linear files, for a file rule of their own
+    linear_primaries: Primaries | None = None  # of those files; None if they are not known, which makes no rule
 
     def __post_init__(self) -> None:
         lut_file = PureWindowsPath(self.lut_file)
@@ -90,22 +71,8 @@ class PlateColorSpace:
     ) -> PlateColorSpace:
         """Return the color space of a photograph, for a config next to the LUTs that an estimate writes.
 
-        Parameters
-        ----------
-        files : OutputFiles
-            The files of the estimate.
-        photo : Path
-            The photograph.
-        exposure : float
-            Stops added after the response.
-        file_pattern : str or None
-            One of `file_patterns`; by default the photograph's name, where a frame number at the end (shot.0001.jpg)
-            stands for any number.
-
-        Raises
-        ------
-        ConfigError
-            If no color space can have the name.
+        `file_pattern` is by default the photograph's name, where a frame number at the end (shot.0001.jpg) stands for
+        any. Raise a ConfigError if no color space can have the name.
         """
         return cls(
             name=files.color_space,
@@ -127,17 +94,7 @@ def add_plate_color_spaces(config: OCIO.Config, spaces: Sequence[PlateColorSpace
     file rules: they are left out there, and so is an exposure of 0. Linear files get a rule where the config takes
     OpenEXR files for another space than theirs.
 
-    Parameters
-    ----------
-    config : PyOpenColorIO.Config
-        Any config.
-    spaces : sequence of PlateColorSpace
-        The color spaces of the plates.
-
-    Raises
-    ------
-    ConfigError
-        If the config has one of the names already, or cannot convert linear Rec.709 to its reference space.
+    Raise a ConfigError if the config has one of the names already, or cannot convert linear Rec.709 to its reference.
     """
     usual = color_space_of_file(config, USUAL_LINEAR_FILE) if config.getMajorVersion() >= 2 else ""
     shared = list[str]()
@@ -164,7 +121,7 @@ def _add_color_space(config: OCIO.Config, space: PlateColorSpace) -> None:
                 name=space.name,
                 aliases=[alias for alias in space.aliases if modern and config.getColorSpace(alias) is None],
                 family=FAMILY,
-                encoding=space.encoding,
+                encoding="sdr-video",
                 description=space.description,
                 bitDepth=OCIO.BIT_DEPTH_F32,
                 categories=CATEGORIES if modern else [],
@@ -189,3 +146,29 @@ def _to_reference(config: OCIO.Config, space: PlateColorSpace) -> OCIO.Transform
 def _aliases(color_space: str) -> tuple[str, ...]:
     """Return the alias of a color space: of "CRF a_b" crf_a_b, of "CRF a-b" none, since it would be the same."""
     return (color_space.replace(" ", "_").lower(),) if re.fullmatch(r"CRF \w+", color_space) else ()
+
+
+@dataclass(frozen=True)
+class PlateInConfig:
+    """A plate's color space in a config: its name, its LUT as the config names it, and the stops added after the LUT.
+
+    `rules` holds the color space that each of its file rules gives, by the rule's regular expression.
+    """
+
+    name: str
+    lut_file: str
+    exposure: float
+    rules: dict[str, str]
+
+
+def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
+    """Return the plates of a config, in its order."""
+    spaces = [space for space in config.getColorSpaces() if space.getFamily() == FAMILY]
+    return [_plate(config, space) for space in spaces]
+
+
+def _plate(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:
+    """Return the plate of a color space; its LUT comes first."""
+    name, first = str(space.getName()), next(iter(steps_to_reference(space)), None)
+    lut_file = str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
+    return PlateInConfig(name, lut_file, plate_exposure(space), plate_rules(config, name))

@@ -31,19 +31,13 @@ SRGB_DISPLAY = "DISPLAY - CIE-XYZ-D65_to_sRGB"
 
 def view_names(space: str) -> tuple[str, str]:
     """Return the names of the views of a plate's color space: clipped at white, and rolled off."""
-    clipped, rolled_off = (name.format(space) for name in VIEW_NAMES)
-    return clipped, rolled_off
+    return VIEW_NAMES[0].format(space), VIEW_NAMES[1].format(space)
 
 
 def add_plate_views(config: OCIO.Config, spaces: Sequence[str]) -> OCIO.Config:
     """Return a copy of the portable config with the views of plates' color spaces on its displays.
 
-    Parameters
-    ----------
-    config : PyOpenColorIO.Config
-        The config, with the plates' color spaces; the first view of each display goes through the display reference.
-    spaces : sequence of str
-        The names of the plates' color spaces.
+    The first view of each display goes through the display reference.
     """
     config = copy.deepcopy(config)
     for space in spaces:

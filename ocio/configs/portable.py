@@ -24,20 +24,11 @@ MOST_PLATES_WITH_VIEWS = 16
 
 
 def portable_config(spaces: Sequence[PlateColorSpace]) -> OCIO.Config:
-    """Return a config of profile 2.0 with `spaces`, for every host from OpenColorIO 2.0 on.
+    """Return a config of profile 2.0 with plates' color spaces, for every host from OpenColorIO 2.0 on.
 
     Its reference and scene-linear space is linear Rec.709 with a D65 white. Its color spaces have the names that
     Blender uses, so that Blender's files find them. Up to `MOST_PLATES_WITH_VIEWS` plates get views "as photographed".
-
-    Parameters
-    ----------
-    spaces : sequence of PlateColorSpace
-        The plates' color spaces, of different names.
-
-    Raises
-    ------
-    ConfigError
-        If two spaces share a name, or one takes a name of the config.
+    Raise a ConfigError if two spaces share a name, or one takes a name of the config.
     """
     config = OCIO.Config.CreateFromStream(_template())
     for primaries in ADDED_PRIMARIES:

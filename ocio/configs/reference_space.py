@@ -51,10 +51,7 @@ def linear_space_name(config: OCIO.Config, primaries: Primaries) -> str | None:
 def rec709_to_reference(config: OCIO.Config) -> list[OCIO.Transform]:
     """Return the transforms from linear Rec.709 to the scene reference space of a config.
 
-    Raises
-    ------
-    ConfigError
-        If the config has neither a linear Rec.709 space (`LINEAR_REC709`) nor a role `aces_interchange`.
+    Raise a ConfigError if it has neither a linear Rec.709 space (`LINEAR_REC709`) nor a role `aces_interchange`.
     """
     for name in LINEAR_REC709:
         space = config.getColorSpace(name)

@@ -28,17 +28,7 @@ BLENDER_CONFIGS = tuple(
 
 @dataclass(frozen=True, eq=False)
 class ConfigSource:
-    """A config to build on.
-
-    Parameters
-    ----------
-    config : PyOpenColorIO.Config
-        The config; not to be changed.
-    name : str
-        The name in messages.
-    path : Path or None
-        Its file; None if it is built into OpenColorIO.
-    """
+    """A config to build on, its name in messages, and its file; None if it is built into OpenColorIO."""
 
     config: OCIO.Config
     name: str
@@ -48,16 +38,8 @@ class ConfigSource:
 def find_config(name: str) -> ConfigSource:
     """Return the config that a user names.
 
-    Parameters
-    ----------
-    name : str
-        A file, or a folder that holds a `CONFIG_NAME`; the name of a built-in config, with or without "ocio://";
-        "$OCIO"; or the folder or the executable of a Blender.
-
-    Raises
-    ------
-    ConfigError
-        If there is none, or it cannot be loaded.
+    The name is a file, or a folder that holds a `CONFIG_NAME`; a built-in config, with or without "ocio://"; "$OCIO";
+    or the folder or the executable of a Blender. Raise a ConfigError if there is none, or it cannot be loaded.
     """
     if name in VARIABLE_NAMES:
         if not (value := os.environ.get(VARIABLE, "").strip()):

@@ -12,24 +12,12 @@ from .rgb_lut import AnyLut
 
 
 def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
-    """Return the stops to add after the inverse response (Eq. 31 of docs/METHOD.md).
+    """Return the stops to add after the inverse response, which leaves the exposure open (Eq. 31 of docs/METHOD.md).
 
-    A response alone leaves the exposure open.
-
-    Parameters
-    ----------
-    response : ResponseCurve, Lut1D or RgbLut1D
-        The response, or its inverse as a LUT; of a LUT for each channel, green counts.
-    gray : float or None
-        The encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18.
-        By default white is the anchor: brightness 1 becomes a linear 1.
-    stops : float
-        Stops added on top of the anchor.
-
-    Raises
-    ------
-    LutError
-        If the gray is black in this response.
+    `response` may be the response or a LUT of its inverse; of a LUT for each channel, green counts. `gray` is the
+    encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18. By default
+    white is the anchor: brightness 1 becomes a linear 1. `stops` are added on top. Raise a LutError if the gray is
+    black.
     """
     if gray is None:
         return stops

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,41 +10,73 @@ from pathlib import Path
 from crfnet_core.files import atomic_write_text
 
 from ..errors import LutError
-from .clf import clf_text
-from .cube import cube_text
 from .opencolorio import read_lut
-from .rgb_lut import AnyLut
-from .spi1d import spi1d_text
+from .rgb_lut import AnyLut, table_rows
 
 __all__ = ["WRITERS", "LutFormat", "read_lut", "write_lut"]
 
 
 @dataclass(frozen=True)
 class LutFormat:
-    """A format that LUTs are written in.
-
-    Parameters
-    ----------
-    suffix : str
-        The suffix of its files, in lower case.
-    title : str
-        Its name in words.
-    text : callable
-        Returns a LUT as the text of a file, the comments of the LUT included; the same LUT gives the same text.
-    """
+    """A format that LUTs are written in: its suffix in lower case, its name in words, and the text of a LUT in it."""
 
     suffix: str
     title: str
     text: Callable[[AnyLut], str]
 
 
+def _spi1d_text(lut: AnyLut) -> str:
+    """Return a LUT as the text of a .spi1d file, with its comments at the top (OpenColorIO, `FileFormatSpi1D.cpp`)."""
+    low, high = lut.domain
+    lines = [f"# {comment}" for comment in lut.comments]
+    lines += ["Version 1", f"From {low:.9g} {high:.9g}", f"Length {len(lut.values)}", f"Components {len(lut.channels)}"]
+    lines += ["{", *(f"  {row}" for row in table_rows(lut)), "}", ""]
+    return "\n".join(lines)
+
+
+def _cube_text(lut: AnyLut) -> str:
+    """Return a LUT as the text of a 1D .cube file of three columns, with its comments at the top.
+
+    A domain other than [0, 1] is written as DOMAIN_MIN and DOMAIN_MAX.
+
+    Source: Adobe, "Cube LUT Specification 1.0", 2013; OpenColorIO, `FileFormatIridasCube.cpp`.
+    """
+    low, high = lut.domain
+    lines = [f"# {comment}" for comment in lut.comments] + [f"LUT_1D_SIZE {len(lut.values)}"]
+    if lut.domain != (0.0, 1.0):
+        lines += [f"DOMAIN_MIN {low:.9g} {low:.9g} {low:.9g}", f"DOMAIN_MAX {high:.9g} {high:.9g} {high:.9g}"]
+    return "\n".join([*lines, *table_rows(lut, columns=3), ""])
+
+
+def _clf_text(lut: AnyLut) -> str:
+    """Return a LUT as the text of a CLF 3.0 file: one LUT1D, after a Range if its domain is not [0, 1].
+
+    The id is a hash of the table and its domain, so equal LUTs have equal ids. OpenColorIO's `GroupTransform.write`
+    keeps only eight digits, so neighboring float32 values may become equal, and its output depends on its version.
+
+    Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 2136-1.
+    """
+    depth = 'inBitDepth="32f" outBitDepth="32f"'
+    lines = ['<?xml version="1.0" encoding="UTF-8"?>']
+    lines.append(f'<ProcessList xmlns="urn:AMPAS:CLF:v3.0" id="{lut.identity}" compCLFversion="3.0">')
+    lines += [f"    <Description>{html.escape(comment, quote=False)}</Description>" for comment in lut.comments]
+    if lut.domain != (0.0, 1.0):
+        ends = zip(("minInValue", "maxInValue", "minOutValue", "maxOutValue"), (*lut.domain, 0, 1), strict=True)
+        lines += [f"    <Range {depth}>", *(f"        <{key}>{end:.9g}</{key}>" for key, end in ends), "    </Range>"]
+    lines += [
+        f'    <LUT1D {depth} interpolation="linear">',
+        f'        <Array dim="{len(lut.values)} {len(lut.channels)}">',
+    ]
+    return "\n".join([*lines, *table_rows(lut), "        </Array>", "    </LUT1D>", "</ProcessList>", ""])
+
+
 #: The formats that are written, by suffix; each estimate writes all of them, and configs name the first.
 WRITERS = {
     each.suffix: each
     for each in (
-        LutFormat(".spi1d", "Sony Imageworks 1D", spi1d_text),
-        LutFormat(".cube", "Adobe and Resolve 1D cube", cube_text),
-        LutFormat(".clf", "Academy Common LUT Format", clf_text),
+        LutFormat(".spi1d", "Sony Imageworks 1D", _spi1d_text),
+        LutFormat(".cube", "Adobe and Resolve 1D cube", _cube_text),
+        LutFormat(".clf", "Academy Common LUT Format", _clf_text),
     )
 }
 

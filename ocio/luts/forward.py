@@ -20,22 +20,12 @@ MOST_ERROR = 0.1
 
 
 def forward_lut(lut: AnyLut) -> AnyLut:
-    """Return the response, from light to code values, of a LUT of its inverse.
+    """Return the response, from light to code values, of a LUT of its inverse whose domain holds [0, 1].
 
     The inputs are uniform from the light of code 0 to the light of the largest code; other light is clipped to these.
     An estimated response is linear between 1024 samples, so 1024 entries hold it. A response that is steeper in the
     blacks, as a power function is, needs more: the length is the first of `LENGTHS` whose `round_trip_error` at 10 bits
-    is at most `MOST_ERROR`, or the last.
-
-    Parameters
-    ----------
-    lut : Lut1D or RgbLut1D
-        The inverse response; its domain holds [0, 1].
-
-    Returns
-    -------
-    Lut1D or RgbLut1D
-        The response, with two comments before the comments of `lut`: the direction, and the error.
+    is at most `MOST_ERROR`, or the last. Two comments come before the LUT's own: the direction, and the error.
     """
     for length in LENGTHS:
         forward = _sampled(lut, length)
@@ -51,14 +41,9 @@ def forward_lut(lut: AnyLut) -> AnyLut:
 
 
 def round_trip_error(lut: AnyLut, forward: AnyLut, *, bits: int) -> float:
-    """Return the largest error of codes that went through an inverse response and back, in codes.
+    """Return the largest error, in codes of 8 to 16 bits, of all codes through an inverse response and back.
 
-    Parameters
-    ----------
-    lut, forward : Lut1D or RgbLut1D
-        The inverse response, and the response as a LUT.
-    bits : int
-        Bits of the codes, 8 to 16; the values between are float32, as in LUT hosts.
+    The values between the two LUTs are float32, as in LUT hosts.
     """
     largest = 2**bits - 1
     codes = np.arange(largest + 1, dtype=np.float32) / np.float32(largest)

@@ -66,8 +66,10 @@ class Lut1D(EqualByFields):
             raise LutError("lut_shape", most=MAX_LENGTH, shape=values.shape)
         if not (np.isfinite(low) and np.isfinite(high) and low < high):
             raise LutError("lut_domain", low=low, high=high)
-        entry = first_fault(values)
-        if entry is not None:
+        with np.errstate(invalid="ignore"):
+            is_faulty = ~np.isfinite(values) | (np.diff(values, prepend=-np.inf) <= 0)
+        if is_faulty.any():
+            entry = int(np.argmax(is_faulty))
             raise LutError("lut_entry", entry=entry, value=values[entry])
         if max(high - low, values[-1] - values[0]) > LARGEST_SPAN:
             raise LutError("lut_span", most=LARGEST_SPAN)
@@ -213,17 +215,9 @@ def inverse_response_lut(
 
 
 def strictly_increasing(values: ArrayLike) -> Float64Array:
-    """Return `values` rounded to float32, with equal neighbors moved apart by units in the last place.
+    """Return finite, increasing values, shape (N,), rounded to float32 and as float64, so that they increase strictly.
 
-    Parameters
-    ----------
-    values : array_like, shape (N,)
-        Finite and increasing, though perhaps no longer strictly as float32; the last entry stays as it is.
-
-    Returns
-    -------
-    ndarray, float64, shape (N,)
-        float32 values that increase strictly.
+    Neighbors that became equal are moved apart by units in the last place; the last entry stays as it is.
     """
     # The bits of positive float32 numbers, read as integers, are in the order of the numbers: + 1 is the next number.
     bits = single_precision(values).astype(np.float32).view(np.int32).astype(np.int64)
@@ -249,13 +243,6 @@ def clean_comments(comments: Iterable[str]) -> tuple[str, ...]:
     return tuple(comment for comment in cleaned if comment)
 
 
-def first_fault(values: Float64Array) -> int | None:
-    """Return the index of the first value that is not finite or not above the one before it, or None."""
-    with np.errstate(invalid="ignore"):
-        faults = np.flatnonzero(~np.isfinite(values) | (np.diff(values, prepend=-np.inf) <= 0))
-    return int(faults[0]) if faults.size else None
-
-
 def single_precision(values: ArrayLike) -> Float64Array:
     """Return `values` rounded to float32, as float64; subnormal numbers become 0."""
     with np.errstate(over="ignore"):
@@ -265,7 +252,7 @@ def single_precision(values: ArrayLike) -> Float64Array:
 
 def _floating(pixels: ArrayLike, *, last: float) -> NDArray[np.floating]:
     """Return float32 for half and single precision, float64 for everything else; refuse integers above `last`."""
-    given = np.asarray(pixels)
-    if given.dtype.kind in "iu" and given.size and given.max() > max(last, 1):
-        raise LutError("lut_codes", found=int(given.max()), last=last)
-    return given.astype(np.float32 if given.dtype in (np.float16, np.float32) else np.float64, copy=False)
+    numbers = np.asarray(pixels)
+    if numbers.dtype.kind in "iu" and numbers.size and numbers.max() > max(last, 1):
+        raise LutError("lut_codes", largest=int(numbers.max()), last=last)
+    return numbers.astype(np.float32 if numbers.dtype in (np.float16, np.float32) else np.float64, copy=False)

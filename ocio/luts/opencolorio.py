@@ -98,9 +98,9 @@ def _check_steps(path: Path, steps: list[OCIO.Transform]) -> None:
         OCIO.Lut1DTransform: "a table that adjusts hues or has half floats for inputs",
         OCIO.Lut3DTransform: "a 3D LUT",
     }
-    found = [names.get(type(step), type(step).__name__) for step in steps if not _keeps_channels(step)]
-    if found or not any(isinstance(step, OCIO.Lut1DTransform) for step in steps):
-        raise LutError("lut_not_1d", path=path, found=", ".join(found) or "no table")
+    others = [names.get(type(step), type(step).__name__) for step in steps if not _keeps_channels(step)]
+    if others or not any(isinstance(step, OCIO.Lut1DTransform) for step in steps):
+        raise LutError("lut_not_1d", path=path, steps=", ".join(others) or "no table")
 
 
 def _keeps_channels(step: OCIO.Transform) -> bool:

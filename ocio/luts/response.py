@@ -24,17 +24,7 @@ MOST_MEAN = 0.55
 
 @dataclass(frozen=True)
 class ResponseFile:
-    """The response in a LUT file.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    table : Lut1D or RgbLut1D
-        The LUT in the file.
-    lut : Lut1D or RgbLut1D
-        The inverse response, from code values to light.
-    """
+    """A LUT file: its table, and the inverse response, from code values to light, that the table is or stands for."""
 
     path: Path
     table: AnyLut
@@ -54,41 +44,25 @@ class ResponseFile:
 
 
 def read_response(path: str | Path) -> ResponseFile:
-    """Return the response in a LUT file of either direction; a LUT that brightens is inverted.
-
-    Raises
-    ------
-    LutError
-        As `read_lut`.
-    """
+    """Return the response in a LUT file of either direction; a LUT that brightens is inverted. Raises as `read_lut`."""
     path, table = Path(path), read_lut(path)
     if not is_forward(table):
         return ResponseFile(path, table, table)
     codes = np.linspace(0, 1, LUT_LENGTH)
     inverse = lut_of_channels([Lut1D(strictly_increasing(each.apply_inverse(codes))) for each in table.channels])
-    found = ResponseFile(path, table, inverse)
-    comments = (f"Read from {path.name}: {found.words}; this is its inverse", *table.comments)
-    return replace(found, lut=replace(inverse, comments=comments))
+    response = ResponseFile(path, table, inverse)
+    comments = (f"Read from {path.name}: {response.words}; this is its inverse", *table.comments)
+    return replace(response, lut=replace(inverse, comments=comments))
 
 
 def response_of_lut(lut: AnyLut) -> ResponseCurve:
-    """Return the response of which a LUT is the inverse, scaled so that brightness 1 is irradiance 1.
+    """Return the response whose inverse a LUT is, scaled so that brightness 1 is irradiance 1.
 
     Between its samples the response is linear, so its inverse is not quite the LUT: for the LUT of a response with the
     usual length, the two differ by less than 5e-5, white = 1.
 
-    Parameters
-    ----------
-    lut : Lut1D or RgbLut1D
-        From encoded brightness to linear light; the domain holds [0, 1].
-
-    Raises
-    ------
-    LutError
-        If the LUT treats the channels apart, the domain does not hold [0, 1], black is not 0, or the LUT brightens: it
-        then leads from light to codes.
-    CurveError
-        If the response does not increase strictly.
+    Raise a LutError if the LUT treats the channels apart, its domain does not hold [0, 1], black is not 0, or it
+    brightens: it then leads from light to codes. Raise a CurveError if the response does not increase strictly.
     """
     if isinstance(lut, RgbLut1D):
         raise LutError("lut_channels_differ")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from typing import TypeAlias
 
@@ -17,19 +17,9 @@ from .lut1d import Lut1D, clean_comments, table_identity
 
 @dataclass(frozen=True)
 class RgbLut1D:
-    """Three tables of one length and one domain, for R, G and B.
+    """Three tables of one length and one domain, for R, G and B, with provenance, one line a comment.
 
-    Parameters
-    ----------
-    channels : tuple of Lut1D
-        Three, in the order R, G, B; their own comments are dropped.
-    comments : tuple of str
-        Provenance, one line each.
-
-    Raises
-    ------
-    LutError
-        If there are not three, or they differ in length or domain.
+    Raise a LutError if there are not three, or they differ in length or domain.
     """
 
     channels: tuple[Lut1D, ...]
@@ -59,17 +49,13 @@ class RgbLut1D:
 
     def apply(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the output of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply`."""
-        return self._by_channel([channel.apply for channel in self.channels], pixels)
+        inputs = np.asarray(pixels)
+        return np.stack([lut.apply(inputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
     def apply_inverse(self, pixels: ArrayLike) -> NDArray[np.floating]:
         """Return the input of each channel, shape (..., 3), for pixels of that shape: see `Lut1D.apply_inverse`."""
-        return self._by_channel([channel.apply_inverse for channel in self.channels], pixels)
-
-    @staticmethod
-    def _by_channel(steps: Sequence[Callable[..., NDArray[np.floating]]], pixels: ArrayLike) -> NDArray[np.floating]:
-        """Return pixels, each channel through a step of its own."""
-        given = np.asarray(pixels)
-        return np.stack([step(given[..., channel]) for channel, step in enumerate(steps)], axis=-1)
+        outputs = np.asarray(pixels)
+        return np.stack([lut.apply_inverse(outputs[..., index]) for index, lut in enumerate(self.channels)], axis=-1)
 
 
 #: A LUT for all channels, or one for each.
@@ -84,21 +70,9 @@ def lut_of_channels(tables: Sequence[Lut1D]) -> AnyLut:
 def lut_of_columns(
     columns: ArrayLike, *, domain: tuple[float, float] = (0.0, 1.0), comments: Sequence[str] = ()
 ) -> AnyLut:
-    """Return the LUT of a table: one for all channels if its columns are equal, else one for each.
+    """Return the LUT of a table, shape (N, 1) or (N, 3): one for all channels if its columns are equal, else three.
 
-    Parameters
-    ----------
-    columns : array_like, shape (N, 1) or (N, 3)
-        Outputs at N uniform inputs; R, G and B.
-    domain : tuple of float
-        The first and the last input.
-    comments : sequence of str
-        Provenance.
-
-    Raises
-    ------
-    LutError
-        As `Lut1D`.
+    The inputs are N uniform ones over `domain`. Raises as `Lut1D`.
     """
     table = np.asarray(columns, dtype=np.float64)
     if (table == table[:, :1]).all():
@@ -109,12 +83,7 @@ def lut_of_columns(
 def table_rows(lut: AnyLut, *, columns: int = 0) -> list[str]:
     """Return the rows of a table with nine digits, which keep float32 values bit for bit.
 
-    Parameters
-    ----------
-    lut : Lut1D or RgbLut1D
-        The LUT.
-    columns : int
-        Values in each row; by default as many as the LUT has channels. A single one is repeated.
+    There are as many `columns` as the LUT has channels by default; a single value is repeated for more.
     """
     table = np.stack([channel.values for channel in lut.channels], axis=1)  # (N, 1) or (N, 3)
     if columns > 1:

@@ -33,16 +33,9 @@ WHITE = 65535
 
 @dataclass(frozen=True)
 class MovieFrames:
-    """Some frames of a movie, or all: a `FrameSource`.
+    """Some frames of a movie, or all, by ascending numbers from 1: a `FrameSource`.
 
-    Parameters
-    ----------
-    movie : MovieStream
-        See `read_stream`.
-    numbers : tuple of int
-        Numbers of the frames, ascending; the first frame of a movie has number 1.
-    missing : tuple of int
-        Numbers that were asked for and that the movie does not have.
+    `missing` holds the numbers that were asked for and that the movie does not have.
     """
 
     movie: MovieStream
@@ -51,19 +44,9 @@ class MovieFrames:
 
     @classmethod
     def find(cls, path: Path, frames: str | Iterable[int] | None = None) -> MovieFrames:
-        """Return the frames of a movie.
+        """Return the frames of a movie: those asked for, as in `parse_frames`, or all.
 
-        Parameters
-        ----------
-        path : Path
-            The movie.
-        frames : str, iterable of int, or None
-            The frames to use, as in `parse_frames`; all by default.
-
-        Raises
-        ------
-        PlateError
-            If the movie cannot be read, has none of the frames, or `frames` is malformed.
+        Raise a PlateError if the movie cannot be read, has none of the frames, or `frames` is malformed.
         """
         wanted = None if frames is None else parse_frames(frames)
         movie = read_stream(path)
@@ -105,20 +88,7 @@ class MovieFrames:
 
 
 def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, VideoFrame | None]]:
-    """Yield frames, ascending by number, each once; None for a frame that is damaged or absent.
-
-    Parameters
-    ----------
-    movie : MovieStream
-        See `read_stream`.
-    numbers : iterable of int
-        Numbers of frames, from 1.
-
-    Raises
-    ------
-    PlateError
-        If the movie cannot be opened any more.
-    """
+    """Yield frames, ascending by number from 1, each once; None for a frame that is damaged or absent."""
     pending = sorted(set(numbers), reverse=True)
     if not pending:
         return

@@ -65,10 +65,8 @@ def ffmpeg_line(path: Path, *, filters: str = "") -> str:
 def opened(path: Path) -> Iterator[tuple[InputContainer, VideoStream]]:
     """Yield a movie, opened, and the video stream that FFmpeg ranks best: not a cover or a thumbnail.
 
-    Raises
-    ------
-    PlateError
-        If PyAV is absent, the file is not a movie or holds no video, or, in the block, something cannot be decoded.
+    Raise a PlateError if PyAV is absent, the file is not a movie or holds no video, or something in the block cannot be
+    decoded.
     """
     try:
         import av

@@ -19,32 +19,13 @@ PlateSource = FrameSequence | MovieFrames
 
 
 def find_source(pattern: str | Path, frames: str | Iterable[int] | None = None) -> PlateSource:
-    """Return the frames that a name stands for: those of a movie, or what `find_frames` returns.
-
-    Parameters
-    ----------
-    pattern : str or Path
-        The name of a movie or of another file, or of a sequence with a placeholder for the frame number.
-    frames : str, iterable of int, or None
-        The frames to use, as in `parse_frames`; all by default.
-
-    Raises
-    ------
-    PlateError
-        If nothing is found, or `frames` is malformed or given for a single file that is no movie.
-    """
+    """Return the frames of a movie, or what `find_frames` returns for any other name; raises as these do."""
     path = Path(pattern)
     return MovieFrames.find(path, frames) if is_movie(path) else find_frames(pattern, frames)
 
 
 def file_source(path: Path, frames: str | Iterable[int] | None = None) -> PlateSource:
-    """Return the frames of a movie, or any other file by itself, which `frames` does not concern.
-
-    Raises
-    ------
-    PlateError
-        If it is a movie that cannot be read or has none of the frames, or `frames` is malformed.
-    """
+    """Return the frames of a movie, or any other file by itself, which `frames` does not concern."""
     return MovieFrames.find(path, frames) if is_movie(path) else FrameSequence((path,))
 
 
@@ -54,14 +35,9 @@ def movie_of(source: PlateSource) -> MovieStream | None:
 
 
 def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
-    """Yield the photographs from which the response of a source is estimated, each behind the source of it alone.
+    """Yield up to `FRAMES_ANALYZED` photographs, spread over a source, each behind a source of it alone.
 
-    They are up to `FRAMES_ANALYZED` frames, spread over it. One is in memory at a time.
-
-    Raises
-    ------
-    PhotoError
-        If a frame cannot be read.
+    One is in memory at a time. Raise a PhotoError if one cannot be read.
     """
     if isinstance(source, MovieFrames):
         return ((source.only(number), photo) for number, photo in chosen_photos(source))

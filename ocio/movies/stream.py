@@ -19,7 +19,7 @@ from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
 from .library import ffmpeg_line, opened, undecodable
-from .tags import IPT_PROFILE, color_tags, dolby_vision_profile
+from .tags import color_tags
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -43,27 +43,13 @@ FIRMWARE = ("com.apple.quicktime.software",)
 
 @dataclass(frozen=True)
 class Picture:
-    """The form of a frame's samples, which all frames of a movie have in common.
+    """The form of a frame's samples, which all frames of a movie have in common."""
 
-    Parameters
-    ----------
-    width, height : int
-        As stored.
-    samples : str
-        FFmpeg's name of the pixel format.
-    coding : Coding
-        How it codes RGB.
-    turn : Turn
-        How a stored picture becomes upright.
-    is_interlaced : bool
-        Whether a frame holds two fields.
-    """
-
-    width: int
+    width: int  # as stored
     height: int
-    samples: str
-    coding: Coding
-    turn: Turn
+    samples: str  # FFmpeg's name of the pixel format
+    coding: Coding  # of RGB
+    turn: Turn  # by which a stored picture becomes upright
     is_interlaced: bool
 
     @classmethod
@@ -87,42 +73,18 @@ class Picture:
 
 @dataclass(frozen=True)
 class MovieStream:
-    """The description of a movie.
-
-    Parameters
-    ----------
-    path : Path
-        The movie.
-    codec : str
-        Name of the codec.
-    picture : Picture
-        Of its first frame.
-    bit_depth : int
-        Bits per sample.
-    pixel_aspect : Fraction
-        Width of a pixel divided by its height, upright.
-    rate : Fraction
-        Frames per second, on average; 0 if unknown.
-    color : ColorTags
-        Primaries and transfer function as tagged.
-    metadata : mapping of str to str
-        Of the file and of its video, by FFmpeg's names in lower case.
-    frame_count : int
-        How many frames it holds.
-    key_numbers : tuple of int
-        Numbers of the frames that are decoded alone, ascending; the first frame of a movie has number 1.
-    """
+    """The description of a movie."""
 
     path: Path
     codec: str
-    picture: Picture
+    picture: Picture  # of the first frame
     bit_depth: int
-    pixel_aspect: Fraction
-    rate: Fraction
+    pixel_aspect: Fraction  # width of a pixel divided by its height, upright
+    rate: Fraction  # frames per second on average; 0 if unknown
     color: ColorTags
-    metadata: Mapping[str, str]
+    metadata: Mapping[str, str]  # of the file and of its video, by FFmpeg's names in lower case
     frame_count: int
-    key_numbers: tuple[int, ...]
+    key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
 
     def __str__(self) -> str:
         """Return one line for people: the movie, and the values taken for properties that it does not state."""
@@ -140,7 +102,7 @@ class MovieStream:
 
     @property
     def file_metadata(self) -> FileMetadata:
-        """The evidence beside the pixels, as of a photograph's file."""
+        """The metadata as a photograph's file has it."""
         width, height = self.picture.size
         make, model, software = map(self._text, (MAKES, MODELS, FIRMWARE))
         return FileMetadata(
@@ -160,12 +122,9 @@ class MovieStream:
 
 
 def check_progressive(movie: MovieStream) -> None:
-    """Refuse a movie whose frames hold two fields: how they become one picture is the user's to choose.
+    """Raise a PlateError, with the line by which FFmpeg deinterlaces, if the frames of a movie hold two fields.
 
-    Raises
-    ------
-    PlateError
-        If it is interlaced, with the line by which FFmpeg deinterlaces it.
+    How they become one picture is the user's to choose.
     """
     if movie.picture.is_interlaced:
         line = ffmpeg_line(movie.path, filters="bwdif=send_frame")
@@ -175,17 +134,13 @@ def check_progressive(movie: MovieStream) -> None:
 def read_stream(path: Path) -> MovieStream:
     """Return the description of a movie; reads it to its end, but decodes the first frame only.
 
-    Raises
-    ------
-    PlateError
-        If PyAV is absent, or the movie is damaged, too large, or codes its pictures in a way that is not read.
+    Raise a PlateError if PyAV is absent, or the movie is damaged, too large, or codes its pictures in a way that is not
+    read.
     """
     with opened(path) as (container, stream):
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:
             raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
-        if dolby_vision_profile(stream) == IPT_PROFILE:
-            raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         packets, frame = _survey(container, stream)
         if frame is None:
             raise undecodable(path, "it holds no frame")

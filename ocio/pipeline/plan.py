@@ -7,10 +7,10 @@ from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..configs.files import loaded_or_empty
-from ..configs.plate_color_space import PlateColorSpace
-from ..configs.plates import plates_in_config
+from ..configs.files import load_config
+from ..configs.plate_color_space import PlateColorSpace, plates_in_config
 from ..configs.portable import portable_config
+from ..errors import ConfigError
 from ..options import OutputOptions, PlateOptions
 from ..output_files import OutputFiles, check_outputs
 from .photographs import check_distinct
@@ -129,7 +129,7 @@ def stale_files(files: OutputFiles, photos: Sequence[Path], *, is_measured: bool
 
 def _other_spaces(files: OutputFiles) -> tuple[str, ...]:
     """Return the color spaces of other plates in the config that is there; none if it cannot be read."""
-    with suppress(UnicodeError):  # a name, or the error's text, may not be UTF-8
-        plates = plates_in_config(loaded_or_empty(files.config))
+    with suppress(ConfigError, UnicodeError):  # a name, or the error's text, may not be UTF-8
+        plates = plates_in_config(load_config(files.config))
         return tuple(plate.name for plate in plates if plate.name != files.color_space)
     return ()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Protocol, TypeAlias
@@ -12,6 +12,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
+from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
@@ -29,30 +30,14 @@ UNTAGGED = ("", "unknown", "data")
 
 @dataclass(frozen=True, eq=False)
 class EncodedFrame:
-    """The samples of a frame before its linearization.
+    """The samples of a frame before its linearization."""
 
-    Parameters
-    ----------
-    samples : ndarray, shape (H, W, 3)
-        Code values (unsigned integers), or encoded values in [0, 1] and beyond as float32; not multiplied by alpha.
-    largest : int
-        The code that stands for brightness 1; 1 for floats.
-    alpha : ndarray, float32, shape (H, W), or None
-        Coverage in [0, 1], or other data.
-    header : OpenImageIO.ImageSpec
-        The header of the file.
-    color : ColorTags
-        Its tags of primaries.
-    is_coverage : bool
-        Whether alpha is coverage, by which linear colors are multiplied; otherwise it is data, a channel of its own.
-    """
-
-    samples: NDArray[Any]
-    largest: int
-    alpha: Float32Array | None
-    header: Any
+    samples: NDArray[Any]  # (H, W, 3): codes, or encoded values as float32 in [0, 1] and beyond; not times alpha
+    largest: int  # the code of brightness 1; 1 for floats
+    alpha: Float32Array | None  # (H, W): coverage in [0, 1], or other data
+    header: Any  # the file's OpenImageIO.ImageSpec
     color: ColorTags = field(default_factory=ColorTags)
-    is_coverage: bool = True
+    is_coverage: bool = True  # whether linear colors are multiplied by alpha
 
 
 #: Returns a frame; raises a `CRFNetError` if it cannot be read.
@@ -75,26 +60,44 @@ class FrameSource(Protocol):
         """Numbers of frames that are asked for and not there."""
 
     def loaders(self, positions: Sequence[int]) -> Iterator[FrameLoader]:
-        """Yield what returns each frame, for ascending positions in `numbers`; a loader may be called in any thread."""
+        """Yield a loader of each frame, for ascending positions in `numbers`; it may be called in any thread."""
+
+
+@dataclass(frozen=True, eq=False)
+class FirstFrame:
+    """The first frame that can be read, its position in the source and its file, so that it is not read twice."""
+
+    position: int
+    path: Path
+    frame: EncodedFrame
+
+    @property
+    def size(self) -> tuple[int, int]:
+        """Its width and height in pixels."""
+        return self.frame.header.width, self.frame.header.height
+
+
+def first_frame(sequence: FrameSource) -> FirstFrame | None:
+    """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
+    for position, load in enumerate(sequence.loaders(range(max(1, len(sequence.numbers))))):
+        with suppress(CRFNetError):
+            return FirstFrame(position, frame_path(sequence, position), load())
+    return None
+
+
+def frame_path(sequence: FrameSource, position: int) -> Path:
+    """Return the file of a frame; all frames of a movie have one file."""
+    return sequence.paths[min(position, len(sequence.paths) - 1)]
 
 
 def read_frame(path: Path, *, is_encoded: bool = False, is_associated: bool | None = None) -> EncodedFrame:
-    """Return the encoded samples of one frame.
+    """Return the encoded samples of one frame: of a file that `read_photo` can read, or of OpenEXR with encoded values.
 
-    Parameters
-    ----------
-    path : Path
-        A file that `crfnet_core.read_photo` can read, or an OpenEXR file that holds encoded values.
-    is_encoded : bool
-        Whether the file holds encoded values, although it is OpenEXR and does not say so, or its tag is linear.
-    is_associated : bool or None
-        Whether the stored samples are multiplied by alpha, and so are divided by it; by default as the file says.
+    `is_encoded` accepts OpenEXR that does not state its encoding, and a tag that says linear. `is_associated` says
+    whether the samples are multiplied by alpha, and so are divided by it; by default as the file says.
 
-    Raises
-    ------
-    PhotoError, PlateError
-        If the file is damaged, too large, of another format, scene-linear already, or an OpenEXR file that does not say
-        so while `is_encoded` is not set.
+    Raise a PhotoError or PlateError if the file is damaged, too large, of another format, scene-linear already, or
+    OpenEXR that does not state its encoding.
     """
     if path.suffix.lower() == ".exr":
         return _read_encoded_exr(path, is_encoded=is_encoded, is_divided=is_associated is not False)
@@ -125,22 +128,10 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
-        _seek_colors(source)
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
     finally:
         source.close()
-
-
-def _seek_colors(source: Any) -> None:
-    """Go to the first part that holds R, G and B; stay at the first if none does."""
-    part = 0
-    while source.seek_subimage(part, 0):
-        if set(source.spec().channelnames) >= set("RGB"):
-            return
-        part += 1
-    source.seek_subimage(0, 0)
-    oiio_message(source)
 
 
 def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
@@ -166,7 +157,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 def _plane(source: Any, channel: int) -> Float32Array | None:
     """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
+    plane = source.read_image(0, 0, channel, channel + 1, "float")
     return None if plane is None else np.asarray(plane)[..., 0]
 
 

@@ -19,35 +19,28 @@ MAX_FRAMES = 1_000_000
 def parse_frames(frames: str | Iterable[int]) -> tuple[int, ...]:
     """Return the frame numbers of a specification, ascending and each once.
 
-    Parameters
-    ----------
-    frames : str or iterable of int
-        Numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2" (every second), "1,5,9",
-        "-3--1". A range may run backwards; the frames come in ascending order all the same.
-
-    Raises
-    ------
-    PlateError
-        If it is malformed, holds parts of frames, or there are more than `MAX_FRAMES` frames.
+    They are numbers, or a text of numbers and ranges, separated by commas, as Fileseq reads them: "1001-1100", "1-10x2"
+    (every second), "1,5,9", "-3--1", also backwards. Raise a PlateError if it is malformed, holds parts of frames, or
+    there are more than `MAX_FRAMES` frames.
     """
     if not isinstance(frames, str):
         return tuple(sorted({index(number) for number in frames}))
     from fileseq.exceptions import MaxSizeException, ParseException  # only here: see the module
     from fileseq.frameset import FrameSet
 
-    found: Collection[Any] = ()
+    numbers: Collection[Any] = ()
     try:
         if frames.isascii() and all(frames.split(",")):
-            found = FrameSet(frames)
+            numbers = FrameSet(frames)
     except MaxSizeException:
-        found = range(MAX_FRAMES + 1)
+        numbers = range(MAX_FRAMES + 1)
     except ParseException:
-        found = ()
-    if len(found) > MAX_FRAMES:
+        numbers = ()
+    if len(numbers) > MAX_FRAMES:
         raise PlateError("too_many_frames", frames=frames, most=MAX_FRAMES)
-    if not found or any(number != int(number) for number in found):
+    if not numbers or any(number != int(number) for number in numbers):
         raise PlateError("bad_frames", frames=frames)
-    return tuple(sorted(map(int, found)))
+    return tuple(sorted(map(int, numbers)))
 
 
 def format_frames(numbers: Sequence[int], limit: int = 5) -> str:

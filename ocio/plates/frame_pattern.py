@@ -12,57 +12,26 @@ from pathlib import Path
 
 from ..errors import PlateError
 
-_END = r"--?[0-9]{1,9}(?:x[0-9]{1,9})?"
-
-#: Frames in a name: ranges with a step or without, separated by commas; the first of them is no single frame.
-_RANGES = rf"-?[0-9]{{1,9}}{_END}(?:,-?[0-9]{{1,9}}(?:{_END})?)*"
-
 #: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
-#: Before the placeholder may be the frames, as in shot.1001-1100#.png; shot.[1001-1100].png is the frames alone.
-_PLACEHOLDERS = (
-    *(
-        re.compile(rf"(?:(?<![^._ ])(?P<frames>{_RANGES}))?(?P<mark>{mark})")
-        for mark in ("%(?:0[0-9]{1,2})?d", r"\$F[0-9]{0,2}(?![A-Z])", "#+", "@+")
-    ),
-    re.compile(rf"\[(?P<frames>{_RANGES})\](?P<mark>)"),
-)
+_PLACEHOLDERS = tuple(map(re.compile, (r"%(?:0[0-9]{1,2})?d", r"\$F[0-9]{0,2}(?![A-Z])", "#+", "@+")))
 
 
 @dataclass(frozen=True)
 class FramePattern:
-    """A file name with one frame placeholder.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder of the files.
-    prefix, suffix : str
-        The parts of the name before and after the frame number.
-    width : int
-        Digits to which the number is padded with zeros.
-    frames : str
-        The frames that the name itself asks for, such as "1001-1100"; empty for all.
-    """
+    """A file name with a placeholder for the frame number, which is padded with zeros to `width` digits."""
 
     folder: Path
     prefix: str
     width: int
     suffix: str
-    frames: str = ""
 
     @classmethod
     def parse(cls, pattern: str | Path) -> FramePattern | None:
         """Return the pattern, or None for a name without a placeholder.
 
         `%04d`, `$F4` and `####` pad to four digits, `@@@` to three; `%d` and `$F` do not pad. A single `#` means four
-        digits, as in oiiotool and RV; several mean as many digits, as in Nuke. `shot.1001-1100#.png` and
-        `shot.[1001-1100].png` ask for some of the frames; the second pads as its first number does. Placeholders in
-        the name of the folder do not count.
-
-        Raises
-        ------
-        PlateError
-            If the name holds several placeholders of the same kind.
+        digits, as in oiiotool and RV; several mean as many digits, as in Nuke. Placeholders in the name of the folder
+        do not count. Raise a PlateError if there are several placeholders of the same kind.
         """
         path = Path(pattern)
         for placeholder in _PLACEHOLDERS:
@@ -71,8 +40,7 @@ class FramePattern:
                 raise PlateError("several_placeholders", path=path, count=len(matches))
             if matches:
                 start, end = matches[0].span()
-                frames = matches[0]["frames"] or ""
-                return cls(path.parent, path.name[:start], _width(matches[0]["mark"], frames), path.name[end:], frames)
+                return cls(path.parent, path.name[:start], _width(matches[0][0]), path.name[end:])
         return None
 
     def path(self, number: int) -> Path:
@@ -97,10 +65,8 @@ def listed(folder: Path) -> list[Path]:
         raise PlateError("cannot_list", folder=folder, problem=problem.strerror) from problem
 
 
-def _width(mark: str, frames: str) -> int:
-    """Return the number of digits to which a placeholder pads; without one, to those of the first frame."""
-    if not mark:
-        return len(re.split(r"(?<=[0-9])\D", frames)[0])
+def _width(mark: str) -> int:
+    """Return the number of digits to which a placeholder pads."""
     if mark[0] in "%$":
         return int(mark.strip("%d$F") or 1)
     return 4 if mark == "#" else len(mark)

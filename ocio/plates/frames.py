@@ -23,18 +23,10 @@ _NO_SEQUENCE = {"folder": "folder_without_sequence", "file": "single_file", "": 
 
 @dataclass(frozen=True)
 class FrameSequence:
-    """The files that a name or a pattern stands for.
+    """The files that a name or a pattern stands for, in the order of their frame numbers; at least one.
 
-    Parameters
-    ----------
-    paths : tuple of Path
-        The files, in the order of their frame numbers; at least one.
-    numbers : tuple of int
-        The frame number of each; empty for a single file, which has none.
-    missing : tuple of int
-        Frame numbers asked for, or between the first and the last, for which there is no file.
-    is_encoded : bool
-        Whether OpenEXR files that do not say how their values are encoded hold encoded values.
+    A single file has no numbers. `missing` holds the frame numbers asked for, or between the first and the last, for
+    which there is no file. `is_encoded` says that OpenEXR files that do not state their encoding hold encoded values.
     """
 
     paths: tuple[Path, ...]
@@ -48,22 +40,13 @@ class FrameSequence:
 
 
 def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) -> FrameSequence:
-    """Return the files that `pattern` stands for.
+    """Return the files of a single file's name, of a pattern (`FramePattern.parse`), or of a folder with one sequence.
 
-    Parameters
-    ----------
-    pattern : str or Path
-        The name of one file, of a sequence with a placeholder for the frame number (see `FramePattern.parse`), or of a
-        folder that holds one sequence. An existing file of exactly this name is taken first, so the name of a single
-        file may hold `#` or `@`.
-    frames : str, iterable of int, or None
-        The frames to use, as in `parse_frames`; by default those that the pattern names, or all existing ones.
+    An existing file of exactly this name is taken first, so the name of a single file may hold `#` or `@`. `frames`, as
+    in `parse_frames`, are by default all existing ones.
 
-    Raises
-    ------
-    PlateError
-        If nothing is found, `frames` is given for a single file or beside frames in the pattern or is malformed, or a
-        folder holds several sequences or none.
+    Raise a PlateError if there are none, `frames` is malformed or comes with a single file, or a folder holds several
+    sequences or none.
     """
     path = Path(pattern)
     kind = _kind(path)
@@ -72,18 +55,13 @@ def find_frames(pattern: str | Path, frames: str | Iterable[int] | None = None) 
     parsed = _only_sequence(path) if kind == "folder" else FramePattern.parse(path)
     if parsed is None:
         raise PlateError(_NO_SEQUENCE[kind], path=path)
-    if parsed.frames and frames is not None:
-        raise PlateError("frames_twice", path=path, frames=parsed.frames)
-    return pattern_frames(parsed, frames if frames is not None else parsed.frames or None, name=path)
+    return pattern_frames(parsed, frames, name=path)
 
 
 def pattern_frames(
     pattern: FramePattern, frames: str | Iterable[int] | None = None, *, name: str | Path
 ) -> FrameSequence:
-    """Return the files of a pattern, for a caller that knows the parts of the name; see `find_frames`.
-
-    Messages call it `name`. The frames that the pattern names itself do not count.
-    """
+    """Return the files of a pattern that messages call `name`; see `find_frames`."""
     files = pattern.files()
     wanted = _span(files, Path(name)) if frames is None else parse_frames(frames)
     numbers = tuple(number for number in wanted if number in files)
@@ -106,10 +84,8 @@ def _only_sequence(folder: Path) -> FramePattern:
     from fileseq.filesequence import FileSequence  # only here: see the module
 
     names = [path.name for path in listed(folder) if not path.name.startswith(".") and path.is_file()]
-    sequences = [found for found in FileSequence.findSequencesInList(sorted(names)) if len(found) > 1]
-    patterns = [
-        _pattern(folder, found.basename(), found.zfill(), found.extension(), found.start()) for found in sequences
-    ]
+    sequences = [each for each in FileSequence.findSequencesInList(sorted(names)) if len(each) > 1]
+    patterns = [_pattern(folder, each.basename(), each.zfill(), each.extension(), each.start()) for each in sequences]
     if len(patterns) == 1:
         return patterns[0]
     if not patterns:

@@ -32,34 +32,16 @@ SAME_EXPOSURE = 1e-3
 
 @dataclass(frozen=True)
 class PlateLight:
-    """The meaning of the numbers in a linear plate.
+    """The meaning of the numbers in a linear plate."""
 
-    Parameters
-    ----------
-    lut : Lut1D or RgbLut1D
-        The inverse response.
-    stops : float
-        The exposure: stops added after it.
-    plate : PlatePrimaries
-        The primaries of the encoded plate.
-    space : LinearSpace
-        The space of the linear values.
-    """
-
-    lut: AnyLut
-    stops: float
+    lut: AnyLut  # the inverse response
+    stops: float  # added after it
     plate: PlatePrimaries
-    space: LinearSpace
+    space: LinearSpace  # of the linear values
 
     @classmethod
     def of(cls, tags: ColorTags, lut: AnyLut, options: PlateOptions) -> PlateLight:
-        """Return the light that a plate with these tags has under the options.
-
-        Raises
-        ------
-        CRFNetError
-            If the gray is black, or unknown primaries are to be converted.
-        """
+        """Return the light of a plate with these tags; raises as `anchored_exposure` and `linear_space`."""
         plate = plate_primaries(tags, options.primaries)
         stops = anchored_exposure(lut, gray=options.gray, stops=options.exposure)
         return cls(lut, stops, plate, linear_space(plate, options.output_space))
@@ -68,7 +50,8 @@ class PlateLight:
     def attributes(self) -> dict[str, str | float | tuple[float, ...]]:
         """The attributes of the OpenEXR file by name; those that would be empty are left out.
 
-        Beside an interop name there are no chromaticities (Color Interop Forum's recommendation for OpenEXR).
+        Chromaticities are left out where the space has an interop name (Color Interop Forum, "Identifying the Color
+        Space of OpenEXR Files", section "Writing OpenEXR Files").
         """
         attributes: dict[str, str | float | tuple[float, ...]] = {
             "colorInteropID": self.space.interop_id,
@@ -85,23 +68,10 @@ class PlateLight:
 def check_finished(
     frames: Iterable[Path], light: PlateLight, depth: str, *, sizes: Mapping[Path, tuple[int, int]] | None = None
 ) -> None:
-    """Check that finished frames mean the same, and have the same sample type, as those that will stand beside them.
+    """Raise a PlateError unless finished frames mean the same, and have the same sample type, as the new ones.
 
-    Files that say nothing, or cannot be read, pass: they were not written by this command.
-
-    Parameters
-    ----------
-    frames : iterable of Path
-        The finished frames.
-    light, depth : PlateLight and str
-        What the numbers mean, and the sample type.
-    sizes : mapping, optional
-        Width and height of the plates of frames where they are known: another size is that of another plate.
-
-    Raises
-    ------
-    PlateError
-        If a frame has another exposure, LUT, space, sample type or size, or was made of other primaries.
+    A frame differs if it has another exposure, LUT, space, sample type or size, or was made of other primaries. `sizes`
+    holds the width and height of the plates that are known. Files without our attributes, or unreadable, pass.
     """
     for path in frames:
         written = _attributes(path)
@@ -131,7 +101,7 @@ def _attributes(path: Path) -> dict[str, Any]:
         return {}
     try:
         header = source.spec()
-        own = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
-        return {attribute.name: attribute.value for attribute in header.extra_attribs} | own
+        form = {_DEPTH: str(header.format), _SIZE: (header.width, header.height)}
+        return {attribute.name: attribute.value for attribute in header.extra_attribs} | form
     finally:
         source.close()

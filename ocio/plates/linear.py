@@ -25,8 +25,7 @@ from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
 from ..staging import STALE_SECONDS
 from .exr import SAMPLE_TYPES, linear_header, write_exr
-from .first_frame import FirstFrame, first_frame, frame_path
-from .frame_files import EncodedFrame, FrameLoader, FrameSource
+from .frame_files import EncodedFrame, FirstFrame, FrameLoader, FrameSource, first_frame, frame_path
 from .frame_numbers import format_frames
 from .frame_pattern import FramePattern
 from .frames import FrameSequence
@@ -45,19 +44,7 @@ _LEFTOVER = re.compile(r"\.(.+)\.[a-z0-9_]{8}(\.exr)", re.IGNORECASE)  # the tem
 
 @dataclass(frozen=True)
 class PlateReport:
-    """Which frames were written.
-
-    Parameters
-    ----------
-    written : tuple of Path
-        The files written by this run.
-    skipped : tuple of Path
-        The files that existed already and were left alone.
-    missing : tuple of int
-        Numbers of the frames for which there is no plate.
-    light : PlateLight
-        What the numbers in the files mean.
-    """
+    """The files that a run wrote, the finished files that it left alone, the numbers without a plate, and the light."""
 
     written: tuple[Path, ...]
     skipped: tuple[Path, ...]
@@ -68,17 +55,8 @@ class PlateReport:
 def linear_targets(out: str | Path, sequence: FrameSource) -> tuple[Path, ...]:
     """Return the linear EXR file of every frame, in the order of the frames; looks at no folder.
 
-    Parameters
-    ----------
-    out : str or Path
-        The .exr file, or for a sequence its pattern, such as `plate.%04d.exr` or `plate.####.exr`.
-    sequence : FrameSource
-        The plates, as `find_frames` returns them, or those of a movie.
-
-    Raises
-    ------
-    PlateError
-        If the name does not end in .exr, has no placeholder for the frames of a sequence, or is that of a plate.
+    `out` is the .exr file, or for a sequence its pattern, such as `plate.%04d.exr`. Raise a PlateError if it does not
+    end in .exr, has no placeholder for the frames of a sequence, or names a plate.
     """
     out = Path(out)
     if out.suffix.lower() != ".exr":
@@ -107,43 +85,22 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    Plates are whatever `read_frame` reads; an EXR file that calls itself linear in `colorInteropID` is refused, as is
-    one that says nothing, unless `is_encoded` is set: most of these are linear. Gray becomes RGB. Alpha is kept: the
-    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires
-    of coverage.
-    Pixels are upright where the reader turns them, and the metadata that remains true is kept.
-    The output is compressed with zips, says what its values mean (`PlateLight`), and has the same bytes in every run.
-    The matrix leads from the plate's primaries to the space asked for; what it makes negative stays negative.
+    `targets`, one a frame, come from `linear_targets`; their folder must exist. Gray becomes RGB. Alpha is kept: the
+    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires of
+    coverage. Pixels are upright where the reader turns them. The matrix leads from the plate's primaries to the space
+    asked for; negative values stay. The output is compressed with zips and has the same bytes in every run.
 
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
     unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure, space or
     depth is refused then. A frame that another process finishes meanwhile is left alone too, and checked in the same
     way. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
-    Missing frames are only reported, and a frame that fails does not stop the others. Only the frames that are worked
-    on are in memory.
 
-    Parameters
-    ----------
-    sequence : FrameSource
-        The plates, as `find_frames` returns them, or those of a movie.
-    targets : sequence of Path
-        The files to be written, one per frame, as `linear_targets` returns them; their folder must exist.
-    lut : Lut1D or RgbLut1D
-        The inverse response: encoded brightness to linear irradiance.
-    options : PlateOptions
-        Sample type, exposure, primaries, space, and whether finished frames are written again.
-    workers : int or None
-        Frames linearized at a time; by default one per core, up to `MAX_WORKERS`.
-    progress : callable or None
-        Called in this thread with the number of finished (and skipped) frames, and of all. What it raises ends the
-        run after the frames that have begun; the temporary files are gone then.
+    Missing frames are only reported, and a frame that fails does not stop the others. `workers` frames, by default one
+    a core, up to `MAX_WORKERS`, are in memory. `progress` is called in this thread with the number of finished (and
+    skipped) frames, and of all. An exception from it ends the run after the frames that have begun.
 
-    Raises
-    ------
-    PlateError
-        If a target cannot be written, an option is out of range, finished frames mean something else, the primaries
-        are unknown and have to be converted, or, after all others are written, some frames failed: the message names
-        them.
+    Raise a CRFNetError before any frame is written if an option is out of range, the output does not fit the depth, or
+    finished frames differ; at the end if frames failed: it names them, and holds the first reason.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if options.is_encoded and isinstance(sequence, FrameSequence):

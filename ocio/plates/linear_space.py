@@ -20,15 +20,7 @@ TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": A
 
 @dataclass(frozen=True)
 class LinearSpace:
-    """The space of linear values.
-
-    Parameters
-    ----------
-    source : Primaries or None
-        The primaries of the encoded plate; None if they are not known.
-    target : Primaries or None
-        The primaries of the linear values; None if they are not known.
-    """
+    """The space of linear values: the primaries of the encoded plate, and of the values; None if they are not known."""
 
     source: Primaries | None
     target: Primaries | None
@@ -60,22 +52,11 @@ class LinearSpace:
 
 
 def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
-    """Return the space of a plate's linear values.
+    """Return the space of a plate's linear values; `output` is one of `TARGETS`.
 
     The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
-    back. A plate of unknown primaries is left as it is, and its space is unknown.
-
-    Parameters
-    ----------
-    plate : PlatePrimaries
-        The primaries of the encoded plate.
-    output : {"scene_linear", "plate", "ACEScg", "ACES2065-1"}
-        The space asked for.
-
-    Raises
-    ------
-    PlateError
-        If there is no such space, or unknown primaries are to be converted to ACES.
+    back. A plate of unknown primaries is left as it is, and its space is unknown. Raise a PlateError if there is no
+    such space, or unknown primaries are to be converted to ACES.
     """
     if output not in TARGETS:
         raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))

@@ -14,16 +14,8 @@ def finished(
 ) -> Generator[tuple[Name, Future[None]]]:
     """Yield named jobs as they finish, in threads.
 
-    Close the iterator to end early: jobs that have begun are finished, the others dropped.
-
-    Parameters
-    ----------
-    jobs : iterable of (name, callable)
-        Taken in this thread, one at a time, when there is room.
-    workers : int
-        Jobs that run at a time.
-    waiting : int
-        Jobs that are taken beyond these, so that no thread waits for the next one.
+    Jobs are taken in this thread, one at a time, while fewer than `workers` run and `waiting` wait, so that no thread
+    waits for the next one. Close the iterator to end early: jobs that have begun are finished, the others dropped.
     """
     pool = ThreadPoolExecutor(workers, thread_name_prefix="plate")
     running: dict[Future[None], Name] = {}

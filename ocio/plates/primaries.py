@@ -1,4 +1,4 @@
-"""The primaries of an encoded plate: as its file tags them, as the user says, or by convention."""
+"""The primaries of an encoded plate: as its file tags them, as the user states, or by convention."""
 
 from __future__ import annotations
 
@@ -18,14 +18,9 @@ CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
 
 @dataclass(frozen=True)
 class PlatePrimaries:
-    """The primaries in which a plate is encoded.
+    """The primaries of a plate, None if its file names some that cannot be expressed, and the source that states them.
 
-    Parameters
-    ----------
-    primaries : Primaries or None
-        None if the file says something that cannot be expressed by primaries.
-    source : str
-        Who says so: "ICC profile", "CICP", "EXIF", `CHOSEN` or `BY_CONVENTION`.
+    Sources are "ICC profile", "CICP", "EXIF", `CHOSEN` or `BY_CONVENTION`.
     """
 
     primaries: Primaries | None
@@ -42,19 +37,10 @@ class PlatePrimaries:
 
 
 def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimaries:
-    """Return the primaries of a plate.
+    """Return the primaries of a plate by its tags, or by a choice: "rec709", "p3", "adobe", "prophoto" or "rec2020".
 
-    Parameters
-    ----------
-    tags : ColorTags
-        What its file says.
-    choice : {"auto", "rec709", "p3", "adobe", "prophoto", "rec2020"}
-        "auto" goes by the tags, and takes a file without any for Rec.709, as the sRGB standard has it.
-
-    Raises
-    ------
-    PlateError
-        If there is no such choice.
+    "auto" goes by the tags, and takes a file without any for Rec.709, as the sRGB standard has it. Raise a PlateError
+    if there is no such choice.
     """
     if choice in PHOTOGRAPHIC:
         return PlatePrimaries(PHOTOGRAPHIC[choice], CHOSEN)
@@ -64,20 +50,14 @@ def plate_primaries(tags: ColorTags, choice: str = PRIMARIES[0]) -> PlatePrimari
 
 
 def common_primaries(tags: Mapping[Path, ColorTags], choice: str = PRIMARIES[0]) -> PlatePrimaries:
-    """Return the primaries that several plates have in common; see `plate_primaries`.
-
-    Raises
-    ------
-    PlateError
-        If two plates differ.
-    """
-    (first, found), *others = ((path, plate_primaries(each, choice)) for path, each in tags.items())
-    for path, other in others:
-        check_same_primaries(path, other, first, found)
-    return found
+    """Return the primaries that several plates have in common; raise a PlateError if two differ."""
+    (first, expected), *others = ((path, plate_primaries(each, choice)) for path, each in tags.items())
+    for path, primaries in others:
+        check_same_primaries(path, primaries, first, expected)
+    return expected
 
 
-def check_same_primaries(path: Path, found: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
+def check_same_primaries(path: Path, plate: PlatePrimaries, first: Path, expected: PlatePrimaries) -> None:
     """Raise a PlateError if a plate has other primaries than the first one that it goes together with."""
-    if found.primaries != expected.primaries:
-        raise PlateError("primaries_differ", path=path, primaries=found, first=first.name, expected=expected)
+    if plate.primaries != expected.primaries:
+        raise PlateError("primaries_differ", path=path, primaries=plate, first=first.name, expected=expected)

@@ -25,8 +25,8 @@ def add(commands: Commands) -> None:
         "plates",
         nargs="+",
         metavar="PLATES",
-        help="a file, a movie, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png,"
-        " shot.1001-1100#.png; with --each photographs and folders of them",
+        help="a file, a movie, a folder of one sequence, or a sequence: shot.%%04d.png, shot.####.png;"
+        " with --each photographs and folders of them",
     )
     parser.add_argument(
         "--out",

@@ -8,7 +8,7 @@ from dataclasses import asdict
 
 from ...configs.derived import write_derived_config
 from ...configs.looks import read_looks
-from ...configs.plates import PlateInConfig, plates_in_config
+from ...configs.plate_color_space import PlateInConfig, plates_in_config
 from ...configs.sources import find_config
 from .printing import print_json, print_lines
 

@@ -99,19 +99,6 @@ def test_a_file_tagged_linear_is_refused(tmp_path):
     assert read_frame(path, is_encoded=True).largest == 255
 
 
-def test_the_part_with_colors_is_read_and_no_other_channel(tmp_path):
-    depth, color = oiio.ImageSpec(4, 4, 1, "float"), oiio.ImageSpec(4, 4, 4, "half")
-    depth.channelnames, color.channelnames = ("Z",), ("id", "B", "G", "R")
-    output = oiio.ImageOutput.create("a.exr")
-    assert output.open(str(tmp_path / "a.exr"), (depth, color))
-    output.write_image(np.full((4, 4, 1), 9, np.float32))
-    output.open(str(tmp_path / "a.exr"), color, "AppendSubimage")
-    output.write_image(np.broadcast_to(np.float32([7, 0.25, 0.5, 0.75]), (4, 4, 4)).copy())
-    output.close()
-    frame = read_frame(tmp_path / "a.exr", is_encoded=True)
-    assert frame.samples[0, 0].tolist() == [0.75, 0.5, 0.25]
-
-
 @pytest.mark.parametrize("channel", ["Z", "id", "mask.R"])
 def test_a_channel_of_another_name_is_not_gray(tmp_path, channel):
     path = write_exr(tmp_path / "a.exr", np.ones((4, 4, 1)), (channel,))

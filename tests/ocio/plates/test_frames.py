@@ -51,30 +51,12 @@ def test_a_pattern_keeps_the_folder(tmp_path):
     assert FramePattern.parse(tmp_path / "shot_####" / "a.##.png").path(5) == tmp_path / "shot_####" / "a.05.png"
 
 
-@pytest.mark.parametrize(
-    ("pattern", "name", "frames"),
-    [
-        ("shot.1001-1100#.png", "shot.0007.png", "1001-1100"),
-        ("shot.1001-1100@@@@@.png", "shot.00007.png", "1001-1100"),
-        ("shot.1-9x2%03d.png", "shot.007.png", "1-9x2"),
-        ("shot.1-9,20,30-40$F2.png", "shot.07.png", "1-9,20,30-40"),
-        ("shot_-5-5####.png", "shot_0007.png", "-5-5"),
-        ("shot.[1001-1100].png", "shot.0007.png", "1001-1100"),
-        ("shot.[0001-3000].png", "shot.0007.png", "0001-3000"),
-        ("[1-10].png", "7.png", "1-10"),
-    ],
-)
-def test_a_pattern_may_name_its_frames(pattern, name, frames):
-    parsed = FramePattern.parse(pattern)
-    assert (parsed.path(7).name, parsed.frames) == (name, frames)
-
-
 @pytest.mark.parametrize("name", ["plate.png", "plate.%s.png", "plate.%4d.png", "100%.png", "a[1].png", "$FF.png"])
 def test_a_name_without_a_placeholder_is_no_pattern(name):
     assert FramePattern.parse(name) is None
 
 
-@pytest.mark.parametrize("name", ["a.%04d.%04d.png", "a.##.##.png", "@a@.png", "$F.$F4.png", "[1-2].[3-4].png"])
+@pytest.mark.parametrize("name", ["a.%04d.%04d.png", "a.##.##.png", "@a@.png", "$F.$F4.png"])
 def test_several_placeholders_are_refused(name):
     with pytest.raises(PlateError) as caught:
         FramePattern.parse(name)
@@ -124,13 +106,6 @@ def test_only_the_chosen_frames_are_found(tmp_path):
     assert sequence.numbers == (2, 3, 5)
     assert sequence.missing == (4, 6, 20)
     assert find_frames(tmp_path / "p.####.png", [8, 1, 1]).numbers == (1, 8)
-
-
-@pytest.mark.parametrize("pattern", ["p.2-6#.png", "p.[0002-0006].png", "p.2-6%04d.png", "p.2-6$F4.png"])
-def test_only_the_frames_that_a_pattern_names_are_found(tmp_path, pattern):
-    touch(tmp_path, *(f"p.{number:04d}.png" for number in (1, 2, 3, 5, 8)))
-    sequence = find_frames(tmp_path / pattern)
-    assert (sequence.numbers, sequence.missing) == ((2, 3, 5), (4, 6))
 
 
 @pytest.mark.parametrize(
@@ -221,7 +196,6 @@ def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     [
         ("q.png", None, "no_such_plate"),
         ("empty", None, "folder_without_sequence"),
-        ("p.1-2#.png", "1", "frames_twice"),
         ("p.0001.png", "1-3", "single_file"),
         ("q.%04d.png", None, "no_such_frames"),
         ("p.%04d.png", "7-9", "no_such_frames"),
