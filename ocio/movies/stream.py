@@ -19,7 +19,7 @@ from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
 from .library import ffmpeg_line, opened, undecodable
-from .tags import color_tags
+from .tags import IPT_PROFILE, color_tags, dolby_vision_profile
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -141,6 +141,8 @@ def read_stream(path: Path) -> MovieStream:
         context = stream.codec_context
         if context.width * context.height > MAX_PIXELS:
             raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
+        if dolby_vision_profile(stream) == IPT_PROFILE:
+            raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
         packets, frame = _survey(container, stream)
         if frame is None:
             raise undecodable(path, "it holds no frame")

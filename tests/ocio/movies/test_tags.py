@@ -1,15 +1,41 @@
-"""Metadata of movies: camera, encoding, and texts that are not UTF-8."""
+"""Metadata of movies: camera, encoding, Dolby Vision, and texts that are not UTF-8."""
 
+import struct
 from fractions import Fraction
 
 import pytest
 
+from crfnet.errors import PlateError
 from crfnet.movies.frames import MovieFrames
 from crfnet.movies.stream import read_stream
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.movies import write_movie
 
 pytest.importorskip("av", reason="needs PyAV: the extra video")
+
+
+def with_box(path, box):
+    """Insert a box in front of the decoder configuration of a HEVC movie whose header stands at the end."""
+    content = path.read_bytes()
+    at = content.index(b"hvcC") - 4
+    assert content.index(b"mdat") < at
+    content = bytearray(content[:at] + box + content[at:])
+    for name in (b"moov", b"trak", b"mdia", b"minf", b"stbl", b"stsd", b"hev1"):
+        place = content.index(name) - 4
+        struct.pack_into(">I", content, place, struct.unpack_from(">I", content, place)[0] + len(box))
+    path.write_bytes(content)
+
+
+@pytest.mark.parametrize(("profile", "code"), [(5, "dolby_vision"), (8, "")])
+def test_dolby_vision_of_profile_5_is_refused(tmp_path, profile, code):
+    path = write_movie(tmp_path / "a.mp4", codec="libx265")
+    with_box(path, struct.pack(">I4s", 32, b"dvcC") + bytes([1, 0, profile << 1, 13, 0]) + bytes(19))
+    if not code:
+        assert read_stream(path).codec == "HEVC"
+        return
+    with pytest.raises(PlateError) as caught:
+        read_stream(path)
+    assert caught.value.code == code
 
 
 def test_metadata_that_is_not_utf8_is_read(tmp_path):
