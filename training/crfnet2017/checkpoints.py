@@ -22,18 +22,8 @@ GRAPH_PREFIX = "answers.network."
 class TrainingState:
     """All that a run needs to go on from where it stopped; what is random depends on the seed and the step only.
 
-    Parameters
-    ----------
-    network : CRFNet
-        The network itself, not wrapped for several processes, so that any number of them can go on.
-    averaged : AveragedModel
-        The moving average of its weights.
-    optimizer : Optimizer
-        The optimizer, with its momenta.
-    step : int
-        Number of steps done.
-    rows : list
-        The log: step, training loss, validation figure, windows per second, fraction of the time spent waiting.
+    network: the network itself, not wrapped for several processes, so that any number of them can go on
+    rows: the log: step, training loss, validation figure, windows per second, fraction of the time spent waiting
     """
 
     network: CRFNet
@@ -69,25 +59,10 @@ class TrainingState:
 def start_from(network: CRFNet, source: Path, windows: Tensor) -> bool:
     """Copy the weights of another training into the network, in place.
 
-    Parameters
-    ----------
-    network : CRFNet
-        Is changed.
-    source : Path
-        A run folder (its best checkpoint), a checkpoint, or a model folder written by `training.crfnet2017.export`.
-    windows : Tensor, shape (N, 3, 227, 227)
-        Training windows, at least a few; needed only for a model folder, whose normalizations are folded into the
-        convolutions.
-
-    Returns
-    -------
-    bool
-        Whether the last layer was copied too; one with another number of outputs stays as it is.
-
-    Raises
-    ------
-    SystemExit
-        If the source holds another network.
+    `network`: is changed. `source`: a run folder (its best checkpoint), a checkpoint, or a model folder written by
+    `training.crfnet2017.export`. `windows`, (N, 3, 227, 227): training windows, at least a few; needed only for a model
+    folder, whose normalizations are folded into the convolutions. The result: whether the last layer was copied too;
+    one with another number of outputs stays as it is. Raise SystemExit if the source holds another network.
     """
     exported = (source / "model.onnx").exists()
     state = _exported_state(source / "model.onnx") if exported else _checkpoint_state(source)
@@ -118,13 +93,9 @@ def unfold_normalization(network: CRFNet, windows: Tensor) -> None:
 
     Folding loses the mean and the variance that a normalization needs in training; those of `windows` take their place.
 
-    Parameters
-    ----------
-    network : CRFNet
-        The biases of its normalizations are those of the folded convolutions (see `_exported_state`); their other
-        parameters are as they were when the network was made.
-    windows : Tensor, shape (N, 3, 227, 227)
-        The windows whose mean and variance are taken.
+    `network`: the biases of its normalizations are those of the folded convolutions (see `_exported_state`); their
+    other parameters are as they were when the network was made. `windows`, (N, 3, 227, 227): the windows whose mean and
+    variance are taken.
     """
     normalizations = [layer for layer in network.modules() if isinstance(layer, nn.BatchNorm2d)]
     hooks = [layer.register_forward_pre_hook(_take_statistics) for layer in normalizations]

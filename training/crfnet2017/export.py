@@ -37,12 +37,7 @@ class WindowAnswers(nn.Module):
 class ShippedCRFNet(nn.Module):
     """The network as the product runs it: its answers as evidence.
 
-    Parameters
-    ----------
-    answers : WindowAnswers
-        The network.
-    likelihood : Likelihood
-        What its answers are worth.
+    likelihood: what its answers are worth
     """
 
     def __init__(self, answers: WindowAnswers, likelihood: Likelihood) -> None:
@@ -62,10 +57,7 @@ class ShippedCRFNet(nn.Module):
 def load_network(run: Path) -> WindowAnswers:
     """Return the best network of a run, ready to infer, with its normalizations folded.
 
-    Raises
-    ------
-    SystemExit
-        If the run is of the first stage, which tells responses apart.
+    Raise SystemExit if the run is of the first stage, which tells responses apart.
     """
     state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
     network = CRFNet()

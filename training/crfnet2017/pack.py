@@ -34,14 +34,9 @@ FLOAT16_MAX = 65504.0
 class ScenePack:
     """The linear scenes of one split, and the responses.
 
-    Parameters
-    ----------
-    scenes : tuple of ndarray, float16, shape (H, W, 3)
-        Irradiance, each scene scaled to a geometric mean luminance of 1; memory-mapped.
-    curves : ndarray, float32, shape (201, 1024)
-        Responses at uniform irradiances.
-    exposures : ndarray, float32, shape (201,)
-        s_crf of each response.
+    scenes, float16 (H, W, 3): irradiance, each scene scaled to a geometric mean luminance of 1; memory-mapped
+    curves, float32 (201, 1024): responses at uniform irradiances
+    exposures, float32 (201,): s_crf of each response
     """
 
     scenes: tuple[np.ndarray, ...]
@@ -95,10 +90,7 @@ def write_scenes(scenes: list[tuple[str, np.ndarray]], out: Path, split: str) ->
 def read_pack(folder: Path, split: str) -> ScenePack:
     """Return a split of a pack, its scenes memory-mapped.
 
-    Raises
-    ------
-    FileNotFoundError
-        If the folder holds no such split.
+    Raise FileNotFoundError if the folder holds no such split.
     """
     if not (folder / f"{split}.json").exists():
         raise FileNotFoundError(f"{folder}: no pack of the split {split}; run python -m training.crfnet2017.windows")

@@ -14,32 +14,20 @@ from training.crfnet2017.network import CRFNet
 class Recipe:
     """How the weights are trained.
 
-    Parameters
-    ----------
-    optimizer : str
-        "sgd" (with `momentum`) or "adamw".
-    learning_rate : float
-        The highest learning rate of the schedule.
-    head_factor : float
-        Factor on the learning rate of the last layer, small because 270 848 inputs move each of its outputs together.
-    momentum, weight_decay : float
-        Of the optimizer.
-    batch : int
-        Windows of a step on each process.
-    schedule : str
-        "steps" (a tenth after each third) or "one-cycle" (up for a tenth, down as a cosine to 0).
-    mixed : bool
-        Whether to compute in bfloat16 where that is safe.
-    channels_last : bool
-        Whether the channels of a sample lie side by side in memory.
-    clip : float
-        Largest norm of the gradient; 0 for none.
-    squared : bool
-        Whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance
-        itself, which is E_est.
-    averaged_steps : float
-        Steps that the moving average of the weights reaches back, exponentially; 1 for no average. The average is what
-        a run is validated by and yields, as in `training.network.train`.
+    optimizer: "sgd" (with `momentum`) or "adamw"
+    learning_rate: the highest learning rate of the schedule
+    head_factor: factor on the learning rate of the last layer, small because 270 848 inputs move each of its outputs
+        together
+    momentum, weight_decay: of the optimizer
+    batch: windows of a step on each process
+    schedule: "steps" (a tenth after each third) or "one-cycle" (up for a tenth, down as a cosine to 0)
+    mixed: whether to compute in bfloat16 where that is safe
+    channels_last: whether the channels of a sample lie side by side in memory
+    clip: largest norm of the gradient; 0 for none
+    squared: whether the loss of the regression is half the squared distance (Caffe's Euclidean loss), or the distance
+        itself, which is E_est
+    averaged_steps: steps that the moving average of the weights reaches back, exponentially; 1 for no average. The
+        average is what a run is validated by and yields, as in `training.network.train`.
     """
 
     optimizer: str = "adamw"
@@ -81,22 +69,11 @@ RECIPES = {
 class RunConfig:
     """The configuration of a run; a run goes on only with the same.
 
-    Parameters
-    ----------
-    stage : str
-        "classify" or "regress".
-    recipe : Recipe
-        How the weights are trained.
-    steps : int
-        Steps of the whole run.
-    seed : int
-        Seed of the initial weights and, with the step, of the windows.
-    init : str
-        A run, a checkpoint or a model folder whose weights the run starts from, or "none".
-    validate_every : int
-        Steps between validations.
-    per_photograph : int
-        Most windows of one photograph in a batch.
+    stage: "classify" or "regress"
+    seed: seed of the initial weights and, with the step, of the windows
+    init: a run, a checkpoint or a model folder whose weights the run starts from, or "none"
+    validate_every: steps between validations
+    per_photograph: most windows of one photograph in a batch
     """
 
     stage: str

@@ -16,16 +16,9 @@ STAGES = ("classify", "regress")
 class StageTask:
     """The loss and the validation figure of a stage.
 
-    Parameters
-    ----------
-    stage : str
-        "classify": cross-entropy, top-1 accuracy. "regress": distance of the EMoR weights, mean E_est.
-    curves : ndarray, shape (N, 1024)
-        The responses of the windows; N is 201 for DoRF.
-    squared : bool
-        Whether the loss of the regression is half the squared distance.
-    device : torch.device
-        The device of the targets.
+    stage: "classify": cross-entropy, top-1 accuracy. "regress": distance of the EMoR weights, mean E_est.
+    curves, (N, 1024): the responses of the windows; N is 201 for DoRF
+    squared: whether the loss of the regression is half the squared distance
     """
 
     def __init__(self, stage: str, curves: np.ndarray, *, squared: bool, device: torch.device) -> None:

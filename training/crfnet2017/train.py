@@ -44,25 +44,11 @@ def train(
 ) -> TrainingState:
     """Train until the last step, resuming what `run` holds, and return where the run stands.
 
-    Parameters
-    ----------
-    pack : Path
-        Folder written by `training.crfnet2017.windows`.
-    run : Path
-        Folder of run.json, log.csv, curves.png and the checkpoints last.pt and best.pt.
-    config : RunConfig
-        The configuration of the run.
-    workers : int
-        Processes that draw windows; 0 draws them between the steps.
-    stop : int, optional
-        A step before the last to stop at, with a checkpoint.
-    validation_windows : int
-        Held-out windows.
-
-    Raises
-    ------
-    SystemExit
-        If `run` holds a run with another configuration, or on another pack.
+    `pack`: folder written by `training.crfnet2017.windows`. `run`: folder of run.json, log.csv, curves.png and the
+    checkpoints last.pt and best.pt. `config`: the configuration of the run. `workers`: processes that draw windows; 0
+    draws them between the steps. `stop`: a step before the last to stop at, with a checkpoint.
+    `validation_windows`: held-out windows. Raise SystemExit if `run` holds a run with another configuration, or on
+    another pack.
     """
     context = join_processes()
     scenes, held_out = read_pack(pack, "train"), read_pack(pack, "validation")

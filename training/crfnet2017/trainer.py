@@ -35,12 +35,7 @@ BAR_SECONDS = 5.0
 class ProcessContext:
     """Where a process computes.
 
-    Parameters
-    ----------
-    device : torch.device
-        Its device.
-    rank, processes : int
-        Its number among the processes that train together, and how many they are.
+    rank, processes: its number among the processes that train together, and how many they are
     """
 
     device: torch.device
@@ -69,14 +64,8 @@ def join_processes() -> ProcessContext:
 class Trainer:
     """One stage of the training on one process.
 
-    Parameters
-    ----------
-    config, task, state, context
-        The configuration, the stage, where the run stands, and where this process computes.
-    scenes : ScenePack
-        What to draw the training windows from.
-    validation : LinearWindows
-        The held-out windows.
+    config, task, state, context: the configuration, the stage, where the run stands, and where this process computes
+    validation: the held-out windows
     """
 
     def __init__(

@@ -38,14 +38,9 @@ SPARSE_STEP = 3
 class LinearWindows:
     """A batch of windows before their responses.
 
-    Parameters
-    ----------
-    irradiance : Tensor, float16, shape (N, 227, 227, 3)
-        Linear samples.
-    classes : Tensor, int64, shape (N,)
-        Which of the 201 responses each window gets.
-    exposures : Tensor, float32, shape (N,)
-        Factor on the irradiance of each window.
+    irradiance, float16 (N, 227, 227, 3): linear samples
+    classes, int64 (N,): which of the 201 responses each window gets
+    exposures, float32 (N,): factor on the irradiance of each window
     """
 
     irradiance: Tensor
@@ -71,16 +66,9 @@ class LinearWindows:
 def draw_windows(pack: ScenePack, count: int, rng: np.random.Generator, *, per_photograph: int = 1) -> LinearWindows:
     """Return `count` windows that meet the paper's rule; responses are equally likely, half of the windows mirrored.
 
-    Parameters
-    ----------
-    pack : ScenePack
-        Scenes and responses.
-    count : int
-        Windows of the batch.
-    rng : Generator
-        Draws responses, scenes, exposures, positions and mirroring.
-    per_photograph : int
-        Windows of one photograph at most; the paper takes 10. With one, a batch holds more photographs.
+    `pack`: scenes and responses. `count`: windows of the batch. `rng`: draws responses, scenes, exposures, positions
+    and mirroring. `per_photograph`: windows of one photograph at most; the paper takes 10. With one, a batch holds more
+    photographs.
     """
     windows: list[np.ndarray] = []
     classes: list[int] = []
@@ -100,18 +88,9 @@ class WindowStream(IterableDataset[LinearWindows]):
 
     The workers of a `DataLoader` take the steps in turn, so their number changes nothing.
 
-    Parameters
-    ----------
-    pack : ScenePack
-        Scenes and responses.
-    batch : int
-        Windows of a step.
-    steps : range
-        The steps to draw windows for, from the first that is not done.
-    seed, rank : int
-        The windows depend on these two and on the step; processes that train together have different ranks.
-    per_photograph : int
-        As in `draw_windows`.
+    steps: the steps to draw windows for, from the first that is not done
+    seed, rank: the windows depend on these two and on the step; processes that train together have different ranks
+    per_photograph: as in `draw_windows`
     """
 
     def __init__(

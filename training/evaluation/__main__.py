@@ -56,10 +56,7 @@ def parser() -> argparse.ArgumentParser:
 def parsed(arguments: list[str] | None = None) -> Evaluation:
     """Return the evaluation that a command line asks for.
 
-    Raises
-    ------
-    CRFNetError
-        If neither data nor --quick is given, or a model or number is wrong.
+    Raise CRFNetError if neither data nor --quick is given, or a model or number is wrong.
     """
     options = parser().parse_args(arguments)
     if options.data is None and not options.quick:

@@ -32,10 +32,8 @@ MOST_ADDED, MOST_USED = 3.0, 0.95
 def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
     """Return the guesses that are the same for every photograph, by name.
 
-    Parameters
-    ----------
-    known : ndarray, shape (N, 1024)
-        The responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of DoRF.
+    `known`, (N, 1024): the responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of
+    DoRF.
     """
     samples = {
         "sRGB": srgb_encode(IRRADIANCE),

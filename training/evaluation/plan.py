@@ -23,25 +23,15 @@ COOL, WARM = (0.6, 1.0, 1.7), (1.7, 1.0, 0.6)
 class Condition:
     """A condition under which a photograph is taken.
 
-    Parameters
-    ----------
-    name : str
-        The name in the report.
-    factor : float
-        Factor on the exposure s_crf.
-    upsampling : int
-        How many times the linear scene is enlarged, by cubic interpolation.
-    is_gray : bool
-        Whether all channels hold the luminance of the scene.
-    noise : float
-        Variance, in squared 8-bit codes, of the Gaussian noise between response and quantization. The CRF-net paper's
-        Table 3 gives no unit; this is our reading of it.
-    blur : float
-        Variance, in squared pixels, of the Gaussian that blurs the linear scene.
-    gains : tuple of float
-        Factors on red, green and blue of the linear scene.
-    jpeg_quality : int, optional
-        Quality of a JPEG with subsampled chroma.
+    name: the name in the report
+    factor: factor on the exposure s_crf
+    upsampling: how many times the linear scene is enlarged, by cubic interpolation
+    is_gray: whether all channels hold the luminance of the scene
+    noise: variance, in squared 8-bit codes, of the Gaussian noise between response and quantization. The CRF-net
+        paper's Table 3 gives no unit; this is our reading of it.
+    blur: variance, in squared pixels, of the Gaussian that blurs the linear scene
+    gains: factors on red, green and blue of the linear scene
+    jpeg_quality: quality of a JPEG with subsampled chroma
     """
 
     name: str
@@ -68,18 +58,11 @@ class Condition:
 class Query:
     """The options of an estimate; None leaves the product's default.
 
-    Parameters
-    ----------
-    name : str
-        The name in the report; empty for the plain query.
-    windows : int, optional
-        Windows of each photograph.
-    coverage : int, optional
-        How many of the 256 code values a window should hold; 0 takes random windows.
-    pooled : int
-        Photographs, each of another scene, that are estimated together.
-    averaged : str, optional
-        "kept" or "all": take the mean of these windows' weights instead of the product's own answer.
+    name: the name in the report; empty for the plain query
+    windows: windows of each photograph
+    coverage: how many of the 256 code values a window should hold; 0 takes random windows
+    pooled: photographs, each of another scene, that are estimated together
+    averaged: "kept" or "all": take the mean of these windows' weights instead of the product's own answer
     """
 
     name: str = ""
@@ -142,10 +125,7 @@ def balanced(scenes: Sequence[int], curves: Sequence[int], *, count: int, seed: 
     Both are shuffled and then taken in turn, shifted where the turns would repeat. So every scene and every response
     occurs equally often in any beginning of the list, give or take one, and so does every exposure.
 
-    Raises
-    ------
-    CRFNetError
-        If `count` is below 1.
+    Raise CRFNetError if `count` is below 1.
     """
     if count < 1:
         raise CRFNetError(f"the number of photographs must be 1 or more, found {count}")

@@ -53,24 +53,14 @@ CODE_NOTE = f"some photographs were measured before the code changed; delete {TA
 class Settings:
     """The scope of an evaluation.
 
-    Parameters
-    ----------
-    out : Path
-        The folder of the table and the report.
-    models : tuple of Model
-        All are measured on the same photographs.
-    protocols : tuple of str
-        Some of `PROTOCOLS`.
-    photographs : int
-        The most photographs in P0 and P2.
-    workers : int
-        Processes; 1 measures in this one.
-    seed : int
-        Of the choice of photographs, of dither, noise and bootstrap.
-    stress_photographs : int
-        The most photographs in P3 under each condition; also limited by `photographs`.
-    conditions, queries : tuple
-        Of P3.
+    out: the folder of the table and the report
+    models: all are measured on the same photographs
+    protocols: some of `PROTOCOLS`
+    photographs: the most photographs in P0 and P2
+    workers: processes; 1 measures in this one
+    seed: of the choice of photographs, of dither, noise and bootstrap
+    stress_photographs: the most photographs in P3 under each condition; also limited by `photographs`
+    conditions, queries: of P3
     """
 
     out: Path
@@ -88,12 +78,7 @@ class Settings:
 class Evaluation:
     """One evaluation: call `run`.
 
-    Parameters
-    ----------
-    settings : Settings
-        Models, protocols, numbers.
-    test_set : TestSet
-        Scenes and responses.
+    settings: models, protocols, numbers
     """
 
     settings: Settings
@@ -103,10 +88,7 @@ class Evaluation:
     def run(self) -> Report:
         """Measure what the table lacks, write report.json and report.md, and return the report.
 
-        Raises
-        ------
-        CRFNetError
-            If two models have one name, or P2 is asked of a model that knows its responses.
+        Raise CRFNetError if two models have one name, or P2 is asked of a model that knows its responses.
         """
         self._check()
         every, held_out = range(len(self.test_set.curves)), self.test_set.held_out

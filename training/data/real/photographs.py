@@ -42,30 +42,15 @@ KINDS = {
 class RealPhotograph:
     """A photograph, its camera, and how well the camera's response was measured.
 
-    Parameters
-    ----------
-    name : str
-        Of the photograph.
-    body : str
-        The camera.
-    kind : str
-        "phone", "compact", "camera" (with interchangeable lenses) or "unknown".
-    grade : str
-        How well the response was measured: A, B or C.
-    caution : str
-        Why the photograph does not count in the means; empty where it counts.
-    is_in_mean : bool
-        Whether its response is part of the mean of the other bodies.
-    editing : Editing
-        Whether an editor saved the file.
-    is_scaled : bool
-        Whether it was made smaller after the camera.
-    fold : str
-        Bodies of one fold are left out of a mean together.
-    photograph, measured : Path
-        The files of the photograph and of its response.
-    metadata : FileMetadata, optional
-        That of the original file, where `photograph` is not the original and has lost it.
+    kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
+    grade: how well the response was measured: A, B or C
+    caution: why the photograph does not count in the means; empty where it counts
+    is_in_mean: whether its response is part of the mean of the other bodies
+    editing: whether an editor saved the file
+    is_scaled: whether it was made smaller after the camera
+    fold: bodies of one fold are left out of a mean together
+    photograph, measured: the files of the photograph and of its response
+    metadata: that of the original file, where `photograph` is not the original and has lost it
     """
 
     name: str

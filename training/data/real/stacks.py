@@ -40,22 +40,11 @@ UNKNOWN_BODY = "unknown"
 class Stack:
     """A measured exposure stack.
 
-    Parameters
-    ----------
-    measured : Path
-        The file of its response.
-    settings : CameraSettings
-        What its files say.
-    curve : ResponseCurve
-        Its response.
-    error : float
-        Standard deviation of its E_est.
-    frames : int
-        How many frames it has.
-    grade : str
-        A or B.
-    caution : str
-        Why it is less certain, or nothing.
+    measured: the file of its response
+    settings: what its files say
+    error: standard deviation of its E_est
+    grade: A or B
+    caution: why it is less certain, or nothing
     """
 
     measured: Path
@@ -73,13 +62,7 @@ class Stack:
 
 
 def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
-    """Return make and model -> name of each of its settings -> its stacks, the most certain first.
-
-    Parameters
-    ----------
-    data : Path
-        The data folder.
-    """
+    """Return make and model -> name of each of its settings -> its stacks, the most certain first."""
     folder = data / REAL_BODIES
     stacks = {row["stack"]: _stack(folder, row) for row in case_rows(folder) if _is_taken(row)}
     bodies: dict[str, list[list[Stack]]] = {}

@@ -44,22 +44,10 @@ CACHED_LIGHTS = 12
 class Job:
     """Simulated photographs, and the estimators to measure on them.
 
-    Parameters
-    ----------
-    protocol : str
-        The protocol; in P3 gamma 2.2 is the only baseline.
-    photographs : tuple of TestPhotograph
-        The photographs.
-    test_set : TestSet
-        Scenes and responses.
-    models : tuple of Model
-        The models.
-    has_baselines : bool
-        Whether to measure the baselines.
-    bank : ResponseBank or None
-        The responses that estimates choose from; None for the packaged ones.
-    seed : int
-        Of dither and noise.
+    protocol: the protocol; in P3 gamma 2.2 is the only baseline
+    has_baselines: whether to measure the baselines
+    bank: the responses that estimates choose from; None for the packaged ones
+    seed: of dither and noise
     """
 
     protocol: str

@@ -19,14 +19,9 @@ from training.evaluation.report.document import Report, ReportRow, value
 class Listed:
     """A table with a row for each estimator.
 
-    Parameters
-    ----------
-    tables : tuple of str
-        Tables of the report.
-    figures : dict
-        Head of a column -> figure.
-    groups : tuple of str
-        The groups to show; all if empty.
+    tables: tables of the report
+    figures: head of a column -> figure
+    groups: the groups to show; all if empty
     """
 
     tables: tuple[str, ...]

@@ -56,16 +56,7 @@ def of_bodies(cases: Cases, *, seed: int) -> Resampling:
 def error_figures(cases: Cases, resampling: Resampling, estimator: str, *, reference: Cases | None = None) -> Figures:
     """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR.
 
-    Parameters
-    ----------
-    cases : Cases
-        The photographs.
-    resampling : Resampling
-        Their weights.
-    estimator : str
-        The estimator.
-    reference : Cases, optional
-        The same photographs with the figures of gamma 2.2; `cases` by default.
+    `resampling`: their weights. `reference`: the same photographs with the figures of gamma 2.2; `cases` by default.
     """
     figures: Figures = {}
     for error in ERRORS:
