@@ -15,7 +15,7 @@ from training.data.curves import IRRADIANCE, curve_of_inverse, geometric_median
 from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
-ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
+ORACLE_COMPONENTS = (1, 3, 11)
 
 #: Names of the baselines that tables or plots pick out.
 GAMMA = "gamma 2.2"

@@ -17,13 +17,9 @@ from training.evaluation.measure.simulated import Job, measure_simulated
 from training.evaluation.measure.table import TABLE_FILE, Cases, Table, code_digest
 from training.evaluation.models import Model
 from training.evaluation.plan import (
-    CLEAN,
     CONDITIONS,
-    PLAIN,
-    QUERIES,
     STRESS_PHOTOGRAPHS,
     Condition,
-    Query,
     TestPhotograph,
     clean_photographs,
     stress_photographs,
@@ -60,7 +56,7 @@ class Settings:
     workers: processes; 1 measures in this one
     seed: of the choice of photographs, of dither, noise and bootstrap
     stress_photographs: the most photographs in P3 under each condition; also limited by `photographs`
-    conditions, queries: of P3
+    conditions: of P3
     """
 
     out: Path
@@ -71,7 +67,6 @@ class Settings:
     seed: int = 2017
     stress_photographs: int = STRESS_PHOTOGRAPHS
     conditions: tuple[Condition, ...] = CONDITIONS
-    queries: tuple[Query, ...] = QUERIES
 
 
 @dataclass
@@ -166,7 +161,7 @@ class Evaluation:
         return sums.clean_rows(protocol, cases, list(self._models), seed=settings.seed)
 
     def _stress(self) -> Iterator[ReportRow]:
-        """Measure P3, and return the figures under every condition and query."""
+        """Measure P3, and return the figures under every condition."""
         settings = self.settings
         photographs = stress_photographs(
             range(len(self.test_set.scenes)),
@@ -174,17 +169,14 @@ class Evaluation:
             count=min(settings.stress_photographs, settings.photographs),
             seed=settings.seed,
             conditions=settings.conditions,
-            queries=settings.queries,
         )
         self._simulated("P3", photographs)
 
-        def cases(condition: Condition, query: Query) -> Cases:
-            chosen = [each.label for each in photographs if (each.condition, each.query) == (condition, query)]
-            return Cases(self._table.rows("P3", self._models | ({GAMMA: ""} if query == PLAIN else {}), chosen))
-
-        conditions = {condition.name: cases(condition, PLAIN) for condition in settings.conditions}
-        asked = dict.fromkeys(each.query for each in photographs if each.query != PLAIN)
-        return sums.stress_rows(conditions, {query.name: cases(CLEAN, query) for query in asked}, seed=settings.seed)
+        estimators, conditions = self._models | {GAMMA: ""}, dict[str, Cases]()
+        for condition in settings.conditions:
+            chosen = [photograph.label for photograph in photographs if photograph.condition == condition]
+            conditions[condition.name] = Cases(self._table.rows("P3", estimators, chosen))
+        return sums.stress_rows(conditions, seed=settings.seed)
 
     def _real(self) -> Iterator[ReportRow]:
         """Measure real photographs, and yield the figures of each folder and of both."""

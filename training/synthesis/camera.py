@@ -100,14 +100,12 @@ def sensor_light(
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0),
     is_gray: bool = False,
     blur: float = 0.0,
-    upsampling: int = 1,
 ) -> Float32Array:
     """Return the linear light that reaches the sensor, before exposure, float32 (H, W, 3).
 
     `scene`: the light; not changed. A panorama is dithered first (see `training.data.scenes.dithered`). `rng`: draws
     the dither. `gains`: white balance: factors on red, green and blue, scaled so that a neutral keeps its luminance.
     `is_gray`: whether all channels hold the luminance. `blur`: variance, in squared pixels of the scene, of a Gaussian.
-    `upsampling`: how many times the scene is enlarged along each side, by cubic interpolation.
     """
     light = dithered(scene.pixels, rng) if scene.is_panorama else scene.pixels
     light = light * balanced_gains(gains)
@@ -115,7 +113,7 @@ def sensor_light(
         light = np.repeat((light @ LUMINANCE)[:, :, None], 3, axis=2)
     if blur:
         light = blurred(light, float(np.sqrt(blur)))
-    return enlarged(light, upsampling)
+    return light
 
 
 def render_photo(
@@ -193,8 +191,6 @@ def balanced_gains(gains: tuple[float, float, float]) -> Float32Array:
 
 def enlarged(light: Float32Array, times: int) -> Float32Array:
     """Return linear light enlarged by cubic interpolation, float32 (times H, times W, 3), nowhere negative."""
-    if times == 1:
-        return light
     size = (light.shape[1] * times, light.shape[0] * times)
     channels = [Image.fromarray(light[:, :, k]).resize(size, Image.Resampling.BICUBIC) for k in range(3)]
     return np.maximum(np.stack([np.asarray(channel) for channel in channels], axis=2), 0)

@@ -50,18 +50,12 @@ def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexAr
     }
 
 
-def estimate_figures(
-    true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray, *, curve: ResponseCurve | None = None
-) -> dict[str, Any]:
-    """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds.
-
-    `true`: the response. `estimate`: the product's answer. `counts`, int (256,): how often each code occurs in the
-    photograph. `curve`: the response to measure instead of `estimate.curve`.
-    """
+def estimate_figures(true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray) -> dict[str, Any]:
+    """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds."""
     lower, upper = estimate.band
     inside = (true.brightness >= lower) & (true.brightness <= upper)
     kind = max(estimate.families, key=estimate.families.__getitem__, default="")
-    return curve_figures(true, curve or estimate.curve, counts) | {
+    return curve_figures(true, estimate.curve, counts) | {
         "expected E_est": round(estimate.uncertainty, DECIMALS),
         "expected shape": round(estimate.shape_uncertainty, DECIMALS),
         "band coverage": round(float(inside.mean()), DECIMALS),
