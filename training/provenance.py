@@ -30,23 +30,9 @@ Record = dict[str, Any]
 def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: str) -> Record:
     """Write run.json for a run that begins; for one that goes on, check it and add the resumption; return the record.
 
-    Parameters
-    ----------
-    folder : Path
-        The run's folder; made where absent.
-    recipe : dict
-        The whole configuration, of values that JSON knows.
-    seed : int
-        Of the initial weights and of the order of the data.
-    data : dict
-        See `data_record`.
-    start : str
-        The weights that the run starts from.
-
-    Raises
-    ------
-    SystemExit
-        If the folder holds a run of another recipe, seed or start, or on other data.
+    `folder`: the run's folder; made where absent. `recipe`: the whole configuration, of values that JSON knows. `seed`:
+    of the initial weights and of the order of the data. `data`: see `data_record`. `start`: the weights that the run
+    starts from. Raise SystemExit if the folder holds a run of another recipe, seed or start, or on other data.
     """
     wanted = json.loads(json.dumps({"seed": seed, "start": start, "recipe": recipe, "data": data}))
     path = folder / RUN_FILE
@@ -67,10 +53,7 @@ def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: 
 def read_run(folder: Path) -> Record:
     """Return the record of a run, or say that there is none.
 
-    Raises
-    ------
-    SystemExit
-        If the folder holds no run.json.
+    Raise SystemExit if the folder holds no run.json.
     """
     path = folder / RUN_FILE
     if not path.exists():

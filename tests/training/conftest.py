@@ -4,29 +4,16 @@ import numpy as np
 import pytest
 
 
-@pytest.fixture(scope="module")
-def work_folder(tmp_path_factory):
-    """A folder with a pack of two splits: smooth scenes from black to clipping, and four responses."""
-    from training.crfnet2017.pack import write_scenes
+@pytest.fixture(scope="session")
+def scenes():
+    """Smooth scenes from black to clipping, and four responses, as the paper's network trains on them."""
+    from training.crfnet2017.windows import TrainingScenes
 
-    path = tmp_path_factory.mktemp("crfnet2017")
-    (path / "pack").mkdir()
     rng = np.random.default_rng(0)
     ramp = np.linspace(0, 1.2, 260 * 300 * 3).reshape(260, 300, 3)
-    scenes = [(name, (ramp * rng.uniform(0.8, 1.2, ramp.shape)).astype(np.float16)) for name in ("one", "two")]
-    for split in ("train", "validation"):
-        write_scenes(scenes, path / "pack", split)
+    pixels = tuple((ramp * rng.uniform(0.8, 1.2, ramp.shape)).astype(np.float16) for _ in range(2))
     curves = np.linspace(0, 1, 1024) ** np.array([[0.3], [0.45], [0.7], [1.0]])
-    np.savez(path / "pack" / "curves.npz", curves=curves.astype(np.float32), exposures=np.float32([1, 1.1, 0.9, 1]))
-    return path
-
-
-@pytest.fixture(scope="module")
-def pack(work_folder):
-    """The training split of the pack."""
-    from training.crfnet2017.pack import read_pack
-
-    return read_pack(work_folder / "pack", "train")
+    return TrainingScenes(pixels, np.float32(curves), np.float32([1, 1.1, 0.9, 1]))
 
 
 @pytest.fixture

@@ -1,15 +1,13 @@
 """The network of the CRF-net paper and its two-stage training, to compare with.
 
-windows      draws windows of packed scenes; as a command, writes the pack
-pack         scenes, responses and exposures on disk
-network      the network of Table 1
-stages       loss and validation figure of both stages
-recipes      optimizers and learning rates
-train        the command that trains; `trainer` is its loop
-checkpoints  state of a run; weights of another run or of a model folder
-runlog       log.csv and curves.png
-export       the command that writes the model folder
+windows     draws windows of linear scenes and renders them
+network     the network of Table 1
+recipes     optimizers, learning rates and lengths of both stages
+stages      loss and validation figure of both stages
+train       the command that trains
+likelihood  how much an answer says about the response
+export      the command that writes the model folder
 
-Source: Li & Peers, "CRF-net: Single Image Radiometric Calibration using CNNs", CVMP 2017: Table 1 (network), Sec. 3.2
-(windows), Sec. 3.3 (synthetic photographs), Sec. 3.4 (classification first, regression after it).
+Source: Li & Peers, "CRF-net: Single Image Radiometric Calibration using CNNs", CVMP 2017: Table 1, Sec. 3.2 (network,
+windows, 11 components), Sec. 3.3 (synthetic photographs; classification first, regression after it).
 """

@@ -13,7 +13,6 @@ from torch import Tensor, nn
 
 from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from training.crfnet2017.checkpoints import fold_normalization
 from training.crfnet2017.likelihood import Likelihood, fit, validation_answers
 from training.crfnet2017.network import CRFNet
 from training.export.golden import golden_windows
@@ -37,12 +36,7 @@ class WindowAnswers(nn.Module):
 class ShippedCRFNet(nn.Module):
     """The network as the product runs it: its answers as evidence.
 
-    Parameters
-    ----------
-    answers : WindowAnswers
-        The network.
-    likelihood : Likelihood
-        What its answers are worth.
+    likelihood: what its answers are worth
     """
 
     def __init__(self, answers: WindowAnswers, likelihood: Likelihood) -> None:
@@ -62,10 +56,7 @@ class ShippedCRFNet(nn.Module):
 def load_network(run: Path) -> WindowAnswers:
     """Return the best network of a run, ready to infer, with its normalizations folded.
 
-    Raises
-    ------
-    SystemExit
-        If the run is of the first stage, which tells responses apart.
+    Raise SystemExit if the run is of the first stage, which tells responses apart.
     """
     state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
     network = CRFNet()
@@ -73,6 +64,17 @@ def load_network(run: Path) -> WindowAnswers:
         raise SystemExit(f"{run}: is a run of the stage classify; export one of the stage regress")
     network.load_state_dict(state["network"])
     return WindowAnswers(fold_normalization(network)).eval()
+
+
+def fold_normalization(network: CRFNet) -> CRFNet:
+    """Return the network itself, ready to infer, with each normalization folded into the convolution before it."""
+    network.eval()
+    for layers in [module for module in network.modules() if isinstance(module, nn.Sequential)]:
+        for index, layer in enumerate(layers):
+            if isinstance(layer, nn.BatchNorm2d):
+                layers[index - 1] = nn.utils.fuse_conv_bn_eval(layers[index - 1], layer)
+                layers[index] = nn.Identity()
+    return network
 
 
 def cost_of_rounding(network: WindowAnswers) -> float:

@@ -35,15 +35,10 @@ LEAST_SLOPE = 0.05
 class Likelihood:
     """What an answer of the network is worth.
 
-    Parameters
-    ----------
-    slopes, intercepts : ndarray, shape (5,)
-        a and b.
-    factor : ndarray, shape (5, 5)
-        Of the precision of the weights.
-    log_odds : float
-        Of every family in `UNUSUAL`: the mean log likelihood of ordinary responses, so that the answer says
-        nothing for or against these families, which the network does not know.
+    slopes, intercepts, (5,): a and b
+    factor, (5, 5): of the precision of the weights
+    log_odds: of every family in `UNUSUAL`: the mean log likelihood of ordinary responses, so that the answer says
+        nothing for or against these families, which the network does not know
     """
 
     slopes: Float64Array
@@ -68,12 +63,8 @@ def fit(true: Float64Array, answers: Float64Array) -> Likelihood:
 def validation_answers(network: nn.Module, data: Path) -> tuple[Float64Array, Float64Array]:
     """Return the true weights and the network's, (N, 5), of photographs of the validation scenes.
 
-    Parameters
-    ----------
-    network : nn.Module
-        From windows, float32 (N, 227, 227, 3), to EMoR weights (N, 11).
-    data : Path
-        Folder with dorf, camera_curves and linear.
+    `network`: from windows, float32 (N, 227, 227, 3), to EMoR weights (N, 11). `data`: folder with dorf, camera_curves
+    and linear.
     """
     source, rows = photograph_source(data, "validation"), []
     unusual = [int(curve_set) for curve_set in STATED_FAMILIES]

@@ -16,12 +16,7 @@ class Bottleneck(nn.Module):
 
     The first convolution and the projection of the shortcut have the stride, as in the ResNet-50 of 2015.
 
-    Parameters
-    ----------
-    channels, inner, outputs : int
-        Channels of the input, of the 3x3 convolution and of the output.
-    stride : int
-        Stride of the block.
+    channels, inner, outputs: channels of the input, of the 3x3 convolution and of the output
     """
 
     def __init__(self, channels: int, inner: int, outputs: int, *, stride: int = 1) -> None:
@@ -46,10 +41,7 @@ class CRFNet(nn.Module):
 
     Source: CRF-net paper, Table 1. With 11 outputs it has 3 864 203 parameters.
 
-    Parameters
-    ----------
-    outputs : int
-        11 EMoR weights, or 201 responses to tell apart.
+    outputs: 11 EMoR weights, or 201 responses to tell apart
     """
 
     def __init__(self, outputs: int = COMPONENTS) -> None:

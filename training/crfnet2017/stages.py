@@ -14,37 +14,20 @@ STAGES = ("classify", "regress")
 
 
 class StageTask:
-    """The loss and the validation figure of a stage.
+    """The loss and the validation figure of a stage, for windows under `curves`, shape (N, 1024), of DoRF (N = 201).
 
-    Parameters
-    ----------
-    stage : str
-        "classify": cross-entropy, top-1 accuracy. "regress": distance of the EMoR weights, mean E_est.
-    curves : ndarray, shape (N, 1024)
-        The responses of the windows; N is 201 for DoRF.
-    squared : bool
-        Whether the loss of the regression is half the squared distance.
-    device : torch.device
-        The device of the targets.
+    "classify" has cross-entropy and top-1 accuracy, "regress" the distance of the EMoR weights and the mean E_est.
+    `squared` is as in `training.crfnet2017.recipes.Recipe`.
     """
 
     def __init__(self, stage: str, curves: np.ndarray, *, squared: bool, device: torch.device) -> None:
         basis = EmorBasis.load()
         weights = basis.project(curves)
         residuals = np.linalg.norm(basis.reconstruct(weights) - curves, axis=1)
-        self.stage, self.squared = stage, squared
+        self.classifies, self.squared = stage == "classify", squared
         self.weights = torch.from_numpy(weights).float().to(device)
         self.residuals = torch.from_numpy(residuals).float().to(device)
-
-    @property
-    def classifies(self) -> bool:
-        """Whether this is the first stage, whose figure is better the higher it is."""
-        return self.stage == "classify"
-
-    @property
-    def outputs(self) -> int:
-        """Outputs of the network."""
-        return len(self.weights) if self.classifies else COMPONENTS
+        self.outputs = len(weights) if self.classifies else COMPONENTS
 
     def loss(self, outputs: Tensor, classes: Tensor) -> Tensor:
         """Return the loss, mean over the batch, of outputs (N, outputs) for the responses numbered `classes` (N,)."""

@@ -1,14 +1,13 @@
-"""Draw the paper's windows from packed scenes: ``python -m training.crfnet2017.windows --data DIR --out DIR`` packs.
+"""Draw the paper's windows: a scene, one of the 201 responses, an exposure and a place (CRF-net paper, Sec. 3.2, 3.3).
 
-A photograph is a scene, one of the 201 responses, all equally likely, and an exposure of s_crf times 0.6, 0.8, 1, 1.2
-or 1.4. Its windows are those that hold at least 220 of the 256 codes over all channels (CRF-net paper, Sec. 3.2, 3.3).
-The host only cuts out float16 irradiance; `render_windows` applies the response and rounds to 8 bits on the device that
-trains.
+A window counts if it holds at least 220 of the 256 codes over all channels. The paper takes ten windows of each of five
+exposures of each of its 595 photographs under each response, 5 979 750 in all; here every window has a photograph of
+its own, of one of 94 scenes, and half of the windows are mirrored. The host only cuts out float16 irradiance;
+`render_windows` applies the response and rounds to 8 bits on the device that trains.
 """
 
 from __future__ import annotations
 
-import argparse
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
@@ -19,13 +18,16 @@ from torch import Tensor
 from torch.utils.data import IterableDataset, get_worker_info
 
 from crfnet_core.statistics.windows import FULL_COVERAGE, WINDOW_SIZE, filled_codes
-from training.crfnet2017.pack import ScenePack, write_pack
-from training.data.manifest import training_digest
-from training.provenance import record_making
-from training.synthesis.camera import EXPOSURE_FACTORS, apply_response
+from training.data.curves import DORF_FILE, read_dorf
+from training.data.scenes import Scene, area_averaged, dithered, read_scenes
+from training.synthesis.camera import apply_response, automatic_exposure, reference_luminance
 
-#: How many float16 values are finite and not negative.
-FLOAT16_CODES = 31744
+#: How many float16 values are finite and not negative, and the largest.
+FLOAT16_CODES, FLOAT16_MAX = 31744, 65504.0
+
+#: Range of the exposure in training, uniform, in units of s_crf (Sec. 3.3: s_crf - 0.4 to s_crf + 0.4, with light
+#: scaled so that s_crf is near 1). Table 2 tests five factors of this range.
+EXPOSURES = (0.6, 1.4)
 
 #: Photographs tried for one response, and positions tried in one photograph, before the next is tried.
 PHOTOGRAPHS_TRIED, POSITIONS_TRIED = 20, 12
@@ -35,17 +37,26 @@ SPARSE_STEP = 3
 
 
 @dataclass(frozen=True)
+class TrainingScenes:
+    """The linear scenes of one split, and the responses.
+
+    pixels, each float16 (H, W, 3): irradiance, each scene scaled to a geometric mean luminance of 1
+    curves, float32 (201, 1024): responses at uniform irradiances
+    exposures, float32 (201,): s_crf, which belongs to the response and is the same for every photograph and split
+    """
+
+    pixels: tuple[np.ndarray, ...]
+    curves: np.ndarray
+    exposures: np.ndarray
+
+
+@dataclass(frozen=True)
 class LinearWindows:
     """A batch of windows before their responses.
 
-    Parameters
-    ----------
-    irradiance : Tensor, float16, shape (N, 227, 227, 3)
-        Linear samples.
-    classes : Tensor, int64, shape (N,)
-        Which of the 201 responses each window gets.
-    exposures : Tensor, float32, shape (N,)
-        Factor on the irradiance of each window.
+    irradiance, float16 (N, 227, 227, 3): linear samples
+    classes, int64 (N,): which of the 201 responses each window gets
+    exposures, float32 (N,): factor on the irradiance of each window
     """
 
     irradiance: Tensor
@@ -63,70 +74,60 @@ class LinearWindows:
         for arrays in zip(*(part.split(size) for part in parts), strict=True):
             yield LinearWindows(*arrays)
 
-    def pin_memory(self) -> LinearWindows:
-        """Return the batch in page-locked memory, which `torch.utils.data.DataLoader` asks for."""
-        return LinearWindows(self.irradiance.pin_memory(), self.classes.pin_memory(), self.exposures.pin_memory())
-
-
-def draw_windows(pack: ScenePack, count: int, rng: np.random.Generator, *, per_photograph: int = 1) -> LinearWindows:
-    """Return `count` windows that meet the paper's rule; responses are equally likely, half of the windows mirrored.
-
-    Parameters
-    ----------
-    pack : ScenePack
-        Scenes and responses.
-    count : int
-        Windows of the batch.
-    rng : Generator
-        Draws responses, scenes, exposures, positions and mirroring.
-    per_photograph : int
-        Windows of one photograph at most; the paper takes 10. With one, a batch holds more photographs.
-    """
-    windows: list[np.ndarray] = []
-    classes: list[int] = []
-    exposures: list[float] = []
-    while len(windows) < count:
-        curve = int(rng.integers(len(pack.curves)))
-        chosen, exposure = _photograph_windows(pack, curve, min(per_photograph, count - len(windows)), rng)
-        windows += chosen
-        classes += [curve] * len(chosen)
-        exposures += [exposure] * len(chosen)
-    irradiance = torch.from_numpy(np.stack(windows))
-    return LinearWindows(irradiance, torch.tensor(classes), torch.tensor(exposures, dtype=torch.float32))
-
 
 class WindowStream(IterableDataset[LinearWindows]):
-    """Batches of training windows, one for each step; a step has the same windows whenever the run was interrupted.
+    """Batches of training windows, one for each of `steps`.
 
-    The workers of a `DataLoader` take the steps in turn, so their number changes nothing.
-
-    Parameters
-    ----------
-    pack : ScenePack
-        Scenes and responses.
-    batch : int
-        Windows of a step.
-    steps : range
-        The steps to draw windows for, from the first that is not done.
-    seed, rank : int
-        The windows depend on these two and on the step; processes that train together have different ranks.
-    per_photograph : int
-        As in `draw_windows`.
+    A batch depends on the seed and the step only. The workers of a `DataLoader` take the steps in turn, so neither
+    their number nor an interruption changes anything.
     """
 
-    def __init__(
-        self, pack: ScenePack, *, batch: int, steps: range, seed: int, rank: int = 0, per_photograph: int = 1
-    ) -> None:
+    def __init__(self, scenes: TrainingScenes, *, batch: int, steps: range, seed: int) -> None:
         super().__init__()
-        self.pack, self.batch, self.steps = pack, batch, steps
-        self.seed, self.rank, self.per_photograph = seed, rank, per_photograph
+        self.scenes, self.batch, self.steps, self.seed = scenes, batch, steps, seed
 
     def __iter__(self) -> Iterator[LinearWindows]:
         worker = get_worker_info()
         steps = self.steps if worker is None else self.steps[worker.id :: worker.num_workers]
         for step in steps:
-            rng = np.random.default_rng([self.seed, self.rank, step])
-            yield draw_windows(self.pack, self.batch, rng, per_photograph=self.per_photograph)
+            yield draw_windows(self.scenes, self.batch, np.random.default_rng([self.seed, step]))
+
+
+def read_splits(data: Path) -> dict[str, TrainingScenes]:
+    """Return the splits "train" and "validation" of the scenes in the folder `data`, with the responses of DoRF."""
+    scenes = {split: read_scenes(data / "linear", split) for split in ("train", "validation")}
+    curves, luminance = read_dorf(data / DORF_FILE), reference_luminance(scenes["train"])
+    exposures = np.array([automatic_exposure(curve, luminance) for curve in curves], dtype=np.float32)
+    return {
+        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), np.float32(curves), exposures)
+        for split, members in scenes.items()
+    }
+
+
+def scene_pixels(scene: Scene, number: int) -> np.ndarray:
+    """Return a scene as float16 (H, W, 3), averaged by the whole factor that leaves its shorter side just above 227.
+
+    A panorama is dithered first, with a seed of its number.
+    """
+    pixels = dithered(scene.pixels, np.random.default_rng([2017, number])) if scene.is_panorama else scene.pixels
+    factor = max(1, min(pixels.shape[:2]) // WINDOW_SIZE)
+    return np.minimum(area_averaged(pixels, factor), FLOAT16_MAX).astype(np.float16)
+
+
+def draw_windows(scenes: TrainingScenes, count: int, rng: np.random.Generator) -> LinearWindows:
+    """Return `count` windows that meet the paper's rule; the responses are equally likely."""
+    windows: list[np.ndarray] = []
+    classes: list[int] = []
+    exposures: list[float] = []
+    while len(windows) < count:
+        curve = int(rng.integers(len(scenes.curves)))
+        drawn = _window(scenes, curve, rng)
+        if drawn is not None:
+            windows.append(drawn[0])
+            classes.append(curve)
+            exposures.append(drawn[1])
+    irradiance = torch.from_numpy(np.stack(windows))
+    return LinearWindows(irradiance, torch.tensor(classes), torch.tensor(exposures, dtype=torch.float32))
 
 
 def render_windows(windows: LinearWindows, curves: Tensor) -> Tensor:
@@ -157,26 +158,18 @@ def _float16_values() -> np.ndarray:
     return np.arange(FLOAT16_CODES, dtype=np.uint16).view(np.float16).astype(np.float32)
 
 
-def _photograph_windows(
-    pack: ScenePack, curve: int, count: int, rng: np.random.Generator
-) -> tuple[list[np.ndarray], float]:
-    """Return 1 to `count` windows of the first photograph tried that has any, and its exposure; else none."""
-    exposure = 0.0
+def _window(scenes: TrainingScenes, curve: int, rng: np.random.Generator) -> tuple[np.ndarray, float] | None:
+    """Return a window that covers the range under a response, and its exposure; None if too many tries fail."""
     for _ in range(PHOTOGRAPHS_TRIED):
-        scene = pack.scenes[rng.integers(len(pack.scenes))]
-        exposure = float(pack.exposures[curve] * rng.choice(EXPOSURE_FACTORS))
-        codes = code_table(pack.curves[curve], exposure)
-        chosen: list[np.ndarray] = []
+        scene = scenes.pixels[rng.integers(len(scenes.pixels))]
+        exposure = float(scenes.exposures[curve] * rng.uniform(*EXPOSURES))
+        codes = code_table(scenes.curves[curve], exposure)
         for _ in range(POSITIONS_TRIED):
             y, x = (int(rng.integers(side - WINDOW_SIZE + 1)) for side in scene.shape[:2])
             window = scene[y : y + WINDOW_SIZE, x : x + WINDOW_SIZE]
             if _covers_range(window, codes):
-                chosen.append(np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window))
-            if len(chosen) == count:
-                break
-        if chosen:
-            return chosen, exposure
-    return [], exposure
+                return np.ascontiguousarray(window[:, ::-1] if rng.random() < 0.5 else window), exposure
+    return None
 
 
 def _covers_range(window: np.ndarray, codes: np.ndarray) -> bool:
@@ -184,20 +177,3 @@ def _covers_range(window: np.ndarray, codes: np.ndarray) -> bool:
     bits = window.view(np.uint16)
     sparse = bits[::SPARSE_STEP, ::SPARSE_STEP]
     return filled_codes(codes[sparse]) >= FULL_COVERAGE or filled_codes(codes[bits]) >= FULL_COVERAGE
-
-
-def main() -> None:
-    """Pack the splits asked for."""
-    parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
-    parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the pack")
-    parser.add_argument("--split", choices=["train", "validation"], help="by default both")
-    options = parser.parse_args()
-    digest = training_digest(options.data)
-    for split in [options.split] if options.split else ["train", "validation"]:
-        print(f"wrote {write_pack(options.data, options.out, split)}")
-        record_making(options.out, split, digest)
-
-
-if __name__ == "__main__":
-    main()

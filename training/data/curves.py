@@ -57,16 +57,8 @@ def geometric_median(
 
     Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), his iteration from the mean.
 
-    Parameters
-    ----------
-    rows : ndarray, shape (N, M)
-        The rows.
-    compared : slice
-        The columns in which rows are compared.
-    least_distance : float
-        What nearer rows count as, in L2: no single row is the median alone because it is near.
-    steps : int
-        Of the iteration.
+    `compared`: the columns in which rows are compared. `least_distance`: what nearer rows count as, in L2: no single
+    row is the median alone because it is near. `steps`: of the iteration.
     """
     median: Float64Array = rows.mean(axis=0)
     for _ in range(steps):
@@ -87,18 +79,11 @@ class DrawsResponses(Protocol):
 class CurveSource:
     """A family of responses that training draws from.
 
-    Parameters
-    ----------
-    dorf : ndarray, shape (N, 1024)
-        Measured responses.
-    bases : tuple of callables
-        In-camera base curves.
-    camera_fraction : float
-        Fraction, in [0, 1], of the responses that come from `bases`.
-    warp : float
-        Standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response.
-    plain_fraction : float
-        Fraction, in [0, 1], of the responses from `dorf` that are left as they were measured.
+    dorf, (N, 1024): measured responses
+    bases: in-camera base curves
+    camera_fraction: fraction, in [0, 1], of the responses that come from `bases`
+    warp: standard deviation of the logarithms of the two powers, on irradiance and on brightness, that vary a response
+    plain_fraction: fraction, in [0, 1], of the responses from `dorf` that are left as they were measured
     """
 
     dorf: Float64Array

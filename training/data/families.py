@@ -33,12 +33,8 @@ def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
     Up to brightness `SHOULDER` the irradiance is divided by one factor, which is an exposure and leaves the shape error
     as it is; above, its logarithm is stretched so that it still ends at 1.
 
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response.
-    stops : float
-        Headroom to add; above the logarithm, base 2, of the curve's irradiance at the shoulder, which is negative.
+    `curve`: the response. `stops`: headroom to add; above the logarithm, base 2, of the curve's irradiance at the
+    shoulder, which is negative.
     """
     brightness = np.linspace(0, 1, SAMPLES)
     logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)
@@ -106,12 +102,8 @@ def _log_uniform(bounds: tuple[float, float], count: int, rng: np.random.Generat
 class ResponseFamilies:
     """Draws responses of a family.
 
-    Parameters
-    ----------
-    in_camera : callable
-        Returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera".
-    film : CurveSource
-        DoRF: film, video and scientific cameras.
+    in_camera: returns (count, 1024) in-camera responses of a family "phone", "compact" or "camera"
+    film: DoRF: film, video and scientific cameras
     """
 
     in_camera: Callable[[Family, int, np.random.Generator], Float64Array]

@@ -56,26 +56,12 @@ def import_scene(
 ) -> ManifestRow:
     """Write the scene in `path` to `folder` as OpenEXR, add it to the folder's manifest.csv and return its row.
 
-    Parameters
-    ----------
-    path : str or Path
-        A camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file.
-    folder : str or Path
-        The folder of the scenes; it and its manifest.csv are created if absent.
-    kind : {"photograph", "panorama"}
-        A panorama is equirectangular and twice as wide as high; the middle `BAND` of its rows is kept.
-    scale : int or None
-        Each scale x scale samples become one, their mean in linear light; None takes the `automatic_scale`.
-    licence : str
-        Licence of the photograph, for the manifest.
-    overwrite : bool
-        Whether to replace a scene of this name.
-
-    Raises
-    ------
-    CRFNetError
-        If the file is absent, damaged, not scene-linear, too small or black, or if its name is taken; nothing is
-        written then.
+    `path`: a camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file. `folder`: the folder of the
+    scenes; it and its manifest.csv are created if absent. `kind`: a panorama is equirectangular and twice as wide as
+    high; the middle `BAND` of its rows is kept. `scale`: each scale x scale samples become one, their mean in linear
+    light; None takes the `automatic_scale`. `licence`: licence of the photograph, for the manifest. `overwrite`:
+    whether to replace a scene of this name. Raise CRFNetError if the file is absent, damaged, not scene-linear, too
+    small or black, or if its name is taken; nothing is written then.
     """
     path, folder = Path(path), Path(folder)
     target = folder / f"{path.stem}.exr"

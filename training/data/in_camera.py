@@ -45,14 +45,9 @@ SMOOTHING, REACH = 12.0, 48
 class InCameraResponses:
     """A distribution of in-camera responses, Gaussian with heavier tails in log2 irradiance: docs/METHOD.md, Eq. 21.
 
-    Parameters
-    ----------
-    centers : dict
-        Kind -> log2 irradiance at 1024 uniform brightnesses, shape (1024,): the geometric median of its bodies.
-    components : ndarray, shape (6, 1024)
-        Deviations of one standard deviation each, over all kinds.
-    spreads : dict
-        Kind -> how far its bodies differ, relative to `components`.
+    centers: kind -> log2 irradiance at 1024 uniform brightnesses, shape (1024,): the geometric median of its bodies
+    components, (6, 1024): deviations of one standard deviation each, over all kinds
+    spreads: kind -> how far its bodies differ, relative to `components`
     """
 
     centers: dict[str, Float64Array]

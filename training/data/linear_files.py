@@ -45,19 +45,10 @@ def linear_scene(
     In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. Other files are multiplied by
     the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`.
 
-    Parameters
-    ----------
-    path : Path
-        A camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file.
-    is_panorama : bool
-        Whether it is equirectangular, twice as wide as high; the middle `BAND` of its rows is kept.
-    scale : int or None
-        Each scale x scale samples become one, their mean; None takes the `automatic_scale`.
-
-    Raises
-    ------
-    PhotoError
-        If the file is absent, damaged, not scene-linear, too small or black, or no panorama although it is called one.
+    `path`: a camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file. `is_panorama`: whether it is
+    equirectangular, twice as wide as high; the middle `BAND` of its rows is kept. `scale`: each scale x scale samples
+    become one, their mean; None takes the `automatic_scale`. Raise PhotoError if the file is absent, damaged, not
+    scene-linear, too small or black, or no panorama although it is called one.
     """
     is_raw = path.suffix.lower() in RAW_SUFFIXES
     samples = read_raw(path) if is_raw else read_hdr(path)
@@ -79,10 +70,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
     The white balance is the camera's, the demosaicing AHD. Rows and columns are as stored, whatever the orientation.
     Negative values, which are colors outside the primaries, become 0.
 
-    Raises
-    ------
-    PhotoError
-        If the file is absent, or LibRaw does not know it or finds it damaged.
+    Raise PhotoError if the file is absent, or LibRaw does not know it or finds it damaged.
     """
     _check_file(path)
     try:
@@ -97,10 +85,8 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
 def read_hdr(path: Path) -> NDArray[np.float32]:
     """Return the samples of an OpenEXR or Radiance HDR file, float32 (H, W, 3), as stored.
 
-    Raises
-    ------
-    PhotoError
-        If the file is absent, damaged, not of floats, without RGB or gray, or not scene-linear, as JPEG, PNG or TIFF.
+    Raise PhotoError if the file is absent, damaged, not of floats, without RGB or gray, or not scene-linear, as JPEG,
+    PNG or TIFF.
     """
     _check_file(path)
     with path.open("rb") as file:

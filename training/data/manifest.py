@@ -53,20 +53,11 @@ _DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.
 class ManifestRow:
     """One file.
 
-    Parameters
-    ----------
-    file : str
-        Path in the data folder, with slashes.
-    kind : str
-        "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table".
-    source : str
-        Repository and path, package, or owner.
-    licence : str
-        As the source states it.
-    split : str
-        "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used.
-    sha256 : str
-        Of the file.
+    file: path in the data folder, with slashes
+    kind: "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
+    source: repository and path, package, or owner
+    licence: as the source states it
+    split: "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
     """
 
     file: str
@@ -83,10 +74,7 @@ COLUMNS = tuple(field.name for field in fields(ManifestRow))
 def manifest_rows(data: Path) -> list[ManifestRow]:
     """Return the rows of the data folder `data`, sorted by file.
 
-    Raises
-    ------
-    CRFNetError
-        If a file that the folder's own tables name is absent.
+    Raise CRFNetError if a file that the folder's own tables name is absent.
     """
     listed = [*_scenes(data / "linear"), *_real(data / "real"), *_real_bodies(data / "real_bodies")]
     unhashed = [*_curves(), *_tables(data), *listed]

@@ -36,16 +36,9 @@ def make_bank(
 ) -> ResponseBank:
     """Return the bank.
 
-    Parameters
-    ----------
-    data : Path
-        Folder with dorf, real and real_bodies.
-    without : RealPhotograph, optional
-        The fold whose bodies are left out: see `measured_bodies`.
-    without_held_out : bool
-        Whether to leave out the curves of DoRF that P2 holds out.
-    seed : int
-        Of the draws.
+    `data`: folder with dorf, real and real_bodies. `without`: the fold whose bodies are left out: see
+    `measured_bodies`. `without_held_out`: whether to leave out the curves of DoRF that P2 holds out. `seed`: of the
+    draws.
     """
     in_camera = InCameraResponses.of(measured_bodies(data, without=without))
     dorf = read_dorf(data / DORF_FILE)

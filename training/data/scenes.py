@@ -35,14 +35,9 @@ LUMINANCE = np.array([0.2126, 0.7152, 0.0722], dtype=np.float32)
 class Scene:
     """A linear photograph.
 
-    Parameters
-    ----------
-    name : str
-        The name of its file, without suffix.
-    pixels : ndarray, float32, shape (H, W, 3)
-        Linear light, Rec.709 primaries, scaled so that the geometric mean of the luminance is 1.
-    is_panorama : bool
-        Whether it is a band of an equirectangular panorama.
+    name: the name of its file, without suffix
+    pixels, float32 (H, W, 3): linear light, Rec.709 primaries, scaled so that the geometric mean of the luminance is 1
+    is_panorama: whether it is a band of an equirectangular panorama
     """
 
     name: str
@@ -62,12 +57,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     A quarter of the perspective photographs is in the test split and none in the validation split; panoramas fill up
     these two. Scenes that `training.data.import_scenes` added are in the training split only, so they move no other.
 
-    Parameters
-    ----------
-    folder : Path
-        Holds the scenes and their manifest.csv.
-    with_imported : bool
-        Whether to list the scenes that were imported.
+    `folder`: holds the scenes and their manifest.csv. `with_imported`: whether to list the scenes that were imported.
     """
     with (folder / "manifest.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
@@ -91,10 +81,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
 def read_scenes(folder: Path, split: str) -> list[Scene]:
     """Return the scenes of a split, from the EXR files of `folder`.
 
-    Raises
-    ------
-    CRFNetError
-        If the split has no scene.
+    Raise CRFNetError if the split has no scene.
     """
     scenes = split_scenes(folder)[split]
     if not scenes:

@@ -36,10 +36,7 @@ def curve_groups(dorf: Float64Array) -> IndexArray:
     Complete-linkage clustering on the L2 distance: no two curves of a group are farther apart than `GROUP_DIAMETER`.
     The 201 curves of DoRF fall into 48 groups.
 
-    Parameters
-    ----------
-    dorf : ndarray, shape (N, 1024)
-        Responses at uniform irradiances.
+    `dorf`, (N, 1024): responses at uniform irradiances.
     """
     labels = fcluster(linkage(dorf, method="complete"), GROUP_DIAMETER, criterion="distance")
     _, first, groups = np.unique(labels, return_index=True, return_inverse=True)
@@ -51,12 +48,7 @@ def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray
 
     The groups come in random order, and each is held out if it still fits into `HELD_OUT_FRACTION` of the curves.
 
-    Parameters
-    ----------
-    dorf : ndarray, shape (N, 1024)
-        Responses at uniform irradiances.
-    seed : int
-        Seed of the order of the groups.
+    `dorf`, (N, 1024): responses at uniform irradiances. `seed`: seed of the order of the groups.
     """
     groups = curve_groups(dorf)
     sizes, room = np.bincount(groups), round(HELD_OUT_FRACTION * len(dorf))
@@ -84,10 +76,8 @@ def compute_splits(data: Path) -> dict[str, Any]:
 def checked_splits(data: Path) -> dict[str, Any]:
     """Return the splits in training/data/splits.json.
 
-    Raises
-    ------
-    CRFNetError
-        If the scenes or curves in the folder `data` are split otherwise, so that figures would not be comparable.
+    Raise CRFNetError if the scenes or curves in the folder `data` are split otherwise, so that figures would not be
+    comparable.
     """
     splits: dict[str, Any] = json.loads(SPLITS_FILE.read_text())
     computed = compute_splits(data)

@@ -60,10 +60,7 @@ To write the folder again, byte for byte:
 def read_light(path: Path) -> Scene:
     """Return the middle rows of a studio light, scaled so that the geometric mean of their luminance is 1.
 
-    Raises
-    ------
-    CRFNetError
-        If the file is absent.
+    Raise CRFNetError if the file is absent.
     """
     if not path.is_file():
         raise CRFNetError(f"{path}: is absent; write the lights with python -m training.data.studio_lights")
@@ -75,10 +72,7 @@ def read_light(path: Path) -> Scene:
 def copy_lights(source: Path, target: Path) -> None:
     """Copy the five files and write their README.md.
 
-    Raises
-    ------
-    CRFNetError
-        If one is absent, or is not the file of Blender 4.5.
+    Raise CRFNetError if one is absent, or is not the file of Blender 4.5.
     """
     for light in LIGHTS:
         path = source / light.file

@@ -19,15 +19,12 @@ from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
 from training.data.studio_lights import LIGHTS_FOLDER
 from training.evaluation.models import Model
-from training.evaluation.plan import CONDITIONS, QUERIES
+from training.evaluation.plan import CONDITIONS
 from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation, Settings
 from training.evaluation.test_sets import bundled_test_set, dorf_test_set
 
 #: The protocols of --quick, its photographs, and how many of these are under stress.
 QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "p3"), 40, 5
-
-#: The queries of --quick: those that cost little.
-QUICK_QUERIES = tuple(query for query in QUERIES if query.pooled <= 2 and (query.windows or 0) <= 2)
 
 
 def parser() -> argparse.ArgumentParser:
@@ -43,9 +40,7 @@ def parser() -> argparse.ArgumentParser:
     command.add_argument("--protocol", nargs="+", choices=PROTOCOLS, help="all that the models allow by default")
     command.add_argument("--photographs", type=int, help="the most photographs of P0 and P2 (all, or 40 with --quick)")
     command.add_argument("--stressed", type=int, help="photographs of P3 (200, or 5 with --quick)")
-    command.add_argument(
-        "--condition", nargs="+", choices=[each.name for each in CONDITIONS], help="conditions of P3, without queries"
-    )
+    command.add_argument("--condition", nargs="+", choices=[each.name for each in CONDITIONS], help="conditions of P3")
     command.add_argument("--workers", type=int, default=2, help="processes")
     command.add_argument("--seed", type=int, default=2017)
     command.add_argument("--quick", action="store_true", help="bundled lights and formulas instead of the data")
@@ -56,10 +51,7 @@ def parser() -> argparse.ArgumentParser:
 def parsed(arguments: list[str] | None = None) -> Evaluation:
     """Return the evaluation that a command line asks for.
 
-    Raises
-    ------
-    CRFNetError
-        If neither data nor --quick is given, or a model or number is wrong.
+    Raise CRFNetError if neither data nor --quick is given, or a model or number is wrong.
     """
     options = parser().parse_args(arguments)
     if options.data is None and not options.quick:
@@ -80,10 +72,10 @@ def parsed(arguments: list[str] | None = None) -> Evaluation:
         seed=options.seed,
     )
     if options.quick:
-        settings = replace(settings, stress_photographs=QUICK_STRESS_PHOTOGRAPHS, queries=QUICK_QUERIES)
+        settings = replace(settings, stress_photographs=QUICK_STRESS_PHOTOGRAPHS)
     if options.condition:
         chosen = {CONDITIONS[0].name, *options.condition}
-        settings = replace(settings, conditions=tuple(one for one in CONDITIONS if one.name in chosen), queries=())
+        settings = replace(settings, conditions=tuple(one for one in CONDITIONS if one.name in chosen))
     if options.photographs is not None:
         settings = replace(settings, photographs=options.photographs)
     if options.stressed is not None:

@@ -15,7 +15,7 @@ from training.data.curves import IRRADIANCE, curve_of_inverse, geometric_median
 from training.data.families import SHOULDER, with_headroom
 
 #: Components of the EMoR oracles.
-ORACLE_COMPONENTS = (1, 2, 3, 5, 11)
+ORACLE_COMPONENTS = (1, 3, 11)
 
 #: Names of the baselines that tables or plots pick out.
 GAMMA = "gamma 2.2"
@@ -32,10 +32,8 @@ MOST_ADDED, MOST_USED = 3.0, 0.95
 def constant_curves(known: Float64Array) -> dict[str, ResponseCurve]:
     """Return the guesses that are the same for every photograph, by name.
 
-    Parameters
-    ----------
-    known : ndarray, shape (N, 1024)
-        The responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of DoRF.
+    `known`, (N, 1024): the responses whose geometric median is taken. The mean curve is the mean of EMoR, and so of
+    DoRF.
     """
     samples = {
         "sRGB": srgb_encode(IRRADIANCE),

@@ -14,16 +14,8 @@ from crfnet_core.network import ModelConfig, model_folder, packaged_models
 class Model:
     """A model folder.
 
-    Parameters
-    ----------
-    name : str
-        Of the folder.
-    folder : Path
-        The folder.
-    sha256 : str
-        Of model.onnx.
-    held_out_curves : tuple of int
-        Numbers of the DoRF curves that model.json lists as kept out of training.
+    sha256: of model.onnx
+    held_out_curves: numbers of the DoRF curves that model.json lists as kept out of training
     """
 
     name: str
@@ -35,10 +27,7 @@ class Model:
     def find(cls, wanted: str) -> Model:
         """Return the model of this name in crfnet_core/models, or in the folder of this path.
 
-        Raises
-        ------
-        CRFNetError
-            If there is neither.
+        Raise CRFNetError if there is neither.
         """
         folder = model_folder(wanted)
         if not (folder / "model.json").is_file():

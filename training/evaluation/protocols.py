@@ -17,13 +17,9 @@ from training.evaluation.measure.simulated import Job, measure_simulated
 from training.evaluation.measure.table import TABLE_FILE, Cases, Table, code_digest
 from training.evaluation.models import Model
 from training.evaluation.plan import (
-    CLEAN,
     CONDITIONS,
-    PLAIN,
-    QUERIES,
     STRESS_PHOTOGRAPHS,
     Condition,
-    Query,
     TestPhotograph,
     clean_photographs,
     stress_photographs,
@@ -53,24 +49,14 @@ CODE_NOTE = f"some photographs were measured before the code changed; delete {TA
 class Settings:
     """The scope of an evaluation.
 
-    Parameters
-    ----------
-    out : Path
-        The folder of the table and the report.
-    models : tuple of Model
-        All are measured on the same photographs.
-    protocols : tuple of str
-        Some of `PROTOCOLS`.
-    photographs : int
-        The most photographs in P0 and P2.
-    workers : int
-        Processes; 1 measures in this one.
-    seed : int
-        Of the choice of photographs, of dither, noise and bootstrap.
-    stress_photographs : int
-        The most photographs in P3 under each condition; also limited by `photographs`.
-    conditions, queries : tuple
-        Of P3.
+    out: the folder of the table and the report
+    models: all are measured on the same photographs
+    protocols: some of `PROTOCOLS`
+    photographs: the most photographs in P0 and P2
+    workers: processes; 1 measures in this one
+    seed: of the choice of photographs, of dither, noise and bootstrap
+    stress_photographs: the most photographs in P3 under each condition; also limited by `photographs`
+    conditions: of P3
     """
 
     out: Path
@@ -81,19 +67,13 @@ class Settings:
     seed: int = 2017
     stress_photographs: int = STRESS_PHOTOGRAPHS
     conditions: tuple[Condition, ...] = CONDITIONS
-    queries: tuple[Query, ...] = QUERIES
 
 
 @dataclass
 class Evaluation:
     """One evaluation: call `run`.
 
-    Parameters
-    ----------
-    settings : Settings
-        Models, protocols, numbers.
-    test_set : TestSet
-        Scenes and responses.
+    settings: models, protocols, numbers
     """
 
     settings: Settings
@@ -103,10 +83,7 @@ class Evaluation:
     def run(self) -> Report:
         """Measure what the table lacks, write report.json and report.md, and return the report.
 
-        Raises
-        ------
-        CRFNetError
-            If two models have one name, or P2 is asked of a model that knows its responses.
+        Raise CRFNetError if two models have one name, or P2 is asked of a model that knows its responses.
         """
         self._check()
         every, held_out = range(len(self.test_set.curves)), self.test_set.held_out
@@ -184,7 +161,7 @@ class Evaluation:
         return sums.clean_rows(protocol, cases, list(self._models), seed=settings.seed)
 
     def _stress(self) -> Iterator[ReportRow]:
-        """Measure P3, and return the figures under every condition and query."""
+        """Measure P3, and return the figures under every condition."""
         settings = self.settings
         photographs = stress_photographs(
             range(len(self.test_set.scenes)),
@@ -192,17 +169,14 @@ class Evaluation:
             count=min(settings.stress_photographs, settings.photographs),
             seed=settings.seed,
             conditions=settings.conditions,
-            queries=settings.queries,
         )
         self._simulated("P3", photographs)
 
-        def cases(condition: Condition, query: Query) -> Cases:
-            chosen = [each.label for each in photographs if (each.condition, each.query) == (condition, query)]
-            return Cases(self._table.rows("P3", self._models | ({GAMMA: ""} if query == PLAIN else {}), chosen))
-
-        conditions = {condition.name: cases(condition, PLAIN) for condition in settings.conditions}
-        asked = dict.fromkeys(each.query for each in photographs if each.query != PLAIN)
-        return sums.stress_rows(conditions, {query.name: cases(CLEAN, query) for query in asked}, seed=settings.seed)
+        estimators, conditions = self._models | {GAMMA: ""}, dict[str, Cases]()
+        for condition in settings.conditions:
+            chosen = [photograph.label for photograph in photographs if photograph.condition == condition]
+            conditions[condition.name] = Cases(self._table.rows("P3", estimators, chosen))
+        return sums.stress_rows(conditions, seed=settings.seed)
 
     def _real(self) -> Iterator[ReportRow]:
         """Measure real photographs, and yield the figures of each folder and of both."""

@@ -44,16 +44,9 @@ class SceneFile:
 class TestSet:
     """Scenes that no model was trained on, and responses.
 
-    Parameters
-    ----------
-    scenes : tuple of SceneFile
-        The test scenes.
-    curves : ndarray, float64, shape (N, 1024)
-        True responses at 1024 uniform irradiances.
-    held_out : tuple of int
-        Numbers of the responses that P2 holds out; empty where there is no such split.
-    data : Path, optional
-        The folder of the data; None for the bundled test set.
+    curves, float64 (N, 1024): true responses at 1024 uniform irradiances
+    held_out: numbers of the responses that P2 holds out; empty where there is no such split
+    data: the folder of the data; None for the bundled test set
     """
 
     __test__ = False  # no test class of pytest
@@ -84,10 +77,7 @@ class TestSet:
 def dorf_test_set(data: Path) -> TestSet:
     """Return the test scenes of the folder `data` and the 201 responses of DoRF.
 
-    Raises
-    ------
-    CRFNetError
-        If the split of the data differs from training/data/splits.json.
+    Raise CRFNetError if the split of the data differs from training/data/splits.json.
     """
     held_out = checked_splits(data)["held_out_curves"]
     curves = read_dorf(data / DORF_FILE)

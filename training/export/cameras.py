@@ -16,13 +16,7 @@ from training.data.real.stacks import measured_camera, settings_of_bodies
 
 
 def measured_cameras(data: Path) -> list[Camera]:
-    """Return the cameras of DATA/real_bodies, sorted by name.
-
-    Parameters
-    ----------
-    data : Path
-        The data folder.
-    """
+    """Return the cameras of DATA/real_bodies, sorted by name."""
     return [
         measured_camera(name, stacks)
         for settings in settings_of_bodies(data).values()

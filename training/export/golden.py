@@ -44,10 +44,7 @@ def write_golden(network: nn.Module, signature: Signature, path: Path) -> None:
 def assert_parity(folder: Path, golden: Path) -> float:
     """Return the largest difference between the golden outputs and those of onnxruntime for the model in `folder`.
 
-    Raises
-    ------
-    SystemExit
-        If it is above `PARITY`.
+    Raise SystemExit if it is above `PARITY`.
     """
     network = ResponseNetwork.load(folder)
     predicted = network.predict(golden_windows())

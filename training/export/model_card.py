@@ -71,10 +71,7 @@ def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
 def checked_report(path: Path, config: ModelConfig) -> Report:
     """Return the report, which must hold figures of this very model.
 
-    Raises
-    ------
-    CRFNetError
-        If it is of another model, was measured on the bundled scenes, or lacks P0.
+    Raise CRFNetError if it is of another model, was measured on the bundled scenes, or lacks P0.
     """
     report = read_report(path)
     if report.models.get(config.name) != config.sha256:

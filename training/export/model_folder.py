@@ -29,12 +29,8 @@ from training.provenance import RUN_FILE, Record, read_run, training_commit, wri
 def load_network(run: Path, *, without: Sequence[str] = ()) -> ShippedNetwork:
     """Return the network of a run, ready to infer, with the half-precision matrices that it ships with.
 
-    Parameters
-    ----------
-    run : Path
-        Folder written by the training.
-    without : sequence of str
-        Kinds of features, of `KINDS`, that it does not see: to measure what they are worth.
+    `run`: folder written by the training. `without`: kinds of features, of `KINDS`, that it does not see: to measure
+    what they are worth.
     """
     net = PhotographNet(NetworkConfig(**read_run(run)["recipe"]["network"]))
     net.load_state_dict(torch.load(run / CHECKPOINT, weights_only=True)["net"])
@@ -48,14 +44,8 @@ def write_config(folder: Path, signature: Signature, record: Record) -> None:
 
     The figures come later, from `training.export.model_card`.
 
-    Parameters
-    ----------
-    folder : Path
-        The model folder.
-    signature : Signature
-        What the network reads and answers.
-    record : dict
-        The record of the run: see `training.provenance`.
+    `folder`: the model folder. `signature`: what the network reads and answers. `record`: the record of the run: see
+    `training.provenance`.
     """
     is_without_held_out = record["recipe"].get("training", {}).get("without_held_out", False)
     config = ModelConfig(
@@ -81,14 +71,7 @@ def write_config(folder: Path, signature: Signature, record: Record) -> None:
 def write_model(network: nn.Module, signature: Signature, options: argparse.Namespace) -> None:
     """Write the model folder of a `rounded` network: graph, run.json, golden predictions, checked parity, model.json.
 
-    Parameters
-    ----------
-    network : nn.Module
-        Ready to infer.
-    signature : Signature
-        What it reads and answers.
-    options : Namespace
-        Of `export_options`.
+    `network`: ready to infer. `signature`: what it reads and answers. `options`: of `export_options`.
     """
     record = read_run(options.run)
     options.out.mkdir(parents=True, exist_ok=True)

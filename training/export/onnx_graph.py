@@ -26,14 +26,9 @@ Network = TypeVar("Network", bound=nn.Module)
 class Signature:
     """What a network reads and answers; see `crfnet_core.network.ModelConfig`.
 
-    Parameters
-    ----------
-    input_name : str
-        "statistics" or "windows".
-    input_shape : tuple of int
-        Shape of the input of one window.
-    output_names : tuple of str
-        Names of the outputs, in their order.
+    input_name: "statistics" or "windows"
+    input_shape: shape of the input of one window
+    output_names: names of the outputs, in their order
     """
 
     input_name: str

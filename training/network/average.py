@@ -26,19 +26,10 @@ from training.provenance import RUN_FILE, Record, read_run, write_json
 def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     """Write a run folder with the weighted mean of the last checkpoints of runs, and return its checkpoint.
 
-    Parameters
-    ----------
-    runs : sequence of Path
-        Folders written by `training.network.train`, or model folders.
-    shares : sequence of float
-        What each run counts, as parts of their sum.
-    out : Path
-        The new folder. Its run.json is that of the run with the largest share, and names all of them under "average".
-
-    Raises
-    ------
-    SystemExit
-        If the networks differ in size or are not related, or there is not one share for each run.
+    `runs`: folders written by `training.network.train`, or model folders. `shares`: what each run counts, as parts of
+    their sum. `out`: the new folder. Its run.json is that of the run with the largest share, and names all of them
+    under "average". Raise SystemExit if the networks differ in size or are not related, or there is not one share for
+    each run.
     """
     if len(shares) != len(runs) or min(shares) <= 0:
         raise SystemExit("give each run a share above 0")

@@ -46,11 +46,8 @@ class Features(nn.Module):
     def forward(self, statistics: Tensor) -> tuple[Tensor, Tensor, Tensor, Tensor]:
         """Return the features of statistics, shape (..., LENGTH): of one window, or summed over several.
 
-        Returns
-        -------
-        tuple of Tensor
-            Of the levels of each channel, (..., 3, LEVEL_FEATURES); of edges, (..., EDGE_FEATURES); of the channel
-            equations, (..., EQUATION_FEATURES); and of the candidate responses, (..., CANDIDATE_FEATURES).
+        The result: of the levels of each channel, (..., 3, LEVEL_FEATURES); of edges, (..., EDGE_FEATURES); of the
+        channel equations, (..., EQUATION_FEATURES); and of the candidate responses, (..., CANDIDATE_FEATURES).
         """
         parts = unpack(statistics)
         return (

@@ -19,12 +19,8 @@ class EvidenceLoss:
     The responses of all training photographs are the prior of training: the evidence is the factor between this prior
     and the posterior, so the prior can be replaced afterwards.
 
-    Parameters
-    ----------
-    weights : Tensor, shape (M, 11)
-        EMoR weights of the responses that the truth competes with.
-    families : Tensor, int, shape (M,)
-        0 of an ordinary response, else 1 + its position in `UNUSUAL`.
+    weights, (M, 11): EMoR weights of the responses that the truth competes with
+    families, int (M,): 0 of an ordinary response, else 1 + its position in `UNUSUAL`
     """
 
     def __init__(self, weights: Tensor, families: Tensor) -> None:
@@ -36,14 +32,8 @@ class EvidenceLoss:
     ) -> Tensor:
         """Return the loss of the outputs of `training.network.model.PhotographNet`.
 
-        Parameters
-        ----------
-        evidence : tuple
-            Of the windows, (B, K, ...), and of the photographs, (B, ...).
-        present : Tensor, bool, shape (B, K)
-            Which windows count.
-        weights, families : Tensor, shape (B, 11) and (B,)
-            The truth.
+        `evidence`: of the windows, (B, K, ...), and of the photographs, (B, ...). `present`, bool (B, K): which windows
+        count. `weights`, `families`, (B, 11) and (B,): the truth.
         """
         windows, photographs = evidence
         repeated = torch.arange(len(weights)).repeat_interleave(present.sum(1))
@@ -81,14 +71,8 @@ ORDINARY = 0
 def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
     """Return log likelihoods (N, M) of responses under evidence of N: what `Evidence.log_likelihoods` computes.
 
-    Parameters
-    ----------
-    evidence : tuple of Tensor
-        Of N windows or photographs.
-    weights : Tensor, shape (1 or N, M, 11)
-        EMoR weights.
-    families : Tensor, shape (1 or N, M)
-        Their families: see `EvidenceLoss`.
+    `evidence`: of N windows or photographs. `weights`, (1 or N, M, 11): EMoR weights. `families`, (1 or N, M): their
+    families: see `EvidenceLoss`.
     """
     location, factor, log_odds = evidence
     squares = _squares(weights[..., :EVIDENCE_WEIGHTS], location, factor)

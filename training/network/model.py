@@ -34,14 +34,9 @@ EvidenceTensors = tuple[Tensor, Tensor, Tensor]
 class NetworkConfig:
     """The sizes of the network and what training leaves out at random.
 
-    Parameters
-    ----------
-    width : int
-        Values of every hidden layer.
-    dropout : float
-        Fraction of the hidden values that are set to 0.
-    kind_dropout : float
-        Fraction of the rows in which a whole kind of features is set to 0.
+    width: values of every hidden layer
+    dropout: fraction of the hidden values that are set to 0
+    kind_dropout: fraction of the rows in which a whole kind of features is set to 0
     """
 
     width: int = 384
@@ -56,17 +51,10 @@ KINDS = ("levels", "edges", "equations", "candidates")
 class KindLayer(nn.Module):
     """One kind of features to a vector: normalization, kind dropout in training, and a dense layer.
 
-    Parameters
-    ----------
-    features : int
-        How many there are.
-    config : NetworkConfig
-        The sizes of the network.
+    features: how many there are
+    config: the sizes of the network
 
-    Attributes
-    ----------
-    is_left_out : bool
-        Whether all features are set to 0, as training does at random: to measure what a kind is worth.
+    is_left_out: whether all features are set to 0, as training does at random: to measure what a kind is worth
     """
 
     def __init__(self, features: int, config: NetworkConfig) -> None:
@@ -155,12 +143,8 @@ class PhotographNet(nn.Module):
     def forward(self, statistics: Tensor, present: Tensor) -> tuple[EvidenceTensors, EvidenceTensors]:
         """Return the evidence of windows, (B, K, ...), and of photographs, (B, ...).
 
-        Parameters
-        ----------
-        statistics : Tensor, shape (B, K, LENGTH)
-            Of K windows of each of B photographs.
-        present : Tensor, bool, shape (B, K)
-            Which windows count; at least one of each photograph.
+        `statistics`, (B, K, LENGTH): of K windows of each of B photographs. `present`, bool (B, K): which windows
+        count; at least one of each photograph.
         """
         together = (statistics * present[..., None]).sum(1, keepdim=True)
         rows = torch.cat([statistics, together], dim=1)  # (B, K + 1, LENGTH)

@@ -9,12 +9,8 @@ from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 def moving_average(network: nn.Module, steps: float) -> AveragedModel:
     """Return the exponential average of a network's weights and of the statistics of its normalizations.
 
-    Parameters
-    ----------
-    network : nn.Module
-        The network; give it to `AveragedModel.update_parameters` after each step.
-    steps : float
-        How far the average reaches back; 1 for no average.
+    `network`: the network; give it to `AveragedModel.update_parameters` after each step. `steps`: how far the average
+    reaches back; 1 for no average.
     """
     return AveragedModel(network, multi_avg_fn=get_ema_multi_avg_fn(1 - 1 / steps), use_buffers=True)
 

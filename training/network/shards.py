@@ -80,14 +80,9 @@ STATED_FAMILIES = {
 class Shards:
     """Photographs as the training reads them.
 
-    Parameters
-    ----------
-    statistics : Tensor, float16, shape (P, 4, LENGTH)
-        Of the windows, in `UNIT`s.
-    weights : Tensor, float32, shape (P, 11)
-        EMoR weights of the responses.
-    curve_sets, folds : Tensor, int8, shape (P,)
-        `CurveSet` of the response, and fold of the scenes.
+    statistics, float16 (P, 4, LENGTH): of the windows, in `UNIT`s
+    weights, float32 (P, 11): EMoR weights of the responses
+    curve_sets, folds, int8 (P,): `CurveSet` of the response, and fold of the scenes
     """
 
     statistics: Tensor
@@ -166,10 +161,7 @@ def shard_path(folder: Path, split: str, number: int) -> Path:
 def shard_files(folder: Path, split: str) -> list[Path]:
     """Return the shard files of a split, sorted.
 
-    Raises
-    ------
-    FileNotFoundError
-        If there are none.
+    Raise FileNotFoundError if there are none.
     """
     files = sorted(folder.glob(f"{split}_*.npz"))
     if not files:

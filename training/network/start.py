@@ -22,18 +22,9 @@ HALF_SUFFIX = "_half"
 def start_from(net: PhotographNet, source: Path) -> None:
     """Copy weights into the network, in place.
 
-    Parameters
-    ----------
-    net : PhotographNet
-        Is changed. What a checkpoint lacks stays as it is.
-    source : Path
-        A checkpoint, or a model folder written by `training.export.model_folder`. Matrices of a model folder were
-        rounded to half precision.
-
-    Raises
-    ------
-    SystemExit
-        If a model folder holds another network.
+    `net`: is changed. What a checkpoint lacks stays as it is. `source`: a checkpoint, or a model folder written by
+    `training.export.model_folder`. Matrices of a model folder were rounded to half precision. Raise SystemExit if a
+    model folder holds another network.
     """
     file = _weights_file(source)
     state = torch.load(file, weights_only=True)["net"] if file == source else _packaged_state(net, file)

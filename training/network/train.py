@@ -41,26 +41,18 @@ class TrainingConfig:
     The average (Polyak & Juditsky, 1992) is what a run yields. It takes the place of most of the decrease of the
     learning rate: the weights go on moving, and their mean does better on new scenes (training/EXPERIMENTS.md).
 
-    Parameters
-    ----------
-    epochs, batch : int
-        Passes over the photographs, and photographs of a step.
-    learning_rate, weight_decay : float
-        The highest learning rate of the cycle, and the decay of AdamW.
-    last_rate : float
-        The learning rate at the end of the cycle, as a part of the highest; above 0.
-    averaged_steps : float
-        Steps that the moving average of the weights reaches back, exponentially; 1 for no average.
-    all_windows : float
-        Fraction of the training photographs seen with all their windows; of the others, some are left out at random.
-    without_held_out : bool
-        Whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds out.
-    without_fold : int, optional
-        The fold of the training scenes to leave out and to validate on, in place of the validation scenes.
-    mixed : bool
-        Whether to compute in bfloat16 where that is safe; slow on processors that emulate it.
-    seed : int
-        Of the initial weights and of the order of the photographs.
+    epochs, batch: passes over the photographs, and photographs of a step
+    learning_rate, weight_decay: the highest learning rate of the cycle, and the decay of AdamW
+    last_rate: the learning rate at the end of the cycle, as a part of the highest; above 0
+    averaged_steps: steps that the moving average of the weights reaches back, exponentially; 1 for no average
+    all_windows: fraction of the training photographs seen with all their windows; of the others, some are left out at
+        random
+    without_held_out: whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds
+        out
+    without_fold: the fold of the training scenes to leave out and to validate on, in place of the validation
+        scenes
+    mixed: whether to compute in bfloat16 where that is safe; slow on processors that emulate it
+    seed: of the initial weights and of the order of the photographs
     """
 
     epochs: int = 12
@@ -111,22 +103,11 @@ class TrainingState:
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
-    Parameters
-    ----------
-    shards : Path
-        Folder written by `training.network.shards`.
-    run : Path
-        Folder of run.json, log.csv and last.pt. The log has the epoch, the training loss, and of the validation
-        photographs the loss and the distance between the posterior's mean and the truth, in units of E_est.
-    config, network
-        The recipe and the sizes of the network.
-    init : Path, optional
-        A checkpoint or a model folder whose weights the run starts from, as far as it has them.
-
-    Raises
-    ------
-    SystemExit
-        If `run` holds a run of another recipe or on other shards.
+    `shards`: folder written by `training.network.shards`. `run`: folder of run.json, log.csv and last.pt. The log has
+    the epoch, the training loss, and of the validation photographs the loss and the distance between the posterior's
+    mean and the truth, in units of E_est. `config`, `network`: the recipe and the sizes of the network. `init`: a
+    checkpoint or a model folder whose weights the run starts from, as far as it has them. Raise SystemExit if `run`
+    holds a run of another recipe or on other shards.
     """
     photographs, held_out = _split(shards, config)
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]

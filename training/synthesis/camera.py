@@ -33,22 +33,14 @@ ROWS_AT_A_TIME = 512
 class Capture:
     """What happens between the exposed light and the file, beside the response; zeros and None leave a step out.
 
-    Parameters
-    ----------
-    shot_noise : float
-        Variance of the sensor's noise at irradiance 1, where the sensor clips; it is proportional to the irradiance.
-    read_noise : float
-        Standard deviation of the sensor's noise that does not depend on the irradiance.
-    blur : float
-        Standard deviation, in samples, of the Gaussian that blurs the irradiance.
-    sharpening : float
-        Weight of the unsharp mask that is added to the brightness.
-    grain : float
-        Standard deviation of the Gaussian noise that is added to the brightness, in [0, 1].
-    jpeg_quality : int, optional
-        Quality of the JPEG compression, 1 to 95 or more; None for none.
-    subsampled : bool
-        Whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4).
+    shot_noise: variance of the sensor's noise at irradiance 1, where the sensor clips; it is proportional to the
+        irradiance
+    read_noise: standard deviation of the sensor's noise that does not depend on the irradiance
+    blur: standard deviation, in samples, of the Gaussian that blurs the irradiance
+    sharpening: weight of the unsharp mask that is added to the brightness
+    grain: standard deviation of the Gaussian noise that is added to the brightness, in [0, 1]
+    jpeg_quality: quality of the JPEG compression, 1 to 95 or more; None for none
+    subsampled: whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4)
     """
 
     shot_noise: float = 0.0
@@ -83,13 +75,9 @@ class Capture:
 def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
     """Return s_crf: the exposure at which scenes of this luminance have the mean brightness `TARGET_BRIGHTNESS`.
 
-    Parameters
-    ----------
-    curve : ndarray, shape (1024,)
-        The response.
-    luminance : ndarray, shape (N,)
-        Luminances of the training scenes, each scene scaled to a geometric mean of 1. They are the same for every
-        photograph, so s_crf belongs to the response and not to the photograph.
+    `curve`, (1024,): the response. `luminance`, (N,): luminances of the training scenes, each scene scaled to a
+    geometric mean of 1. They are the same for every photograph, so s_crf belongs to the response and not to the
+    photograph.
     """
     low, high = -12.0, 6.0
     for _ in range(24):
@@ -112,24 +100,12 @@ def sensor_light(
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0),
     is_gray: bool = False,
     blur: float = 0.0,
-    upsampling: int = 1,
 ) -> Float32Array:
     """Return the linear light that reaches the sensor, before exposure, float32 (H, W, 3).
 
-    Parameters
-    ----------
-    scene : Scene
-        The light; not changed. A panorama is dithered first (see `training.data.scenes.dithered`).
-    rng : Generator
-        Draws the dither.
-    gains : tuple of float
-        White balance: factors on red, green and blue, scaled so that a neutral keeps its luminance.
-    is_gray : bool
-        Whether all channels hold the luminance.
-    blur : float
-        Variance, in squared pixels of the scene, of a Gaussian.
-    upsampling : int
-        How many times the scene is enlarged along each side, by cubic interpolation.
+    `scene`: the light; not changed. A panorama is dithered first (see `training.data.scenes.dithered`). `rng`: draws
+    the dither. `gains`: white balance: factors on red, green and blue, scaled so that a neutral keeps its luminance.
+    `is_gray`: whether all channels hold the luminance. `blur`: variance, in squared pixels of the scene, of a Gaussian.
     """
     light = dithered(scene.pixels, rng) if scene.is_panorama else scene.pixels
     light = light * balanced_gains(gains)
@@ -137,7 +113,7 @@ def sensor_light(
         light = np.repeat((light @ LUMINANCE)[:, :, None], 3, axis=2)
     if blur:
         light = blurred(light, float(np.sqrt(blur)))
-    return enlarged(light, upsampling)
+    return light
 
 
 def render_photo(
@@ -152,22 +128,10 @@ def render_photo(
 ) -> Photo:
     """Return the photograph of the light of `sensor_light`, as the estimator reads it from a file.
 
-    Parameters
-    ----------
-    light : ndarray, float32, shape (H, W, 3)
-        Linear light; not changed.
-    curve : ndarray, shape (1024,)
-        The response of the camera.
-    exposure : float
-        Irradiance per unit of light; irradiance above 1 clips.
-    rng : Generator
-        Draws the noise.
-    name : str
-        The photograph's name.
-    capture : Capture, optional
-        The other steps; by default only 8-bit rounding follows the response.
-    is_gray : bool
-        Whether all channels of the photograph are equal.
+    `light`, float32 (H, W, 3): linear light; not changed. `curve`, (1024,): the response of the camera. `exposure`:
+    irradiance per unit of light; irradiance above 1 clips. `rng`: draws the noise. `name`: the photograph's name.
+    `capture`: the other steps; by default only 8-bit rounding follows the response. `is_gray`: whether all channels of
+    the photograph are equal.
     """
     capture = capture or Capture()
     rows = ROWS_AT_A_TIME if capture.splits_into_rows else len(light)
@@ -227,8 +191,6 @@ def balanced_gains(gains: tuple[float, float, float]) -> Float32Array:
 
 def enlarged(light: Float32Array, times: int) -> Float32Array:
     """Return linear light enlarged by cubic interpolation, float32 (times H, times W, 3), nowhere negative."""
-    if times == 1:
-        return light
     size = (light.shape[1] * times, light.shape[0] * times)
     channels = [Image.fromarray(light[:, :, k]).resize(size, Image.Resampling.BICUBIC) for k in range(3)]
     return np.maximum(np.stack([np.asarray(channel) for channel in channels], axis=2), 0)

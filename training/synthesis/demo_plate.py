@@ -42,12 +42,8 @@ def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contra
     With s = `roll_off`, k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
     f = (1 - k) v + k v^2 (3 - 2 v). It is no measured curve, but of the kind that cameras have.
 
-    Parameters
-    ----------
-    irradiance : ndarray, float64
-        Relative irradiance E in [0, 1], any shape.
-    roll_off, contrast : float
-        Of highlights (1 is none), and weight of the S-curve (0 is none, 1 is smoothstep).
+    `irradiance`, float64: relative irradiance E in [0, 1], any shape. `roll_off`, `contrast`: of highlights (1 is
+    none), and weight of the S-curve (0 is none, 1 is smoothstep).
     """
     rolled = roll_off * irradiance / (1 + (roll_off - 1) * irradiance)
     encoded = srgb_encode(rolled)
@@ -57,10 +53,7 @@ def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contra
 def read_scene(studio_light: str | Path) -> Float64Array:
     """Return the linear scene, float64 (H, W, 3), any scale.
 
-    Raises
-    ------
-    PhotoError
-        If the file cannot be read.
+    Raise PhotoError if the file cannot be read.
     """
     image = oiio.ImageBuf(str(studio_light))
     if image.has_error or not image.initialized:
@@ -79,10 +72,7 @@ def photograph(scene: Float64Array) -> Uint8Array:
 def write_photograph(path: Path, pixels: Uint8Array) -> None:
     """Write the JPEG, without chroma subsampling and without metadata that names the software.
 
-    Raises
-    ------
-    PhotoError
-        If the file cannot be written.
+    Raise PhotoError if the file cannot be written.
     """
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.UINT8)

@@ -34,14 +34,9 @@ COARSE_STEP = 8
 class ToneMapping:
     """Local tone mapping: a smooth gain, before the response, that evens out the large-scale contrast.
 
-    Parameters
-    ----------
-    strength : float
-        Part of the large-scale contrast, in stops, that is taken out.
-    radius : float
-        Standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance.
-    pivot : float
-        Irradiance that keeps its value.
+    strength: part of the large-scale contrast, in stops, that is taken out
+    radius: standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance
+    pivot: irradiance that keeps its value
     """
 
     strength: float
@@ -66,14 +61,7 @@ class ToneMapping:
 class Export:
     """A picture made smaller after it was encoded, as for the web.
 
-    Parameters
-    ----------
-    resample : PIL.Image.Resampling
-        The filter, on encoded values.
-    finish : Finish
-        The steps on the small picture.
-    jpeg : Jpeg, optional
-        Its compression.
+    finish: the steps on the small picture
     """
 
     resample: Image.Resampling
@@ -85,28 +73,16 @@ class Export:
 class Development:
     """What happens between the exposed light of a frame and the windows of the file; the defaults leave steps out.
 
-    Parameters
-    ----------
-    lens_blur : float
-        Standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance.
-    glare : float
-        Part of the frame's mean irradiance that the lens spreads over all of it.
-    sensor : Sensor
-        Noise, clipping, mosaic, colors.
-    tone_mapping : ToneMapping, optional
-        Local tone mapping.
-    keeps_hue : bool
-        Whether the response applies to the largest and the smallest channel only, and the middle one keeps its place
-        between them in linear light.
-    finish : Finish
-        The steps on the encoded picture.
-    jpeg : Jpeg, optional
-        The compression of the whole frame.
-    export : Export, optional
-        Scaling to the size of a window afterwards; without it the frame is point-sampled where it is larger.
-    scatter : int
-        Point sampling: samples of the frame by which each sample is displaced at most, at random. It stands for texture
-        that the scenes do not resolve.
+    lens_blur: standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance
+    glare: part of the frame's mean irradiance that the lens spreads over all of it
+    sensor: noise, clipping, mosaic, colors
+    keeps_hue: whether the response applies to the largest and the smallest channel only, and the middle one keeps its
+        place between them in linear light
+    finish: the steps on the encoded picture
+    jpeg: the compression of the whole frame
+    export: scaling to the size of a window afterwards; without it the frame is point-sampled where it is larger
+    scatter: point sampling: samples of the frame by which each sample is displaced at most, at random. It stands for
+        texture that the scenes do not resolve.
     """
 
     lens_blur: float = 0.0
@@ -130,19 +106,11 @@ def develop(
 ) -> Uint8Array:
     """Return the windows of a photograph, uint8 (windows, 227, 227, 3).
 
-    Parameters
-    ----------
-    irradiance : ndarray, float32, shape (N, S, S, 3)
-        Exposed light of frames, of S >= 227 samples along each side; not changed. Irradiance above 1 clips. Where all
-        channels are equal the photograph is gray too: its noise has no color.
-    curve : ndarray, shape (1024,)
-        The response.
-    development : Development
-        The steps.
-    rng : Generator
-        Draws the noise, and the places of scattered samples.
-    windows : int, optional
-        Windows, a multiple of N, which is the default: of frames that are point-sampled, several may come from each.
+    `irradiance`, float32 (N, S, S, 3): exposed light of frames, of S >= 227 samples along each side; not changed.
+    Irradiance above 1 clips. Where all channels are equal the photograph is gray too: its noise has no color. `curve`,
+    (1024,): the response. `development`: the steps. `rng`: draws the noise, and the places of scattered samples.
+    `windows`: windows, a multiple of N, which is the default: of frames that are point-sampled, several may come
+    from each.
     """
     planes = [np.ascontiguousarray(irradiance[..., channel]) for channel in range(3)]
     if development.lens_blur:

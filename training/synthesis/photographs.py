@@ -64,16 +64,10 @@ SATURATED = ((80, 99.9), (90, 99.95))
 class TrainingPhotograph:
     """Windows of one photograph and the truth about it.
 
-    Parameters
-    ----------
-    windows : ndarray, uint8, shape (4, 227, 227, 3)
-        Code values.
-    curve : ndarray, shape (1024,)
-        The response.
-    curve_set : int
-        Which of the source's `curve_sets` the response is from.
-    fold : int
-        Fold of the scenes.
+    windows, uint8 (4, 227, 227, 3): code values
+    curve, (1024,): the response
+    curve_set: which of the source's `curve_sets` the response is from
+    fold: fold of the scenes
     """
 
     windows: Uint8Array
@@ -86,22 +80,13 @@ class TrainingPhotograph:
 class PhotographSource:
     """Draws training photographs.
 
-    Parameters
-    ----------
-    scenes : list of Scene
-        The scenes of one split.
-    curve_sets : tuple of DrawsResponses
-        Responses, in sets of which a training run may leave some out.
-    fractions : tuple of float
-        Fraction of the photographs with each set; their sum is 1.
-    luminance : ndarray, shape (N,)
-        See `training.synthesis.camera.automatic_exposure`.
-    cameras : int
-        Cameras that take the same windows of a scene.
-    unusual : dict
-        Number of a set -> kinds of pictures that no response explains, in place of photographs with its responses.
-    shares : CameraShares
-        Fractions of the photographs by what their cameras do.
+    scenes: the scenes of one split
+    curve_sets: responses, in sets of which a training run may leave some out
+    fractions: fraction of the photographs with each set; their sum is 1
+    luminance, (N,): see `training.synthesis.camera.automatic_exposure`
+    cameras: cameras that take the same windows of a scene
+    unusual: number of a set -> kinds of pictures that no response explains, in place of photographs with its responses
+    shares: fractions of the photographs by what their cameras do
     """
 
     scenes: list[Scene]

@@ -28,14 +28,10 @@ STANDARD_TABLES = tuple(np.array(table, np.float64) for table in (ANNEX_K_LUMA, 
 class Jpeg:
     """A JPEG compression.
 
-    Parameters
-    ----------
-    scale : float
-        Factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98.
-    flatness : float
-        In [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie, as in cameras.
-    subsampling : int
-        0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0).
+    scale: factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98
+    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie, as in
+        cameras
+    subsampling: 0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0)
     """
 
     scale: float = 0.2
@@ -63,16 +59,10 @@ class Jpeg:
 class Sharpening:
     """An unsharp mask on luma, with halos.
 
-    Parameters
-    ----------
-    amount : float
-        Factor on the difference between the luma and its blurred copy, which is added.
-    radius : float
-        Standard deviation, in samples, of the Gaussian that blurs.
-    limit : float
-        The most that is added or taken away, in [0, 1].
-    threshold : float
-        Differences are made smaller by this first, so that noise is not sharpened.
+    amount: factor on the difference between the luma and its blurred copy, which is added
+    radius: standard deviation, in samples, of the Gaussian that blurs
+    limit: the most that is added or taken away, in [0, 1]
+    threshold: differences are made smaller by this first, so that noise is not sharpened
     """
 
     amount: float
@@ -92,16 +82,9 @@ class Sharpening:
 class Finish:
     """The steps on the encoded picture before JPEG, in this order; the defaults leave every step out.
 
-    Parameters
-    ----------
-    chroma_blur : float
-        Chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd.
-    luma_smoothing : float
-        Luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise.
-    chroma_gain : float
-        Factor on chroma.
-    sharpening : Sharpening, optional
-        The unsharp mask.
+    chroma_blur: chroma noise reduction: side, in samples, of the two boxes that blur chroma, rounded to odd
+    luma_smoothing: luma noise reduction: the standard deviation, in [0, 1], below which detail counts as noise
+    chroma_gain: factor on chroma
     """
 
     chroma_blur: int = 0

@@ -31,16 +31,8 @@ THUMBNAIL_STEP = 4
 class AffineResampling:
     """A window of side x side samples at center + matrix @ (row, column), mirrored beyond the sides of the scene.
 
-    Parameters
-    ----------
-    scene : Scene
-        The scene that is sampled.
-    matrix : ndarray, shape (2, 2)
-        From samples to pixels of the scene.
-    center : ndarray, shape (2,)
-        Row and column of the scene at the center of the window.
-    side : int
-        Samples along each side.
+    matrix, (2, 2): from samples to pixels of the scene
+    center, (2,): row and column of the scene at the center of the window
     """
 
     scene: Scene

@@ -33,25 +33,16 @@ class Demosaicing(StrEnum):
 class Sensor:
     """A sensor and what is done to its values before the tone curve; the defaults leave every step out.
 
-    Parameters
-    ----------
-    shot_noise : float
-        Variance of the noise at irradiance 1 in a channel of gain 1; it is proportional to the irradiance.
-    read_noise : float
-        Standard deviation of the noise that does not depend on the irradiance, in a channel of gain 1.
-    gains : tuple of float
-        White balance: factors on the sensor's red, green and blue. They multiply the noise.
-    white : float
-        Irradiance at which a channel of gain 1 clips; 1 is where the response ends.
-    clips_apart : bool
-        Whether each channel clips where the sensor does, at its gain times `white`, rather than all at `white`.
-    crosstalk : float
-        Part of each of the sensor's channels, in [0, 1), that is the mean of all three; the matrix takes it out again.
-    saturation : float
-        Factor of the matrix on the distance of a color from its luminance. Above 1 it makes saturated colors
+    shot_noise: variance of the noise at irradiance 1 in a channel of gain 1; it is proportional to the irradiance
+    read_noise: standard deviation of the noise that does not depend on the irradiance, in a channel of gain 1
+    gains: white balance: factors on the sensor's red, green and blue. They multiply the noise.
+    white: irradiance at which a channel of gain 1 clips; 1 is where the response ends
+    clips_apart: whether each channel clips where the sensor does, at its gain times `white`, rather than all at `white`
+    crosstalk: part of each of the sensor's channels, in [0, 1), that is the mean of all three; the matrix takes it out
+        again
+    saturation: factor of the matrix on the distance of a color from its luminance. Above 1 it makes saturated colors
         negative, and these are clipped.
-    demosaicing : Demosaicing, optional
-        How the mosaic is filled; None for a sensor that measures all colors everywhere.
+    demosaicing: how the mosaic is filled; None for a sensor that measures all colors everywhere
     """
 
     shot_noise: float = 0.0

@@ -1,7 +1,3 @@
-import os
-import socket
-import subprocess
-import sys
 from dataclasses import replace
 
 import numpy as np
@@ -9,19 +5,16 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 pytest.importorskip("onnxscript", reason="training needs the train extra")
-pytest.importorskip("matplotlib", reason="training needs the train extra")
 
-from crfnet_core.network import MODELS, ResponseNetwork
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.response.emor import EmorBasis
-from training.crfnet2017.checkpoints import TrainingState, fold_normalization, start_from
-from training.crfnet2017.export import ShippedCRFNet, load_network
+from training.crfnet2017.export import ShippedCRFNet, fold_normalization, load_network
 from training.crfnet2017.likelihood import Likelihood
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.recipes import RECIPES, Recipe, RunConfig, learning_rate, make_optimizer
+from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
 from training.crfnet2017.stages import StageTask
-from training.crfnet2017.train import train
-from training.crfnet2017.trainer import ProcessContext, Trainer
-from training.crfnet2017.windows import WindowStream, draw_windows, render_windows
+from training.crfnet2017.train import RunConfig, Trainer, TrainingState, start_from, train
+from training.crfnet2017.windows import draw_windows
 from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import write_config
 from training.export.onnx_graph import WINDOWED, export_onnx, rounded
@@ -33,56 +26,39 @@ CPU = torch.device("cpu")
 #: What an answer may be worth.
 LIKELIHOOD = Likelihood(np.linspace(0.2, 0.9, 5), np.linspace(-1, 1, 5), np.tril(np.full((5, 5), 0.5)), -2.0)
 
-EXACT = Recipe(batch=2, mixed=False, channels_last=False, averaged_steps=2.0)
-PLAIN = Recipe("sgd", 0.01, batch=2, mixed=False, channels_last=False, clip=0.0)
-REGRESSION = RunConfig("regress", EXACT, steps=2, validate_every=2)
-
-#: One process of two: a step, a checkpoint, and its own weights beside it.
-ONE_OF_TWO = """
-import sys
-from pathlib import Path
-import torch
-from training.crfnet2017.recipes import Recipe, RunConfig
-from training.crfnet2017.train import train
-from training.crfnet2017.trainer import join_processes
-torch.set_num_threads(1)
-work_folder, recipe = Path(sys.argv[1]), Recipe("sgd", 0.01, batch=2, mixed=False, channels_last=False, clip=0.0)
-config = RunConfig("regress", recipe, 2, validate_every=2)
-state = train(work_folder / "pack", work_folder / "two", config, validation_windows=3, stop=1)
-torch.save(state.network.state_dict(), work_folder / f"rank{join_processes().rank}.pt")
-"""
+REGRESSION = RunConfig("regress", Recipe(steps=2, batch=2, mixed=False, averaged_steps=2.0))
 
 
 @pytest.fixture(scope="module")
-def run(work_folder):
+def validation(scenes):
+    """Held-out windows."""
+    return draw_windows(scenes, 3, np.random.default_rng(7))
+
+
+@pytest.fixture(scope="module")
+def run(scenes, validation, tmp_path_factory):
     """A run of two steps that was not stopped."""
-    train(work_folder / "pack", work_folder / "whole", REGRESSION, validation_windows=3)
-    return work_folder / "whole"
+    folder = tmp_path_factory.mktemp("whole")
+    train(scenes, validation, folder, REGRESSION, digest="data")
+    return folder
 
 
 @pytest.fixture(scope="module")
-def model(work_folder, run):
-    """The model folder of the run, with a likelihood by hand and its golden file beside it."""
-    model = work_folder / "crfnet2017"
+def model(run, tmp_path_factory):
+    """The model folder of the run, with a likelihood by hand and its golden file in it."""
+    model = tmp_path_factory.mktemp("model") / "crfnet2017"
     model.mkdir()
     network = ShippedCRFNet(rounded(load_network(run)), LIKELIHOOD).eval()
     export_onnx(network, WINDOWED, model / "model.onnx")
     write_config(model, WINDOWED, read_run(run))
-    write_golden(network, WINDOWED, work_folder / "golden.npz")
+    write_golden(network, WINDOWED, model / "golden.npz")
     return model
 
 
-def weights_of(path):
-    return torch.load(path, weights_only=True)["network"]
-
-
-def head_gradient(pack, rank):
-    """The gradient of the head at the first step of a process."""
-    torch.manual_seed(1)
-    network, task = CRFNet(), StageTask("regress", pack.curves, squared=False, device=CPU)
-    (batch,) = WindowStream(pack, batch=2, steps=range(1), seed=1, rank=rank)
-    task.loss(network(render_windows(batch, torch.from_numpy(pack.curves))), batch.classes).backward()
-    return network.head.weight.grad
+def states(folder):
+    """The average and the moving weights of the last checkpoint of a run."""
+    state = torch.load(folder / "last.pt", weights_only=True)
+    return state["network"], state["moving"]
 
 
 def equal(first, second):
@@ -116,131 +92,85 @@ def test_the_stages_measure_what_they_say():
     assert not regress.is_better(0.2, [0.1])
 
 
-def test_the_learning_rate_follows_the_recipe():
-    paper, default = RECIPES["paper"], RECIPES["default"]
-    assert [learning_rate(paper, step, 30) for step in (0, 10, 29)] == pytest.approx([1e-2, 1e-3, 1e-4])
-    assert [learning_rate(default, step, 100) for step in (0, 10, 55)] == pytest.approx([5e-5, 1e-3, 5e-4])
+def test_the_papers_recipe_is_the_published_one():
+    classify, regress = RECIPES["paper"]["classify"], RECIPES["paper"]["regress"]
+    assert (classify.steps, regress.steps) == (2_000_000, 25_000)
+    steps = (0, 499_999, 500_000, 1_999_999)
+    assert [learning_rate(classify, step) for step in steps] == pytest.approx([1e-2, 1e-2, 1e-3, 1e-5])
+    assert [learning_rate(regress, step) for step in (0, 19_999, 24_999)] == pytest.approx([1e-4, 1e-4, 1e-5])
+    optimizer = make_optimizer(CRFNet(), regress)
+    assert isinstance(optimizer, torch.optim.SGD)
+    assert [(group["momentum"], group["weight_decay"]) for group in optimizer.param_groups] == [(0.9, 0.0005)] * 2
 
 
-def test_the_first_stage_learns(pack):
-    config = RunConfig("classify", Recipe(batch=2, learning_rate=2e-3, head_factor=0.01), steps=3)
-    task = StageTask("classify", pack.curves, squared=False, device=CPU)
+def test_the_default_learning_rate_is_one_cycle():
+    recipe = Recipe(steps=100)
+    assert [learning_rate(recipe, step) for step in (0, 10, 55)] == pytest.approx([5e-5, 1e-3, 5e-4])
+
+
+def test_the_first_stage_learns(scenes):
+    config = RunConfig("classify", Recipe(steps=3, batch=2, learning_rate=2e-3, head_factor=0.01))
+    task = StageTask("classify", scenes.curves, squared=False, device=CPU)
     torch.manual_seed(0)
     network = CRFNet(task.outputs)
     averaged = moving_average(network, config.recipe.averaged_steps)
     state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
-    batch = draw_windows(pack, 2, np.random.default_rng(5))
-    trainer = Trainer(config, task, state, ProcessContext(CPU), pack, batch)
+    batch = draw_windows(scenes, 2, np.random.default_rng(5))
+    trainer = Trainer(config, task, state, scenes, batch)
     losses = [float(trainer.step(batch)) for _ in range(3)]
     assert losses[0] == pytest.approx(np.log(4), abs=1e-3)
     assert min(losses) < 0.8 * losses[0]
 
 
-def test_a_run_logs_and_draws(run):
+def test_a_run_logs_and_is_recorded(run):
     header, row = (run / "log.csv").read_text().splitlines()
-    assert header == "step,train_loss,validation,windows_per_s,fraction_waiting"
+    assert header == "step,train_loss,validation"
     assert row.startswith("2,")
-    assert (run / "curves.png").read_bytes().startswith(b"\x89PNG")
     assert read_run(run)["recipe"]["recipe"]["batch"] == 2
 
 
-def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(work_folder, run):
-    train(work_folder / "pack", work_folder / "halves", REGRESSION, validation_windows=3, stop=1)
-    state = train(work_folder / "pack", work_folder / "halves", REGRESSION, validation_windows=3)
-    assert state.step == 2
-    assert equal(weights_of(work_folder / "halves" / "last.pt"), weights_of(run / "last.pt"))
+def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run, tmp_path):
+    train(scenes, validation, tmp_path, REGRESSION, digest="data", stop=1)
+    first, before = states(tmp_path)
+    assert train(scenes, validation, tmp_path, REGRESSION, digest="data").step == 2
+    averaged, moving = states(tmp_path)
+    assert equal(averaged, states(run)[0])
+    assert equal(first, before)
+    for name, _ in CRFNet().named_parameters():
+        assert torch.allclose(averaged[name], (moving[name] + before[name]) / 2, rtol=1e-5, atol=1e-7)
+    assert not torch.equal(averaged["head.weight"], moving["head.weight"])
 
 
-def test_a_run_yields_the_moving_average_of_its_weights(work_folder):
-    train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3, stop=1)
-    first = torch.load(work_folder / "averaged" / "last.pt", weights_only=True)
-    train(work_folder / "pack", work_folder / "averaged", REGRESSION, validation_windows=3)
-    second = torch.load(work_folder / "averaged" / "last.pt", weights_only=True)
-    assert equal(first["network"], first["moving"])
-    assert not torch.equal(second["network"]["head.weight"], second["moving"]["head.weight"])
-    trained = [name for name, _ in CRFNet().named_parameters()]
-    for name in trained:
-        mean = (second["moving"][name] + first["moving"][name]) / 2
-        assert torch.allclose(second["network"][name], mean, rtol=1e-5, atol=1e-7)
-    assert equal(weights_of(work_folder / "averaged" / "best.pt"), second["network"])
-
-
-def test_another_configuration_is_refused(work_folder, run):
+def test_another_configuration_is_refused(scenes, validation, run):
     with pytest.raises(SystemExit, match="another seed"):
-        train(work_folder / "pack", run, replace(REGRESSION, seed=2))
+        train(scenes, validation, run, replace(REGRESSION, seed=2), digest="data")
 
 
 def test_the_second_stage_takes_all_but_the_head(tmp_path):
     first, second = CRFNet(3), CRFNet()
     torch.nn.init.ones_(first.head.weight)
     torch.save({"network": first.state_dict()}, tmp_path / "best.pt")
-    assert not start_from(second, tmp_path, torch.empty(0))
+    start_from(second, tmp_path)
     assert equal(first.body.state_dict(), second.body.state_dict())
     assert not second.head.weight.any()
 
 
-def test_two_processes_move_the_weights_by_the_mean_gradient(work_folder, pack):
-    with socket.socket() as free:
-        free.bind(("127.0.0.1", 0))
-        port = str(free.getsockname()[1])
-    shared = os.environ | {"WORLD_SIZE": "2", "MASTER_ADDR": "127.0.0.1", "MASTER_PORT": port, "OMP_NUM_THREADS": "1"}
-    command = [sys.executable, "-c", ONE_OF_TWO, str(work_folder)]
-    processes = [subprocess.Popen(command, env=shared | {"RANK": rank, "LOCAL_RANK": rank}) for rank in ("0", "1")]
-    assert [process.wait(100) for process in processes] == [0, 0]
-    first, second = (torch.load(work_folder / f"rank{rank}.pt", weights_only=True) for rank in (0, 1))
-    trained = [name for name, _ in CRFNet().named_parameters()]
-    assert all(torch.equal(first[name], second[name]) for name in trained)
-
-    gradients = torch.stack([head_gradient(pack, rank) for rank in (0, 1)])
-    config = RunConfig("regress", PLAIN, 2, validate_every=2)
-    rate = learning_rate(PLAIN, 0, 2) * PLAIN.head_factor
-    assert torch.allclose(first["head.weight"], -rate * gradients.mean(dim=0), rtol=1e-3, atol=1e-9)
-    assert not torch.allclose(gradients[0], gradients[1], rtol=0.1)
-    alone = train(work_folder / "pack", work_folder / "two", config, validation_windows=3)
-    assert (alone.step, len(alone.rows)) == (2, 1)
-
-
-def test_the_model_folder_says_what_torch_says(model, work_folder):
-    assert assert_parity(model, work_folder / "golden.npz") < PARITY
+def test_the_model_folder_says_what_torch_says(model):
+    assert assert_parity(model, model / "golden.npz") < PARITY
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
-    found = ResponseNetwork.load(model).predict(np.random.default_rng(0).random((3, 227, 227, 3), np.float32))
-    assert np.stack([evidence.location for evidence in found.windows]).std(axis=0).min() > 0
-    for evidence in found.windows:
-        np.testing.assert_allclose(evidence.factor, LIKELIHOOD.factor, rtol=1e-6)
-        np.testing.assert_allclose(evidence.log_odds, LIKELIHOOD.log_odds)
 
 
 def test_locations_are_the_answers_without_slope_and_offset(model, run):
     windows = np.random.default_rng(0).random((2, 227, 227, 3), np.float32)
     with torch.inference_mode():
         answers = rounded(load_network(run))(torch.from_numpy(windows)).numpy()[:, :5]
-    found = np.stack([evidence.location for evidence in ResponseNetwork.load(model).predict(windows).windows])
-    np.testing.assert_allclose(found, (answers - LIKELIHOOD.intercepts) / LIKELIHOOD.slopes, atol=1e-3)
-
-
-def test_training_goes_on_from_a_model_folder(model, run):
-    torch.manual_seed(4)
-    windows = torch.rand(4, 3, 227, 227)
-    network, exported = CRFNet(), load_network(run)
-    assert start_from(network, model, windows)
-    with torch.inference_mode():
-        expected = rounded(exported)(windows.permute(0, 2, 3, 1))
-        assert torch.allclose(network.eval()(windows), expected, atol=1e-4)
-        normal = network.train().body[:2](windows * 2 - 1)
-    assert normal.mean(dim=(0, 2, 3)).tolist() == pytest.approx(network.body[1].bias.tolist(), abs=1e-4)
-
-
-def test_training_goes_on_from_the_packaged_model():
-    (folder,) = MODELS.glob("crfnet2017*")
-    network, windows = CRFNet(), torch.rand(2, 3, 227, 227, generator=torch.Generator().manual_seed(0))
-    assert start_from(network, folder, windows)
-    with torch.inference_mode():
-        weights = network.eval()(windows).double().numpy()[:, :5]
-    found = ResponseNetwork.load(folder).predict(windows.permute(0, 2, 3, 1).contiguous().numpy()).windows
-    locations = np.stack([evidence.location for evidence in found])
-    slopes = (weights[0] - weights[1]) / (locations[0] - locations[1])
-    np.testing.assert_allclose(weights, locations * slopes + (weights[0] - locations[0] * slopes), atol=1e-2)
-    assert (slopes > 0).all()
+    evidence = ResponseNetwork.load(model).predict(windows).windows
+    locations = np.stack([one.location for one in evidence])
+    np.testing.assert_allclose(locations, (answers - LIKELIHOOD.intercepts) / LIKELIHOOD.slopes, atol=1e-3)
+    assert np.ptp(locations, axis=0).min() > 0
+    for one in evidence:
+        np.testing.assert_allclose(one.factor, LIKELIHOOD.factor, rtol=1e-6)
+        np.testing.assert_allclose(one.log_odds, LIKELIHOOD.log_odds)
 
 
 def test_folding_changes_nothing():

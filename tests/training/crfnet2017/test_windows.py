@@ -4,61 +4,56 @@ import numpy as np
 import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
-pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.statistics.windows import filled_bins
-from training.crfnet2017 import pack as packing
-from training.crfnet2017.pack import area_scaled, read_pack, write_scenes
-from training.crfnet2017.windows import LinearWindows, WindowStream, code_table, draw_windows, render_windows
+from training.crfnet2017.windows import (
+    LinearWindows,
+    WindowStream,
+    code_table,
+    draw_windows,
+    render_windows,
+    scene_pixels,
+)
+from training.data.scenes import Scene
 
 
-def test_scenes_are_averaged_by_whole_factors():
-    pixels = np.arange(800 * 802 * 3, dtype=np.float32).reshape(800, 802, 3)
-    scaled = area_scaled(pixels)
-    assert scaled.shape == (400, 401, 3)
-    assert scaled[0, 0].tolist() == pixels[:2, :2].mean(axis=(0, 1)).tolist()
-    assert area_scaled(pixels[:789]).shape == (789, 802, 3)
+@pytest.mark.parametrize(
+    ("size", "shape"), [((460, 700), (230, 350)), ((453, 700), (453, 700)), ((690, 690), (230, 230))]
+)
+def test_scenes_are_averaged_to_just_above_a_window(size, shape):
+    pixels = np.random.default_rng(0).random((*size, 3), np.float32)
+    scaled = scene_pixels(Scene("made", pixels, False), 0)
+    factor = size[0] // shape[0]
+    assert scaled.shape == (*shape, 3)
+    np.testing.assert_allclose(scaled[0, 0], pixels[:factor, :factor].mean(axis=(0, 1)), atol=1e-3)
 
 
-def test_a_pack_is_read_as_it_was_written(tmp_path, monkeypatch):
-    monkeypatch.setattr(packing, "SHARD_SAMPLES", 700)
-    scenes = [(str(n), np.full((10, 10 + n, 3), n, np.float16)) for n in range(4)]
-    write_scenes(scenes, tmp_path, "train")
-    np.savez(tmp_path / "curves.npz", curves=np.zeros((1, 1024)), exposures=np.ones(1))
-    assert len(list(tmp_path.glob("train_*.npy"))) == 3
-    for found, (_, pixels) in zip(read_pack(tmp_path, "train").scenes, scenes, strict=True):
-        assert np.array_equal(found, pixels)
-
-
-def test_an_absent_pack_is_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no pack of the split train"):
-        read_pack(tmp_path, "train")
-
-
-def test_windows_meet_the_papers_rule(pack):
-    windows = render_windows(draw_windows(pack, 6, np.random.default_rng(1)), torch.from_numpy(pack.curves))
+def test_windows_meet_the_papers_rule(scenes):
+    windows = render_windows(draw_windows(scenes, 6, np.random.default_rng(1)), torch.from_numpy(scenes.curves))
     assert windows.shape == (6, 3, 227, 227)
     assert min(filled_bins(window.numpy()) for window in windows) >= 220
 
 
-def test_dull_scenes_give_no_windows(pack):
+def test_exposures_spread_evenly_around_that_of_the_response(scenes):
+    batch = draw_windows(scenes, 60, np.random.default_rng(1))
+    factors = batch.exposures.numpy() / scenes.exposures[batch.classes]
+    assert 0.6 <= factors.min() < 0.68
+    assert 1.32 < factors.max() <= 1.4
+    assert len(np.unique(factors)) == 60
+
+
+def test_dull_scenes_give_no_windows(scenes):
     dull = np.full((300, 300, 3), 0.5, np.float16)
-    mixed = replace(pack, scenes=(dull, pack.scenes[0]))
+    mixed = replace(scenes, pixels=(dull, scenes.pixels[0]))
     irradiance = draw_windows(mixed, 8, np.random.default_rng(1)).irradiance
     assert all(window.unique().numel() > 1 for window in irradiance)
 
 
-def test_a_photograph_gives_several_windows_if_asked(pack):
-    batch = draw_windows(pack, 6, np.random.default_rng(1), per_photograph=3)
-    assert batch.classes[:3].unique().numel() == 1
-    assert batch.exposures[3:].unique().numel() == 1
-
-
-def test_the_device_makes_the_codes_of_the_host(pack):
-    batch = draw_windows(pack, 2, np.random.default_rng(2))
-    codes = (render_windows(batch, torch.from_numpy(pack.curves)) * 255).permute(0, 2, 3, 1).round().byte().numpy()
+def test_the_device_makes_the_codes_of_the_host(scenes):
+    batch = draw_windows(scenes, 2, np.random.default_rng(2))
+    codes = (render_windows(batch, torch.from_numpy(scenes.curves)) * 255).permute(0, 2, 3, 1).round().byte().numpy()
     for n, curve in enumerate(batch.classes):
-        table = code_table(pack.curves[curve], float(batch.exposures[n]))
+        table = code_table(scenes.curves[curve], float(batch.exposures[n]))
         assert np.mean(codes[n] != table[batch.irradiance[n].numpy().view(np.uint16)]) < 1e-3
 
 
@@ -69,9 +64,8 @@ def test_a_known_irradiance_gets_a_known_code():
     assert windows.unique().tolist() == pytest.approx([92 / 255])
 
 
-def test_the_windows_of_a_step_do_not_depend_on_the_start(pack):
-    def stream(steps, rank=0):
-        return [batch.irradiance for batch in WindowStream(pack, batch=2, steps=steps, seed=3, rank=rank)]
+def test_the_windows_of_a_step_do_not_depend_on_the_start(scenes):
+    def irradiance(steps):
+        return [batch.irradiance for batch in WindowStream(scenes, batch=2, steps=steps, seed=3)]
 
-    assert torch.equal(stream(range(4))[3], stream(range(3, 4))[0])
-    assert not torch.equal(stream(range(3, 4))[0], stream(range(3, 4), rank=1)[0])
+    assert torch.equal(irradiance(range(4))[3], irradiance(range(3, 4))[0])

@@ -9,8 +9,6 @@ from crfnet_core.errors import CRFNetError
 from training.evaluation.plan import (
     CLEAN,
     CONDITIONS,
-    PLAIN,
-    QUERIES,
     Condition,
     balanced,
     clean_photographs,
@@ -64,20 +62,10 @@ def test_every_photograph_has_a_label_of_its_own():
     }
 
 
-def test_every_condition_and_query_has_the_same_photographs():
+def test_every_condition_has_the_same_photographs():
     photographs = stress_photographs(range(20), range(201), count=40, seed=3)
-    assert len(photographs) == 40 * (len(CONDITIONS) + len(QUERIES)) == 40 * (22 + 12)
-    cells = {(photograph.scene, photograph.curve) for photograph in photographs}
-    assert len(cells) == 40
-    assert all(photograph.condition == CLEAN for photograph in photographs if photograph.query != PLAIN)
-
-
-def test_pooling_asks_for_no_more_scenes_than_there_are():
-    assert {photograph.query.pooled for photograph in stress_photographs(range(5), range(3), count=5, seed=1)} == {
-        1,
-        2,
-        4,
-    }
+    assert len(photographs) == 40 * len(CONDITIONS) == 40 * 20
+    assert len({(photograph.scene, photograph.curve) for photograph in photographs}) == 40
 
 
 def test_conditions_that_differ_behind_the_lens_share_their_light():
@@ -86,6 +74,6 @@ def test_conditions_that_differ_behind_the_lens_share_their_light():
     assert Condition("blur", blur=2.0).light != CLEAN.light
 
 
-def test_noise_and_compression_come_after_exposure():
-    assert Condition("noise", noise=4.0).capture == Capture(grain=2 / 255)
+def test_noise_comes_before_the_response():
+    assert Condition("noise", noise=4.0).capture == Capture(read_noise=2 / 255)
     assert Condition("JPEG", jpeg_quality=75, blur=2.0).capture == Capture(jpeg_quality=75)

@@ -13,7 +13,7 @@ from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import simulated
 from training.evaluation.measure.simulated import Job
 from training.evaluation.models import Model
-from training.evaluation.plan import CLEAN, Condition, Query
+from training.evaluation.plan import CLEAN, Condition
 from training.evaluation.protocols import Evaluation, Settings
 from training.evaluation.report.document import read_report
 from training.evaluation.test_sets import bundled_test_set
@@ -27,13 +27,6 @@ EXPECTED = {
 #: The change that rounding on other processors may make: a few windows of a few photographs.
 PLATFORM = 0.03
 
-QUERIES = (
-    Query("1 window", windows=1),
-    Query("random windows", coverage=0),
-    Query("none removed", averaged="all"),
-    Query("2 photographs pooled", pooled=2),
-)
-
 
 @pytest.fixture(scope="module")
 def model(fixed_model):
@@ -42,7 +35,7 @@ def model(fixed_model):
 
 @pytest.fixture(scope="module")
 def stressed(tmp_path_factory, model):
-    """The report of the fixed model: P0, two conditions and four queries."""
+    """The report of the fixed model: P0, and three conditions."""
     out = tmp_path_factory.mktemp("quick")
     settings = Settings(
         out,
@@ -51,8 +44,7 @@ def stressed(tmp_path_factory, model):
         photographs=15,
         workers=1,
         stress_photographs=3,
-        conditions=(CLEAN, Condition("resolution 2x", upsampling=2), Condition("noise variance 4", noise=4.0)),
-        queries=QUERIES,
+        conditions=(CLEAN, Condition("blur variance 2", blur=2.0), Condition("noise variance 4", noise=4.0)),
     )
     return out, Evaluation(settings, bundled_test_set()).run()
 
@@ -78,10 +70,9 @@ def test_a_model_that_answers_nearly_the_same(stressed):
 
 def test_stress_hardly_changes_a_model_that_hardly_looks(stressed):
     rows = [row for row in stressed[1].rows if row["table"].startswith("P3") and row["estimator"] == "fixed_model"]
-    assert len(rows) == 3 + 4
+    assert len(rows) == 3
     for row in rows:
         assert [row[f"{error} x clean"][0] for error in ("E_est", "E_lin", "shape")] == pytest.approx([1] * 3, abs=0.1)
-    assert stressed[1].row("P3 queries", "fixed_model", "1 window")["E_est x clean"][0] != 1
     assert rows[0]["partial ratio"][0] < 1
 
 
@@ -120,23 +111,6 @@ def test_an_interrupted_evaluation_goes_on_and_ends_the_same(stressed, fixed_mod
         main(arguments)
     assert len(taken) == 9
     assert read_report(tmp_path / "report.json").table("P0") == stressed[1].table("P0")
-
-
-def test_pooled_photographs_show_other_scenes(monkeypatch, model, tmp_path):
-    seen = []
-    estimate = simulated.estimate_response
-    monkeypatch.setattr(
-        simulated,
-        "estimate_response",
-        lambda photos, **k: seen.append([p.path.name for p in photos]) or estimate(photos, **k),
-    )
-    query = Query("4 photographs pooled", pooled=4)
-    settings = Settings(tmp_path, (model,), ("p3",), workers=1, stress_photographs=1, conditions=(CLEAN,))
-    Evaluation(replace(settings, queries=(query,)), bundled_test_set()).run()
-    single, pooled = sorted(seen, key=len)
-    assert len(single) == 1
-    assert len(set(pooled)) == 4
-    assert pooled[0] == single[0]
 
 
 def test_the_command_line_chooses_what_is_measured(fixed_model, tmp_path):

@@ -117,7 +117,7 @@ def test_jpeg_is_lossy_and_lossier_at_low_quality(rng):
 
 def test_nothing_writes_into_the_scene(scene, rng):
     before = scene.pixels.copy()
-    light = sensor_light(scene, rng, gains=COOL, is_gray=True, blur=1.0, upsampling=2)
+    light = sensor_light(scene, rng, gains=COOL, is_gray=True, blur=1.0)
     for array in (scene.pixels, light):
         kept = array.copy()
         render_photo(array, CURVE, 0.2, rng, name="made", capture=Capture(1e-3, 1e-3, 1.0, 0.5, 0.01, 75))

@@ -14,14 +14,9 @@ from training.data.real.photographs import RealPhotograph, real_photographs
 class Body:
     """A camera body.
 
-    Parameters
-    ----------
-    key : str
-        What bodies are told apart by.
-    kind : str
-        "phone", "compact", "camera" (with interchangeable lenses) or "unknown".
-    responses : tuple of ResponseCurve
-        One of each exposure stack.
+    key: what bodies are told apart by
+    kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
+    responses: one of each exposure stack
     """
 
     key: str
@@ -32,12 +27,7 @@ class Body:
 def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
     """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
 
-    Parameters
-    ----------
-    data : Path
-        The data folder.
-    without : RealPhotograph, optional
-        Its fold is left out, and every body of the models in this fold, also where the other folder has it.
+    `without`: its fold is left out, and every body of the models in this fold, also where the other folder has it.
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
     left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}

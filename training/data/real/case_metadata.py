@@ -14,13 +14,8 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
     The size in EXIF, the profile and the XMP history are lost. Where the photograph is the original byte for byte
     (`is_original`), `read_photo` finds all of it: prefer that.
 
-    Parameters
-    ----------
-    row : mapping of str to str
-        A row of DATA/real_bodies/cases.csv.
-    crop : bytes, optional
-        The JPEG file in its column `crop`, cut without recompression: it has the original's quantization tables and
-        subsampling, but its JFIF segment is of the program that cut it.
+    `row`: a row of DATA/real_bodies/cases.csv. `crop`: the JPEG file in its column `crop`, cut without recompression:
+    it has the original's quantization tables and subsampling, but its JFIF segment is of the program that cut it.
     """
     jpeg = read_jpeg_header(crop)
     width, height = (int(side) for side in row["original_size"].split("x"))

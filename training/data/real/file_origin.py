@@ -26,14 +26,8 @@ def editing(software: str, *, make: str = "", model: str = "", use: str = "") ->
     A name in the list decides. Without one the file was not edited as far as anyone knows, if it still has the make or
     the model of the camera. A file without them has lost its EXIF to some program, so nothing is known.
 
-    Parameters
-    ----------
-    software : str
-        Name of the program that saved the file, or another text that holds it.
-    make, model : str
-        Of the camera, from EXIF.
-    use : str
-        What DATA/real_bodies says of the use of a photograph.
+    `software`: name of the program that saved the file, or another text that holds it. `make`, `model`: of the camera,
+    from EXIF. `use`: what DATA/real_bodies says of the use of a photograph.
     """
     if DEVELOPED in use or is_editor(software):
         return Editing.EDITED

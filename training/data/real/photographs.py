@@ -23,6 +23,10 @@ TRUSTED_GRADES = ("A", "B")
 #: What `use` says in DATA/real_bodies of a photograph that counts; the others are shown apart, with their reason.
 USED, CAUTION = "yes", "caution: "
 
+#: The first rows of DATA/real_bodies/cases.csv: the packaged bank and cameras and all published figures rest on them.
+#: Nothing reads the later ones; raise the number only to publish new figures.
+PUBLISHED_ROWS = 76
+
 #: The kinds of the bodies of DATA/real, whose list has no such column.
 KINDS = {
     "Sony XQ-CT72 (Xperia 1 IV)": "phone",
@@ -42,30 +46,15 @@ KINDS = {
 class RealPhotograph:
     """A photograph, its camera, and how well the camera's response was measured.
 
-    Parameters
-    ----------
-    name : str
-        Of the photograph.
-    body : str
-        The camera.
-    kind : str
-        "phone", "compact", "camera" (with interchangeable lenses) or "unknown".
-    grade : str
-        How well the response was measured: A, B or C.
-    caution : str
-        Why the photograph does not count in the means; empty where it counts.
-    is_in_mean : bool
-        Whether its response is part of the mean of the other bodies.
-    editing : Editing
-        Whether an editor saved the file.
-    is_scaled : bool
-        Whether it was made smaller after the camera.
-    fold : str
-        Bodies of one fold are left out of a mean together.
-    photograph, measured : Path
-        The files of the photograph and of its response.
-    metadata : FileMetadata, optional
-        That of the original file, where `photograph` is not the original and has lost it.
+    kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
+    grade: how well the response was measured: A, B or C
+    caution: why the photograph does not count in the means; empty where it counts
+    is_in_mean: whether its response is part of the mean of the other bodies
+    editing: whether an editor saved the file
+    is_scaled: whether it was made smaller after the camera
+    fold: bodies of one fold are left out of a mean together
+    photograph, measured: the files of the photograph and of its response
+    metadata: that of the original file, where `photograph` is not the original and has lost it
     """
 
     name: str
@@ -102,14 +91,14 @@ class RealPhotograph:
 
 
 def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
-    """Return folder -> photographs, in the order of its list; DATA/real_bodies may be absent.
+    """Return folder -> photographs in its list's order: all of DATA/real, `published_rows` of DATA/real_bodies.
 
-    In DATA/real each body is a fold of its own; DATA/real_bodies says which bodies share one.
+    DATA/real_bodies may be absent; its list says which bodies share a fold. In DATA/real each body is its own fold.
     """
     sets = {REAL: [_of_real(data / REAL, row) for row in case_rows(data / REAL)]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in published_rows(folder)]
     return sets
 
 
@@ -122,6 +111,11 @@ def case_rows(folder: Path) -> list[dict[str, str]]:
     """Return the rows of a folder's cases.csv."""
     with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
+
+
+def published_rows(folder: Path) -> list[dict[str, str]]:
+    """Return the rows of DATA/real_bodies/cases.csv that published figures rest on: the first `PUBLISHED_ROWS`."""
+    return case_rows(folder)[:PUBLISHED_ROWS]
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:

@@ -21,7 +21,7 @@ from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
 from training.data.real.case_metadata import metadata_of_case
 from training.data.real.file_origin import Editing, editing
-from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
+from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, published_rows, read_measured
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
 SAME_SETTING = 2.0
@@ -40,22 +40,11 @@ UNKNOWN_BODY = "unknown"
 class Stack:
     """A measured exposure stack.
 
-    Parameters
-    ----------
-    measured : Path
-        The file of its response.
-    settings : CameraSettings
-        What its files say.
-    curve : ResponseCurve
-        Its response.
-    error : float
-        Standard deviation of its E_est.
-    frames : int
-        How many frames it has.
-    grade : str
-        A or B.
-    caution : str
-        Why it is less certain, or nothing.
+    measured: the file of its response
+    settings: what its files say
+    error: standard deviation of its E_est
+    grade: A or B
+    caution: why it is less certain, or nothing
     """
 
     measured: Path
@@ -73,15 +62,9 @@ class Stack:
 
 
 def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
-    """Return make and model -> name of each of its settings -> its stacks, the most certain first.
-
-    Parameters
-    ----------
-    data : Path
-        The data folder.
-    """
+    """Return make and model -> name of each of its settings -> its stacks, the most certain first."""
     folder = data / REAL_BODIES
-    stacks = {row["stack"]: _stack(folder, row) for row in case_rows(folder) if _is_taken(row)}
+    stacks = {row["stack"]: _stack(folder, row) for row in published_rows(folder) if _is_taken(row)}
     bodies: dict[str, list[list[Stack]]] = {}
     for stack in sorted(stacks.values(), key=lambda stack: (stack.settings.camera, stack.error)):
         settings = bodies.setdefault(stack.settings.camera, [])

@@ -34,18 +34,9 @@ CODES = np.arange(256) / 255
 def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexArray) -> dict[str, Any]:
     """Return the errors of one response on one photograph.
 
-    Parameters
-    ----------
-    true, estimated : ResponseCurve
-        The responses.
-    counts : ndarray, int, shape (256,)
-        How often each code occurs in the photograph.
-
-    Returns
-    -------
-    dict
-        The errors of `ERRORS`; "scale", by how many stops the light is too bright; and "partial", the E_est over the
-        samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
+    `true`, `estimated`: the responses. `counts`, int (256,): how often each code occurs in the photograph. The result:
+    the errors of `ERRORS`; "scale", by how many stops the light is too bright; and "partial", the E_est over the
+    samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
     """
     lower = round(PARTIAL_IRRADIANCE * (SAMPLES - 1)) + 1
     difference = true.brightness - estimated.brightness
@@ -59,26 +50,12 @@ def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexAr
     }
 
 
-def estimate_figures(
-    true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray, *, curve: ResponseCurve | None = None
-) -> dict[str, Any]:
-    """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds.
-
-    Parameters
-    ----------
-    true : ResponseCurve
-        The response.
-    estimate : ResponseEstimate
-        The product's answer.
-    counts : ndarray, int, shape (256,)
-        How often each code occurs in the photograph.
-    curve : ResponseCurve, optional
-        The response to measure instead of `estimate.curve`.
-    """
+def estimate_figures(true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray) -> dict[str, Any]:
+    """Return the errors of a model's estimate, what it states of itself, and how much of the truth its band holds."""
     lower, upper = estimate.band
     inside = (true.brightness >= lower) & (true.brightness <= upper)
     kind = max(estimate.families, key=estimate.families.__getitem__, default="")
-    return curve_figures(true, curve or estimate.curve, counts) | {
+    return curve_figures(true, estimate.curve, counts) | {
         "expected E_est": round(estimate.uncertainty, DECIMALS),
         "expected shape": round(estimate.shape_uncertainty, DECIMALS),
         "band coverage": round(float(inside.mean()), DECIMALS),

@@ -58,19 +58,8 @@ def measure_real(
 ) -> None:
     """Add to the table what it lacks; a photograph is read once for all models.
 
-    Parameters
-    ----------
-    protocol : str
-        The protocol.
-    photographs : sequence of RealPhotograph
-        All photographs of a folder.
-    models : sequence of Model
-        The models.
-    table : Table
-        The table.
-    test_set : TestSet
-        The responses of DoRF, for the baselines, and the data folder. The bank that a photograph is estimated with
-        knows nothing of the bodies of its fold.
+    `photographs`: all photographs of a folder. `test_set`: the responses of DoRF, for the baselines, and the data
+    folder. The bank that a photograph is estimated with knows nothing of the bodies of its fold.
     """
     wanted = [
         photograph
@@ -214,14 +203,8 @@ def mean_of_other_bodies(
     This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
     that need caution are left out of it. Where there is no other body it is gamma 2.2.
 
-    Parameters
-    ----------
-    photograph : RealPhotograph
-        Its fold is left out.
-    photographs : sequence of RealPhotograph
-        All of the folder.
-    truths : dict
-        File of a measured response -> response.
+    `photograph`: its fold is left out. `photographs`: all of the folder. `truths`: file of a measured response ->
+    response.
     """
     bodies: dict[str, dict[Path, ResponseCurve]] = {}
     for other in photographs:

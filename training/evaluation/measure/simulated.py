@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
 from functools import cache, lru_cache
@@ -15,18 +15,16 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
-from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.network import ResponseNetwork, pooling
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.emor import EmorBasis
 from crfnet_core.types import Float32Array
 from training.evaluation.baselines import GAMMA, oracle_curves
 from training.evaluation.measure.figures import curve_figures, estimate_figures
 from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model
-from training.evaluation.plan import PLAIN, Condition, Query, TestPhotograph
+from training.evaluation.plan import Condition, TestPhotograph
 from training.evaluation.test_sets import SceneFile, TestSet
 from training.synthesis.camera import code_counts, render_photo, sensor_light
 
@@ -36,30 +34,15 @@ PRIOR = "any"
 #: The most photographs of a job: few enough to spread over processes and to write often.
 JOB_SIZE = 20
 
-#: Lights in a process's memory: those of a scene, and of the scenes pooled with it. The largest take 0.3 GB.
-CACHED_LIGHTS = 12
-
 
 @dataclass(frozen=True, eq=False)
 class Job:
     """Simulated photographs, and the estimators to measure on them.
 
-    Parameters
-    ----------
-    protocol : str
-        The protocol; in P3 gamma 2.2 is the only baseline.
-    photographs : tuple of TestPhotograph
-        The photographs.
-    test_set : TestSet
-        Scenes and responses.
-    models : tuple of Model
-        The models.
-    has_baselines : bool
-        Whether to measure the baselines.
-    bank : ResponseBank or None
-        The responses that estimates choose from; None for the packaged ones.
-    seed : int
-        Of dither and noise.
+    protocol: the protocol; in P3 gamma 2.2 is the only baseline
+    has_baselines: whether to measure the baselines
+    bank: the responses that estimates choose from; None for the packaged ones
+    seed: of dither and noise
     """
 
     protocol: str
@@ -96,7 +79,6 @@ class Job:
             "curve": photograph.curve,
             "exposure": photograph.condition.factor,
             "condition": photograph.condition.name,
-            "query": photograph.query.name,
         } | figures
 
 
@@ -116,7 +98,7 @@ def _parts(whole: Job, table: Table) -> Iterator[Job]:
     """Yield jobs of at most `JOB_SIZE` photographs of one scene under one light, with what the table lacks of them."""
 
     def lacking(photograph: TestPhotograph) -> tuple[bool, ...]:
-        keys = [(model.name, model.key) for model in whole.models] + [(GAMMA, "")] * (photograph.query == PLAIN)
+        keys = [(model.name, model.key) for model in whole.models] + [(GAMMA, "")]
         return tuple(table.lacks(whole.protocol, photograph.label, *key) for key in keys)
 
     def place(photograph: TestPhotograph) -> tuple[tuple[bool, ...], int, str]:
@@ -144,26 +126,18 @@ def _run(work: list[Job], workers: int) -> Iterator[list[Row]]:
 
 
 def run_job(job: Job) -> list[Row]:
-    """Return the rows of every photograph of a job; equal photographs are taken once for all their queries."""
+    """Return the rows of every photograph of a job."""
     rows = []
-    for (scene, curve, condition), group in groupby(
-        job.photographs, key=lambda photograph: (photograph.scene, photograph.curve, photograph.condition)
-    ):
-        photographs = list(group)
-        photo = job.photo(scene, curve, condition)
-        counts, true = code_counts(photo), ResponseCurve.from_samples(job.test_set.curves[curve])
+    for photograph in job.photographs:
+        photo = job.photo(photograph.scene, photograph.curve, photograph.condition)
+        counts, true = code_counts(photo), ResponseCurve.from_samples(job.test_set.curves[photograph.curve])
         for name, guess in _baselines(job, true).items():
-            plain = [photograph for photograph in photographs if photograph.query == PLAIN]
-            rows += [job.row(each, name, "", curve_figures(true, guess, counts)) for each in plain]
+            rows.append(job.row(photograph, name, "", curve_figures(true, guess, counts)))
         for model in job.models:
-            answers: dict[Query, ResponseEstimate] = {}
-            for photograph in photographs:
-                query = photograph.query.question
-                if query not in answers:
-                    answers[query] = _answer(job, photo, photograph, model)
-                answer, own = answers[query], queried_curve(answers[query], photograph.query)
-                figures = estimate_figures(true, answer, counts, curve=own)
-                rows.append(job.row(photograph, model.name, model.key, figures))
+            estimate = estimate_response(
+                [photo], network=_network(model.folder), prior=Prior.load(PRIOR), bank=job.bank
+            )
+            rows.append(job.row(photograph, model.name, model.key, estimate_figures(true, estimate, counts)))
     return rows
 
 
@@ -175,32 +149,7 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
     return {GAMMA: constants[GAMMA]} if job.protocol == "P3" else constants | oracle_curves(true)
 
 
-def _answer(job: Job, photo: Photo, photograph: TestPhotograph, model: Model) -> ResponseEstimate:
-    """Return the product's estimate of a photograph, pooled with those of the next scenes where the query asks so."""
-    others = [(photograph.scene + n) % len(job.test_set.scenes) for n in range(1, photograph.query.pooled)]
-    photos = [photo, *(job.photo(other, photograph.curve, photograph.condition) for other in others)]
-    return queried_estimate(photos, photograph.query, _network(model.folder), job.bank)
-
-
-def queried_estimate(
-    photos: Sequence[Photo], query: Query, network: ResponseNetwork, bank: ResponseBank | None = None
-) -> ResponseEstimate:
-    """Return the product's estimate from photographs of one camera, with the options of the query."""
-    options = {"windows": query.windows, "coverage": query.coverage}
-    chosen: dict[str, Any] = {name: value for name, value in options.items() if value is not None}
-    return estimate_response(photos, network=network, prior=Prior.load(PRIOR), bank=bank, **chosen)
-
-
-def queried_curve(estimate: ResponseEstimate, query: Query) -> ResponseCurve:
-    """Return the product's response or, where the query asks for it, the mean of the windows' own."""
-    if query.averaged is None:
-        return estimate.curve
-    weights = np.stack([part.weights for part in estimate.windows])
-    chosen = weights if query.averaged == "all" else weights[pooling.inliers(weights)]
-    return ResponseCurve.from_samples(EmorBasis.load().reconstruct(chosen.mean(axis=0)))
-
-
-@lru_cache(maxsize=CACHED_LIGHTS)
+@lru_cache(maxsize=1)
 def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> Float32Array:
     """Return the light of a scene under the part of a condition that comes before exposure, shape (H, W, 3)."""
     return sensor_light(
@@ -209,7 +158,6 @@ def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> Flo
         gains=condition.gains,
         is_gray=condition.is_gray,
         blur=condition.blur,
-        upsampling=condition.upsampling,
     )
 
 

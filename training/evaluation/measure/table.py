@@ -40,14 +40,9 @@ class Table:
 
     The first line of the file holds the settings that all rows depend on.
 
-    Parameters
-    ----------
-    path : Path
-        The file; made where absent.
-    settings : dict
-        What every row depends on.
-    code : str
-        Hash of the measuring code.
+    path: the file; made where absent
+    settings: what every row depends on
+    code: hash of the measuring code
     """
 
     def __init__(self, path: Path, settings: dict[str, Any], code: str) -> None:
@@ -80,14 +75,8 @@ class Table:
     def rows(self, protocol: str, estimators: dict[str, str], photographs: Iterable[str]) -> dict[str, list[Row]]:
         """Return estimator -> its rows of a protocol, in the order of `photographs`.
 
-        Parameters
-        ----------
-        protocol : str
-            The protocol.
-        estimators : dict
-            Name of an estimator -> head of its model's hash, empty for baselines.
-        photographs : iterable of str
-            Names of photographs, all measured.
+        `estimators`: name of an estimator -> head of its model's hash, empty for baselines. `photographs`: names of
+        photographs, all measured.
         """
         names = list(photographs)
         return {
@@ -106,10 +95,7 @@ class Table:
 class Cases:
     """The rows of several estimators on the same photographs, side by side.
 
-    Parameters
-    ----------
-    rows : dict
-        Estimator -> its rows on the N photographs, in one order.
+    rows: estimator -> its rows on the N photographs, in one order
     """
 
     def __init__(self, rows: dict[str, list[Row]]) -> None:

@@ -68,16 +68,7 @@ def measure_unusual(
 ) -> None:
     """Add to the table what it lacks, with the prior "camera", asked in all `ways_of`.
 
-    Parameters
-    ----------
-    scenes : sequence of SceneFile
-        The scenes of the test set.
-    models : sequence of Model
-        The models.
-    table : Table
-        The table.
-    kinds : sequence of UnusualKind
-        The kinds.
+    `scenes`: the scenes of the test set.
     """
     listed = [(scene, kind) for scene in scenes for kind in kinds]
     if not any(_lacks(table, model, *each) for model in models for each in listed):
@@ -115,14 +106,7 @@ def unusual_photographs(
 ) -> Iterator[tuple[UnusualKind, Photo]]:
     """Yield every kind of every scene, each rendered when it is asked for; the same arguments give the same pictures.
 
-    Parameters
-    ----------
-    scenes : iterable of SceneFile
-        The scenes of a test set; each is read once.
-    kinds : sequence of UnusualKind
-        The kinds.
-    seed : int
-        Of everything that is random.
+    `scenes`: the scenes of a test set; each is read once. `seed`: of everything that is random.
     """
     numbers = {kind: number for number, kind in enumerate(UnusualKind)}
     for number, file in enumerate(scenes):

@@ -37,10 +37,7 @@ class Resampling:
 
     Source: Owen, "The pigeonhole bootstrap", Annals of Applied Statistics 2007; its intervals are a little too wide.
 
-    Parameters
-    ----------
-    weights : ndarray, float64, shape (1 + R, N)
-        No row is all 0.
+    weights, float64 (1 + R, N): no row is all 0
     """
 
     weights: Float64Array

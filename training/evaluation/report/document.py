@@ -18,16 +18,9 @@ ReportRow = dict[str, Any]
 class Report:
     """A whole evaluation.
 
-    Parameters
-    ----------
-    settings : dict
-        Number of photographs, seed, and a hash of scenes and responses.
-    models : dict
-        Name of a model -> SHA-256 of its graph.
-    notes : list of str
-        Reasons not to compare the figures with others; a whole evaluation of today's code has none.
-    rows : list of dict
-        The figures.
+    settings: number of photographs, seed, and a hash of scenes and responses
+    models: name of a model -> SHA-256 of its graph
+    notes: reasons not to compare the figures with others; a whole evaluation of today's code has none
     """
 
     settings: dict[str, Any]
@@ -53,10 +46,7 @@ def write_report(path: Path, report: Report) -> None:
 def read_report(path: Path) -> Report:
     """Return the report that `write_report` wrote.
 
-    Raises
-    ------
-    CRFNetError
-        If the file is another one.
+    Raise CRFNetError if the file is another one.
     """
     try:
         return Report(**json.loads(path.read_text()))

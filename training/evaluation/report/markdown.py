@@ -19,14 +19,9 @@ from training.evaluation.report.document import Report, ReportRow, value
 class Listed:
     """A table with a row for each estimator.
 
-    Parameters
-    ----------
-    tables : tuple of str
-        Tables of the report.
-    figures : dict
-        Head of a column -> figure.
-    groups : tuple of str
-        The groups to show; all if empty.
+    tables: tables of the report
+    figures: head of a column -> figure
+    groups: the groups to show; all if empty
     """
 
     tables: tuple[str, ...]
@@ -60,9 +55,6 @@ WIDTH = 120
 
 #: Figures that are shown with their interval, by the end of their names.
 WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "correlation")
-
-#: Estimators that report.json has and these tables have not.
-HIDDEN = ("oracle: EMoR, 2 components", "oracle: EMoR, 5 components")
 
 ERROR_FIGURES = {
     "E_est": "E_est mean",
@@ -111,11 +103,12 @@ SECTIONS = (
     ),
     Section(
         "P3: stress",
-        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones. Noise is Gaussian after the"
-        " response, its variance in squared 8-bit codes; blur is Gaussian in linear light, its variance in squared"
-        " pixels; JPEG has subsampled chroma. Below, E_est over irradiance up to 0.8, and its ratio to that over all.",
+        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones. Noise is Gaussian before the"
+        " response, its variance in squared 255ths of the irradiance that saturates; blur is Gaussian in linear light,"
+        " its variance in squared pixels; JPEG has subsampled chroma. Below, E_est over irradiance up to 0.8, and its"
+        " ratio to that over all.",
         (
-            Crossed(("P3", "P3 queries"), ("E_est mean", "E_est x clean")),
+            Crossed(("P3",), ("E_est mean", "E_est x clean")),
             Listed(("P3",), {"lower E_est": "partial mean", "ratio": "partial ratio"}, ("clean",)),
         ),
     ),
@@ -199,7 +192,7 @@ def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
     first = next(iter(table.figures.values()))
     groups: dict[str, list[list[str]]] = {}
     for row in rows:
-        if first in row and row["estimator"] not in HIDDEN and (not table.groups or row["group"] in table.groups):
+        if first in row and (not table.groups or row["group"] in table.groups):
             cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
             groups.setdefault(f"{_name(row)}: {_counts(row)}", []).append(cells)
     return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())

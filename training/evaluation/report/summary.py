@@ -53,23 +53,11 @@ def of_bodies(cases: Cases, *, seed: int) -> Resampling:
     return Resampling.of_bodies(labels(cases, "body key"), seed=seed)
 
 
-def error_figures(cases: Cases, resampling: Resampling, estimator: str, *, reference: Cases | None = None) -> Figures:
-    """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR.
-
-    Parameters
-    ----------
-    cases : Cases
-        The photographs.
-    resampling : Resampling
-        Their weights.
-    estimator : str
-        The estimator.
-    reference : Cases, optional
-        The same photographs with the figures of gamma 2.2; `cases` by default.
-    """
+def error_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
+    """Return mean, median, 90th percentile, ratio to gamma 2.2 and win rate of every error, and the PSNR."""
     figures: Figures = {}
     for error in ERRORS:
-        values, gamma = column(cases, error, estimator), column(reference or cases, error, GAMMA)
+        values, gamma = column(cases, error, estimator), column(cases, error, GAMMA)
         figures |= {
             f"{error} mean": resampling.mean(values),
             f"{error} median": resampling.quantile(values, 0.5),

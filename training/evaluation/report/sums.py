@@ -41,20 +41,18 @@ def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int)
             yield from _errors(f"{protocol} by {column}", str(name), cases.part(index), subset, [*models, GAMMA])
 
 
-def stress_rows(conditions: dict[str, Cases], queries: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of P3 under every condition, the first of which is clean, and query, and the paper's."""
+def stress_rows(conditions: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
+    """Yield the figures of P3 under every condition, the first of which is clean, and the paper's."""
     clean = next(iter(conditions.values()))
     weights = of_scenes(clean, seed=seed)
-    for table, groups in (("P3", conditions), ("P3 queries", queries)):
-        for group, cases in groups.items():
-            for name in cases.rows:
-                figures = error_figures(cases, weights, name, reference=cases if GAMMA in cases.rows else clean)
-                figures |= change_figures(cases, clean, weights, name)
-                yield _row(table, group, name, cases, figures | partial_figures(cases, weights, name))
-            if group in paper.STRESS:
-                error = paper.STRESS[group].estimation
-                figures = {"E_est mean": error, "E_est x clean": error / paper.OVERALL.estimation}
-                yield _row(table, group, paper.PAPER, cases, figures)
+    for group, cases in conditions.items():
+        for name in cases.rows:
+            figures = error_figures(cases, weights, name) | change_figures(cases, clean, weights, name)
+            yield _row("P3", group, name, cases, figures | partial_figures(cases, weights, name))
+        if group in paper.STRESS:
+            error = paper.STRESS[group].estimation
+            figures = {"E_est mean": error, "E_est x clean": error / paper.OVERALL.estimation}
+            yield _row("P3", group, paper.PAPER, cases, figures)
 
 
 def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:

@@ -52,16 +52,10 @@ class UnusualKind(StrEnum):
 class Recipe:
     """How a kind is made, and why it must be refused.
 
-    Parameters
-    ----------
-    reason : str
-        Why an estimate of a response must not be trusted.
-    rendering : callable
-        Irradiance to encoded pictures; see `Rendering`.
-    is_recorded : bool
-        Whether a sensor's blur and noise come before the rendering, and sharpening and grain after it.
-    is_compressed : bool
-        Whether a share is compressed as JPEG of random quality at the end.
+    reason: why an estimate of a response must not be trusted
+    rendering: irradiance to encoded pictures; see `Rendering`
+    is_recorded: whether a sensor's blur and noise come before the rendering, and sharpening and grain after it
+    is_compressed: whether a share is compressed as JPEG of random quality at the end
     """
 
     reason: str
@@ -128,16 +122,9 @@ RECIPES: dict[UnusualKind, Recipe] = {
 def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng: np.random.Generator) -> Uint8Array:
     """Return windows of one picture of a kind, 8 bits, uint8 (N, 227, 227, 3); other sizes are as good.
 
-    Parameters
-    ----------
-    kind : UnusualKind
-        The kind; its settings are drawn once for all windows.
-    light : ndarray, float32, shape (N, 227, 227, 3)
-        Windows of linear light; not changed.
-    exposure : float
-        Irradiance per unit of light; irradiance 1 is white, and what is brighter is used where the kind holds more.
-    rng : Generator
-        Draws the settings, noise and compression.
+    `kind`: the kind; its settings are drawn once for all windows. `light`, float32 (N, 227, 227, 3): windows of linear
+    light; not changed. `exposure`: irradiance per unit of light; irradiance 1 is white, and what is brighter is used
+    where the kind holds more. `rng`: draws the settings, noise and compression.
     """
     recipe, capture = RECIPES[kind], Capture.draw(rng)
     irradiance = light * np.float32(exposure)
@@ -154,16 +141,8 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
 def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, exposure: float | None = None) -> Photo:
     """Return a whole frame of a kind, as the estimator reads it from a file.
 
-    Parameters
-    ----------
-    kind : UnusualKind
-        The kind.
-    scene : Scene
-        The light; not changed.
-    rng : Generator
-        Draws everything that is random.
-    exposure : float, optional
-        Irradiance per unit of light; by default one that puts a percentile from `SATURATED` at 1.
+    `scene`: the light; not changed. `rng`: draws everything that is random. `exposure`: irradiance per unit of light;
+    by default one that puts a percentile from `SATURATED` at 1.
     """
     light = sensor_light(scene, rng)
     exposure = random_exposure(light, rng) if exposure is None else exposure
@@ -176,12 +155,7 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, 
 def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
     """Return an exposure that puts a percentile from `SATURATED` of the brightest channel of light at irradiance 1.
 
-    Parameters
-    ----------
-    light : ndarray, float32, shape (..., H, W, 3)
-        Linear light.
-    rng : Generator
-        Draws the percentile.
+    `light`, float32 (..., H, W, 3): linear light. `rng`: draws the percentile.
     """
     return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
 
