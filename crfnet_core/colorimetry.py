@@ -31,12 +31,8 @@ def chromaticity_of(xyz: Sequence[float] | Float64Array) -> Chromaticity:
 def rgb_to_xyz(red: Chromaticity, green: Chromaticity, blue: Chromaticity, white: Chromaticity) -> Float64Array:
     """Return the matrix from linear RGB to XYZ, by which RGB (1, 1, 1) is the white at Y = 1; shape (3, 3).
 
-    Source: SMPTE RP 177-1993, Derivation of Basic Television Color Equations.
-
-    Raises
-    ------
-    numpy.linalg.LinAlgError
-        If the three primaries lie on a line.
+    Source: SMPTE RP 177-1993, Derivation of Basic Television Color Equations. Raise numpy.linalg.LinAlgError if the
+    primaries lie on a line.
     """
     columns = np.array([(x, y, 1 - x - y) for x, y in (red, green, blue)]).T
     scales: Float64Array = np.linalg.solve(columns, xyz_of(white))
@@ -57,24 +53,14 @@ D60: Chromaticity = (0.32168, 0.33767)
 
 @dataclass(frozen=True)
 class Primaries:
-    """The chromaticities of an RGB.
+    """The chromaticities of an RGB."""
 
-    Parameters
-    ----------
-    name : str
-        As people know it, for example "Display P3".
-    red, green, blue, white : (float, float)
-        CIE 1931 x and y.
-    interop_id : str
-        The Color Interop Forum's name of the scene-linear space with these primaries; empty if there is none.
-    """
-
-    name: str
+    name: str  # as people know it, for example "Display P3"
     red: Chromaticity
     green: Chromaticity
     blue: Chromaticity
     white: Chromaticity = D65
-    interop_id: str = ""
+    interop_id: str = ""  # the Color Interop Forum's name of the scene-linear space with these primaries
 
     @property
     def corners(self) -> Float64Array:
@@ -110,10 +96,10 @@ PHOTOGRAPHIC = {"rec709": REC709, "p3": DISPLAY_P3, "adobe": ADOBE_RGB, "prophot
 
 
 def conversion_matrix(source: Primaries, target: Primaries) -> Float64Array:
-    """Return the matrix from linear RGB of one kind to that of another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
+    """Return the matrix from linear RGB of one kind to another, shape (3, 3) (Eq. 36 of docs/METHOD.md).
 
-    White stays white: between different white points colours are adapted by the Bradford transform, as in the ACES
-    configs of OpenColorIO. Colours outside the target's gamut become negative.
+    White stays white: between different white points colors are adapted by the Bradford transform, as in the ACES
+    configs of OpenColorIO. Colors outside the target's gamut become negative.
     """
     if source == target:
         return np.eye(3)

@@ -18,12 +18,7 @@ from PIL import Image
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, file_kind, tiff_directory
-from crfnet_core.photograph.image_io.header_checks import (
-    WHITE_IS_ZERO,
-    check_is_encoded,
-    checked_bit_depth,
-    with_plain_texts,
-)
+from crfnet_core.photograph.image_io.header_checks import WHITE_IS_ZERO, checked_bit_depth, with_plain_texts
 from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
@@ -96,8 +91,7 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
         with _opened(path, kind) as file:
             if file.has_gain_map:
                 return _base_codes(path).metadata
-            checked_bit_depth(path, file.header)
-            check_is_encoded(path, file.header, kind)
+            checked_bit_depth(path, file.header, kind)
             return file.metadata()
 
 
@@ -130,8 +124,7 @@ class _OpenFile:
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
-        bit_depth = checked_bit_depth(self.path, self.header)
-        check_is_encoded(self.path, self.header, self.kind)
+        bit_depth = checked_bit_depth(self.path, self.header, self.kind)
         values = self._decoded()
         if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO and bit_depth > 8:
             values = ~values  # OpenImageIO inverts such samples of 8 bits only

@@ -109,12 +109,9 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device; UNKNOWN where neither the maker nor the model shows it.
+    """Return the kind of device by EXIF Make and Model; UNKNOWN where neither shows it.
 
-    Parameters
-    ----------
-    make, model : str
-        EXIF Make and Model; where the make is absent, the model may begin with it ("NIKON D90").
+    Where the make is absent, the model may begin with it ("NIKON D90").
     """
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():

@@ -32,15 +32,7 @@ FLAT_RANGE = 4 / 255
 
 @dataclass(frozen=True, eq=False)
 class Levels:
-    """The distributions of all channels' brightness together, and of luma.
-
-    Parameters
-    ----------
-    histogram : ndarray, float64, shape (1024,)
-        The number of samples of all channels at each code of 10 bits.
-    luma : ndarray, float64, shape (1024,)
-        The number of pixels whose luma is at each code of 10 bits.
-    """
+    """The numbers of samples of all channels together, and of luma, at each code of 10 bits: float64, shape (1024,)."""
 
     histogram: Float64Array
     luma: Float64Array

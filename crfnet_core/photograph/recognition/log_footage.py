@@ -39,21 +39,11 @@ DARK = 0.01
 
 @dataclass(frozen=True)
 class NearCurve:
-    """A published curve that the levels of log footage may have.
+    """A published curve that the levels of log footage may have."""
 
-    Parameters
-    ----------
-    name : str
-        As in `log_curves`.
-    probability : float
-        The probability of this curve, by the levels alone.
-    expected_error : float
-        How far its light is expected to be off, in stops, over all curves that it may be: see `light_error`.
-    """
-
-    name: str
-    probability: float
-    expected_error: float
+    name: str  # as in `log_curves`
+    probability: float  # by the levels alone
+    expected_error: float  # of its light, in stops, over all curves that it may be: see `light_error`
 
 
 def log_factor(levels: Levels) -> float:
@@ -72,14 +62,7 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
     """Return up to four published curves that explain the levels best, the likeliest first: Eq. 41.
 
     Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
-    count as equally frequent.
-
-    Parameters
-    ----------
-    levels : Levels
-        Of log footage.
-    makes : tuple of str
-        The makers that the files name: where some are known, only their curves are tried.
+    count as equally frequent. Of makers that the files name (`makes`), where some are known, only the curves are tried.
     """
     curves = log_curves()
     tried = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves

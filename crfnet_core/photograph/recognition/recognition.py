@@ -33,33 +33,15 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Recognition:
-    """An input that is not a camera photograph, by its pixels or its metadata.
-
-    Parameters
-    ----------
-    kind : Kind
-        The detected kind.
-    reason : str
-        The measurement, in words.
-    advice : str
-        A better input, in words.
-    curves : tuple of str
-        For log footage up to four published curves whose levels fit, the likeliest first.
-    probabilities : tuple of float
-        The probability of each, by the levels alone.
-    errors : tuple of float
-        The expected error of the light of each, in stops.
-    color_space : str
-        The color space in ACES configs of the curve with the least expected error; empty if it has none.
-    """
+    """An input that is not a camera photograph, by its pixels or its metadata."""
 
     kind: Kind
-    reason: str
-    advice: str
-    curves: tuple[str, ...] = ()
-    probabilities: tuple[float, ...] = ()
-    errors: tuple[float, ...] = ()
-    color_space: str = ""
+    reason: str  # the measurement, in words
+    advice: str  # a better input, in words
+    curves: tuple[str, ...] = ()  # of log footage, up to four whose levels fit, the likeliest first
+    probabilities: tuple[float, ...] = ()  # of each curve, by the levels alone
+    errors: tuple[float, ...] = ()  # expected, of the light of each, in stops
+    color_space: str = ""  # in ACES configs, of the curve with the least expected error; empty if it has none
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
@@ -77,18 +59,10 @@ def recognize(
     makes: tuple[str, ...] = (),
     origins: Sequence[FileOrigin] = (),
 ) -> Recognition | None:
-    """Return the detected kind, or None for ordinary camera photographs.
+    """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
-    Parameters
-    ----------
-    levels : Levels
-        Of all photographs of an estimate together.
-    log_probability : float
-        The probability of log footage, in which the levels have been counted: see `log_factor`.
-    makes : tuple of str
-        The makers that the files name.
-    origins : sequence of FileOrigin
-        The origin of each picture.
+    `levels` are of all pictures together; `log_probability` is of log footage and counts the levels by `log_factor`;
+    `makes` are the makers that the files name.
     """
     if levels.is_flat:
         return _recognition(Kind.FLAT, Notice("flat_frame"), Notice("flat_frame_advice"))

@@ -69,11 +69,6 @@ def test_a_camera_file_as_written_is_hardly_edited():
     assert as_written["edited"] < unclear["edited"]
 
 
-def test_a_profile_decides_for_linear_and_log():
-    assert largest(profile="Linear Rec.709", file_format="TIFF") == "linear"
-    assert largest(profile="S-Log3", file_format="TIFF") == "log"
-
-
 @pytest.mark.parametrize("device", [Device.PHONE, Device.COMPACT, Device.CAMERA, Device.UNKNOWN])
 def test_a_stated_device_is_neutral_about_log_and_linear_pictures(device):
     """They are taken with cameras, too; of screenshots and renderings nobody says so."""

@@ -202,7 +202,7 @@ def test_a_messengers_copy_is_recognized_by_its_metadata(fields, found):
     [
         ("Sony S-Log3", "tagged_color_space", "S-Log3 S-Gamut3.Cine"),
         ("PQ", "tagged_color_space", "Rec.2100-PQ - Display"),
-        ("Cineon log", "tagged_encoding", None),
+        ("Cineon log", "tagged_encoding", ""),
         ("linear", "tagged_linear", None),
     ],
 )
