@@ -42,7 +42,10 @@ class Photo:
     ) -> None:
         self.bit_depth, self.is_gray, self.path, self.metadata = bit_depth, is_gray, Path(path), metadata
         if not isinstance(pixels, CodeValues):
-            _check_pixels(pixels, self.path)
+            kind, shape = getattr(pixels, "dtype", type(pixels).__name__), np.shape(pixels)
+            if kind != np.float32 or shape[2:] != (3,) or not pixels.size:
+                raise PhotoError("photo_pixels", path=path, kind=kind, shape=shape)
+            check_range(pixels, str(path))
         self._samples = pixels
 
     @classmethod
@@ -107,18 +110,6 @@ class Photo:
     def shape(self) -> tuple[int, ...]:
         """The shape of `pixels`, (H, W, 3)."""
         return (self._samples.codes if isinstance(self._samples, CodeValues) else self._samples).shape
-
-    def __repr__(self) -> str:
-        """Return the facts of the photograph, without its pixels."""
-        return f"Photo({str(self.path)!r}, shape={self.shape}, bit_depth={self.bit_depth}, is_gray={self.is_gray})"
-
-
-def _check_pixels(pixels: NDArray[Any], path: Path) -> None:
-    """Refuse pixels that are not float32 of shape (H, W, 3) in [0, 1]."""
-    kind, shape = getattr(pixels, "dtype", type(pixels).__name__), np.shape(pixels)
-    if kind != np.float32 or shape[2:] != (3,) or not pixels.size:
-        raise PhotoError("photo_pixels", path=path, kind=kind, shape=shape)
-    check_range(pixels, str(path))
 
 
 @dataclass(frozen=True, eq=False)

@@ -21,7 +21,7 @@ from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.photo import Photo
-from crfnet_core.photograph.recognition import Kind, Levels, LogCurve, is_limited_range, light_error, log_curves
+from crfnet_core.photograph.recognition import LOG_CURVES, Kind, Levels, LogCurve, is_limited_range, light_error
 from crfnet_core.posterior import Verdict
 from crfnet_core.types import Float32Array, Uint8Array
 from training.data.real.photographs import real_photographs
@@ -53,7 +53,7 @@ def log_picture(scene: Scene, curve: LogCurve, *, is_stretched: bool, rng: np.ra
 
 def print_log_footage(data: Path, network: ResponseNetwork, *, is_stretched: bool) -> None:
     """Print how much log footage is recognized, and how it is named."""
-    rng, curves = np.random.default_rng(15), log_curves()
+    rng, curves = np.random.default_rng(15), LOG_CURVES
     pictures, refused, places, errors = 0, 0, list[int](), list[tuple[float, float, float]]()
     for scene in read_scenes(data / "linear", "validation"):
         for name in curves:

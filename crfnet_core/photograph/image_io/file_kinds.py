@@ -74,10 +74,14 @@ def file_kind(path: Path) -> str:
     for kind, signatures in SIGNATURES.items():
         if head.startswith(signatures):
             return kind
-    kind = _container_kind(head, brands) or _targa_kind(path)
-    if not kind:
-        raise PhotoError("not_an_image_file", path=path)
-    return kind
+    if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
+        return "WebP"
+    for kind, names in (("AVIF", AVIF_BRANDS), ("HEIC", HEIC_BRANDS)):
+        if any(brand in names for brand in brands):
+            return kind
+    if _is_targa(path):
+        return "TGA"
+    raise PhotoError("not_an_image_file", path=path)
 
 
 def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
@@ -123,15 +127,6 @@ def tiff_directory(path: Path) -> dict[int, int]:
     return directory
 
 
-def _container_kind(head: bytes, brands: tuple[bytes, ...]) -> str:
-    """Return the format of a RIFF or ISO base media file; empty for others, and for movies."""
-    if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
-        return "WebP"
-    if any(brand in AVIF_BRANDS for brand in brands):
-        return "AVIF"
-    return "HEIC" if any(brand in HEIC_BRANDS for brand in brands) else ""
-
-
 def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:
     """Return the brands of an ISO base media file: the major one, then, behind its version, the compatible ones."""
     length = min(max(int.from_bytes(head[:4], "big") - _HEAD, 0), 1024)
@@ -139,15 +134,14 @@ def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:
     return tuple(brands[at : at + 4] for at in range(0, len(brands), 4) if at != 4)
 
 
-def _targa_kind(path: Path) -> str:
-    """Return "TGA" or "": TGA (Truevision TGA 2.0) is known by suffix and header. Refuse one with a palette."""
+def _is_targa(path: Path) -> bool:
+    """Return whether a file is TGA (Truevision TGA 2.0), by suffix and header; refuse one with a palette."""
     if path.suffix.lower() not in TARGA_SUFFIXES:
-        return ""
+        return False
     with path.open("rb") as file:
         header = file.read(18).ljust(18, b"\0")
     has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
-    if not (has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)):
-        return ""
-    if kind in (1, 9):
+    is_valid = has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)
+    if is_valid and kind in (1, 9):
         raise PhotoError("palette", path=path, kind="a TGA file with a palette")
-    return "TGA"
+    return is_valid

@@ -65,19 +65,12 @@ def _check_color(path: Path, header: Any) -> None:
         raise PhotoError("camera_raw", path=path)
     if photometric in LINEAR_PHOTOMETRICS:
         raise PhotoError("scene_linear_file", path=path, kind="LogLuv TIFF")
-    if kind := _paletted_kind(header, photometric):
-        raise PhotoError("palette", path=path, kind=kind)
+    # A BMP file with gray has a palette, but one channel.
+    is_bmp = header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8
+    tables = {"TIFF": photometric == PALETTE_PHOTOMETRIC, "PNG": header.get_int_attribute("png:palette"), "BMP": is_bmp}
+    if kind := next((kind for kind, has_table in tables.items() if has_table), ""):
+        raise PhotoError("palette", path=path, kind=f"a {kind} file with a palette")
     is_ink = header.get_string_attribute("jpeg:ColorSpace") in ("CMYK", "YCbCrK")
     if is_ink or photometric not in READ_PHOTOMETRICS:
         kind = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
         raise PhotoError("other_colors", path=path, kind=kind)
-
-
-def _paletted_kind(header: Any, photometric: int) -> str:
-    """Return the kind of a file whose pixels are the numbers of colors in a table; empty for others."""
-    if photometric == PALETTE_PHOTOMETRIC:
-        return "a TIFF file with a palette"
-    if header.get_int_attribute("png:palette"):
-        return "a PNG file with a palette"
-    is_bmp = header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8  # gray ones have a channel
-    return "a BMP file with a palette" if is_bmp else ""

@@ -32,7 +32,7 @@ _ROWS = 256
 #: Pages of a TIFF file that are searched for the first that is not a reduced picture.
 _MOST_PAGES = 64
 
-#: The formats that OpenImageIO does not read.
+#: The formats that OpenImageIO's wheel does not read.
 HEIF_KINDS = ("HEIC", "AVIF")
 
 
@@ -155,9 +155,8 @@ class _OpenFile:
 
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
-        values = _masked_bmp(self.path) if self.kind == "BMP" else None
-        if values is not None:
-            return values
+        if self.kind == "BMP":
+            return _bmp_samples(self.path)
         values = _samples(self.source, self.header)
         problem = problems.oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
@@ -210,12 +209,8 @@ def _seek_picture(source: Any) -> None:
     problems.oiio_message(source)
 
 
-def _masked_bmp(path: Path) -> NDArray[np.uint8] | None:
-    """Return the samples of a BMP file with masks of its channels, which OpenImageIO ignores; None for others."""
-    with path.open("rb") as file:
-        compression = file.read(34)[30:]
-    if compression not in (b"\3\0\0\0", b"\6\0\0\0"):  # BI_BITFIELDS, BI_ALPHABITFIELDS
-        return None
+def _bmp_samples(path: Path) -> NDArray[np.uint8]:
+    """Return the samples of a BMP file, by Pillow, as OpenImageIO ignores the masks of channels."""
     try:
         with Image.open(path, formats=["BMP"]) as image:
             return np.atleast_3d(np.asarray(image))
@@ -224,7 +219,7 @@ def _masked_bmp(path: Path) -> NDArray[np.uint8] | None:
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples in an open file, shape (H, W, 1 to 4), or None; whole pictures OpenImageIO holds twice."""
+    """Return the samples in an open file, shape (H, W, 1 to 4), or None; of whole pictures OpenImageIO makes a copy."""
     channels = min(header.nchannels, 4)
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)

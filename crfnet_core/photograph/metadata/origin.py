@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
 from enum import StrEnum
 from typing import Any
@@ -51,11 +51,8 @@ class Encoding(StrEnum):
     UNKNOWN = ""
 
 
-#: Format of files -> its encoding, and the words for it.
-FOOTAGE = {
-    "DPX": (Encoding.FOOTAGE, "DPX files hold film or video"),
-    "movie": (Encoding.MOVIE, "a frame of a movie"),
-}
+#: Formats of files that hold no still photographs -> their encoding.
+FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
 
 _DEVICES = {
     Device.PHONE: "a phone",
@@ -98,34 +95,26 @@ class FileOrigin:
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
-    device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
+    device = device_of(metadata.make, metadata.model)
     is_adobes = metadata.has_adobe or bool(metadata.raw_file)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
-    is_developed = _is_developed(metadata, editor)
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
-    is_resaved = True if editor or is_scaled else encoded_by
-    encoding, *encoding_words = FOOTAGE.get(metadata.file_format, (Encoding.UNKNOWN,))
-    return FileOrigin(
+    origin = FileOrigin(
         device=device,
-        camera=camera,
+        camera=camera_name(metadata.make, metadata.model),
         editor=editor,
         is_scaled=is_scaled,
-        is_resaved=is_resaved,
+        is_resaved=True if editor or is_scaled else encoded_by,
         jpeg_quality=quality,
         picture_shape=picture_shape(metadata.width, metadata.height),
-        encoding=Encoding(encoding),
-        words=(
-            f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
-            *_saved_words(editor, is_developed, is_scaled, is_resaved, quality),
-            *_scaled_words(metadata, is_scaled),
-            *(["turned upright, as the file asks"] if metadata.is_turned else []),
-            *encoding_words,
-        ),
+        encoding=FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN),
+        words=(),
         renderer=metadata.renderer,
-        is_developed=is_developed,
+        is_developed=_is_developed(metadata, editor),
     )
+    return replace(origin, words=tuple(_words(origin, metadata)))
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
@@ -204,33 +193,27 @@ def _is_in_blocks(shorter: int, longer: int) -> bool:
     return longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
 
 
-def _taken_words(camera: str, device: Device) -> str:
-    """Return the words for the camera that took the photograph."""
-    if not camera:
-        return "the file names no camera"
-    return f"taken by {camera}, {_DEVICES[device]}" if device else f"taken by {camera}"
-
-
-def _saved_words(
-    editor: str, is_developed: bool, is_scaled: bool | None, is_resaved: bool | None, quality: int | None
-) -> list[str]:
-    """Return the words for the program that saved the file, if it is known."""
-    if is_developed:
-        return [f"developed from a raw file by {editor}"]
-    if editor:
-        return [f"saved by {editor}"]
-    if is_resaved is False:
-        return ["the file is as the camera wrote it"]
-    if is_resaved and not is_scaled:
-        return ["encoded again by a program" + (f", as JPEG of quality {quality}" if quality else "")]
-    return []
-
-
-def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
-    """Return that the picture was scaled, surely if EXIF keeps the size before."""
-    if not is_scaled:
-        return []
-    now, exif_size = f"{metadata.width} x {metadata.height}", metadata.exif_size
-    if exif_size and sorted(exif_size) != sorted((metadata.width, metadata.height)):
-        return [f"scaled from {exif_size[0]} x {exif_size[1]} to {now} pixels after the camera wrote it"]
-    return [f"probably scaled after the camera wrote it: it has {now} pixels"]
+def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
+    """Yield the words for an origin, one part of a sentence each."""
+    if origin.renderer or not origin.camera:
+        yield f"rendered by {origin.renderer}" if origin.renderer else "the file names no camera"
+    else:
+        yield f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
+    if origin.editor:
+        yield f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
+    elif origin.is_resaved is False:
+        yield "the file is as the camera wrote it"
+    elif origin.is_resaved and not origin.is_scaled:
+        quality = origin.jpeg_quality
+        yield "encoded again by a program" + (f", as JPEG of quality {quality}" if quality else "")
+    size, exif_size = (metadata.width, metadata.height), metadata.exif_size
+    if origin.is_scaled and exif_size and sorted(exif_size) != sorted(size):
+        before, now = (f"{width} x {height}" for width, height in (exif_size, size))
+        yield f"scaled from {before} to {now} pixels after the camera wrote it"
+    elif origin.is_scaled:
+        yield f"probably scaled after the camera wrote it: it has {size[0]} x {size[1]} pixels"
+    if metadata.is_turned:
+        yield "turned upright, as the file asks"
+    if origin.encoding:
+        is_movie = origin.encoding == Encoding.MOVIE
+        yield "a frame of a movie" if is_movie else f"{metadata.file_format} files hold {origin.encoding}"

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.photograph.recognition.levels import Levels
-from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, MOST_REFLECTANCE, LogCurve, log_curves
+from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, LOG_CURVES, MOST_REFLECTANCE, LogCurve
 from crfnet_core.types import Float64Array
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below
@@ -64,8 +64,8 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
     Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
     count as equally frequent. Of makers that the files name (`makes`), where some are known, only the curves are tried.
     """
-    curves = log_curves()
-    tried = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves
+    makers = " ".join(makes).casefold()
+    tried = {name: curve for name, curve in LOG_CURVES.items() if name.split()[0].casefold() in makers} or LOG_CURVES
     scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])
     weights = np.exp(scores - scores.max())
     probabilities = weights / weights.sum()
@@ -97,8 +97,3 @@ def _reflectance(curve: LogCurve, codes: Float64Array) -> Float64Array:
     """Return the reflectances of code values."""
     reflectance = np.geomspace(LEAST_REFLECTANCE, MOST_REFLECTANCE, 4096)
     return np.interp(codes, curve(reflectance), reflectance)
-
-
-def _is_of(name: str, make: str) -> bool:
-    """Return whether a curve, such as "Sony S-Log3", belongs to a maker, such as "SONY"."""
-    return bool(make) and name.split()[0].casefold() in make.casefold()

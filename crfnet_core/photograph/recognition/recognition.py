@@ -1,6 +1,7 @@
 """Detect inputs that are not camera photographs, and advise what to use instead.
 
-They are log footage, limited range, renderings, recompressed copies and flat frames.
+They are log footage, limited range, renderings, recompressed copies and flat frames. Encodings with a published curve,
+which the file names, are refused: there is nothing to estimate.
 """
 
 from __future__ import annotations
@@ -8,17 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import Notice
+from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
-from crfnet_core.photograph.recognition.levels import Levels
-from crfnet_core.photograph.recognition.limited_range import is_limited_range
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition.levels import Levels, is_limited_range
 from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 
 #: Probability of log footage above which it counts as recognized.
 RECOGNIZED = 0.5
+
+#: Encoding by the name that tags give it -> color space of OpenColorIO's ACES studio config.
+TAGGED_SPACES = COLOR_SPACES | {"HLG": "Rec.2100-HLG - Display", "PQ": "Rec.2100-PQ - Display"}
 
 
 class Kind(StrEnum):
@@ -71,6 +77,23 @@ def recognize(
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
+
+
+def refuse_tagged(photo: Photo) -> None:
+    """Raise PhotoError if the metadata name an encoding with a published curve, with the color space to choose."""
+    if photo.metadata is None or not photo.metadata.color.transfer:
+        return
+    refuse_linear(photo.metadata.color, photo.path)
+    transfer = photo.metadata.color.transfer
+    space = TAGGED_SPACES.get(transfer, "")
+    code = "tagged_color_space" if space else "tagged_encoding"
+    raise PhotoError(code, path=photo.path, transfer=transfer, source=photo.metadata.color.source, space=space)
+
+
+def refuse_linear(color: ColorTags, path: Path) -> None:
+    """Raise PhotoError if the tags of a file say that it is linear."""
+    if color.transfer == "linear":
+        raise PhotoError("tagged_linear", path=path, source=color.source)
 
 
 def _recognition(kind: Kind, reason: Notice, advice: Notice) -> Recognition:

@@ -25,7 +25,7 @@ def test_a_row_for_every_family():
 
 
 @pytest.mark.parametrize(
-    "fields", [{}, OWN_CAMERA, OWN_CAMERA | {"software": "GIMP"}, {"profile": "V-Log", "width": 640}]
+    "fields", [{}, OWN_CAMERA, OWN_CAMERA | {"software": "GIMP"}, {"file_format": "DPX", "width": 640}]
 )
 def test_factors_are_relative_to_the_largest(fields):
     factors = family_factors(origin(**fields))
