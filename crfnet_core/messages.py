@@ -77,28 +77,25 @@ SENTENCES: Mapping[str, str] = {
     "array_channels_first": "{path}: has shape {shape}; needs (H, W), or (H, W, C) with 1 to 4 channels: where channels"
     " come first, give array.transpose(1, 2, 0)",
     "array_holds_nan": "{path}: holds NaN; replace it, or leave these rows and columns out",
-    "array_is_file_name": "{path}: '{file}' is the name of a file; read_photo reads files",
     "array_is_none": "{path}: is None, which OpenCV's imread returns for a file it cannot read; check its name",
     "array_other_order": "{path}: has {channels} channels, but color_order='{order}'; give the order of all channels",
     "array_out_of_range": "{path}: holds values from {low:g} to {high:g}; encoded brightness lies in [0, 1]: divide"
     " code values by the largest (255 for 8 bits), or clip overshoot; a scene-linear picture holds no camera response",
     "array_sample_type": "{path}: holds {kind}; give uint8, uint16 with its bit_depth, or floating point in [0, 1]"
-    " (array.astype converts)",
+    " (array.astype converts); read_photo reads files",
     "array_shape": "{path}: has shape {shape}; needs (H, W), or (H, W, C) with 1 to 4 channels",
     "array_unknown_order": "{path}: color_order is {order}; give one of {orders}",
-    "array_unusable": "{path}: NumPy makes no array of this {kind} ({problem})",
     "array_without_bit_depth": "{path}: uint16 may hold 10, 12 or 16 bits; give bit_depth=16 if white is 65535",
     "array_without_order": "{path}: has {channels} channels and no color_order; give color_order='RGB', 'BGR' (OpenCV's"
     " order), 'RGBA', 'BGRA' or 'LA'",
     "photo_pixels": "{path}: the pixels are {kind}, shape {shape}; a Photo holds float32 of shape (H, W, 3):"
     " Photo.from_array converts",
-    "pillow_mode_associated": "{path}: is a Pillow image of mode '{mode}', associated alpha; give"
-    " image.convert('RGBA')",
     "pillow_mode_of_numbers": "{path}: is a Pillow image of mode '{mode}', numbers of 32 bits; give"
     " numpy.asarray(image), as uint16 with its bit_depth, or scaled to [0, 1]",
     "pillow_mode_of_other_colors": "{path}: is a Pillow image of mode '{mode}', which hides the camera's response; give"
     " the RGB photograph that it was made from",
-    "pillow_mode_unknown": "{path}: is a Pillow image of mode '{mode}', which is not taken; give image.convert('RGB')",
+    "pillow_mode_unknown": "{path}: is a Pillow image of mode '{mode}', which is not taken; give image.convert('RGB'),"
+    " or 'RGBA' if it has alpha",
     "pillow_order_stated": "{path}: is a Pillow image of mode '{mode}', so leave color_order='{order}' out",
     # photograph: files
     "camera_raw": "{path}: camera raw holds no encoded picture; give the JPEG, HEIC or TIFF developed from it, or the"
@@ -110,7 +107,6 @@ SENTENCES: Mapping[str, str] = {
     "no_such_photograph": "{path}: there is no such file; check the name",
     "not_an_image_file": "{path}: is not a JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP or TGA file,"
     " whatever its name says; save the photograph as one of these",
-    "null_suffix": "{path}: OpenImageIO reads no file of the suffix {suffix}; rename it",
     "other_colors": "{path}: holds {kind}, which hides the camera's response; give the RGB photograph that it came"
     " from",
     "palette": "{path}: {kind} holds at most 256 colors, mostly mixed by dither, from which no response can be"

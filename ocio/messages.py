@@ -4,6 +4,8 @@ from collections.abc import Mapping
 
 SENTENCES: Mapping[str, str] = {
     # movies
+    "dolby_vision": "{path}: is Dolby Vision of profile {profile}, whose samples only its own decoder shows; give a"
+    " version in SDR",
     "frame_undecodable": "{path}: frame {frame} cannot be decoded; copy the movie again, or extract its frames: {line}",
     "movie_changes": "{path}: frame {frame} is {form}, the first {first}; cut the movie where it changes",
     "movie_interlaced": "{path}: is interlaced, each frame mixes two moments; deinterlace it and linearize the frames:"

@@ -5,11 +5,10 @@ Neither Pillow nor OpenCV is imported: their images are known by NumPy's array i
 
 from __future__ import annotations
 
-from pathlib import Path
-from typing import Any, Literal, Protocol, get_args
+from typing import Any, Literal, get_args
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.types import Float32Array
@@ -22,10 +21,7 @@ LEAST_BITS = 8
 
 #: Modes of Pillow's images whose arrays hold code values as they are, and the order of their channels.
 PILLOW_MODES: dict[str, ColorOrder] = {
-    "L": "L",
-    "LA": "LA",
-    "RGB": "RGB",
-    "RGBA": "RGBA",
+    **{"L": "L", "LA": "LA", "RGB": "RGB", "RGBA": "RGBA"},
     **dict.fromkeys(("I;16", "I;16L", "I;16B", "I;16N"), "L"),
 }
 
@@ -33,47 +29,22 @@ PILLOW_MODES: dict[str, ColorOrder] = {
 _OTHER_MODES = {
     **dict.fromkeys(("P", "CMYK", "LAB"), "pillow_mode_of_other_colors"),
     **dict.fromkeys(("I", "F"), "pillow_mode_of_numbers"),
-    "RGBa": "pillow_mode_associated",
 }
 
 
-class HasArrayInterface(Protocol):
-    """An object that NumPy makes an array of, such as an image of Pillow."""
-
-    @property
-    def __array_interface__(self) -> dict[str, Any]:
-        """NumPy's description of the memory."""
-
-
 def pixels_from_array(
-    array: ArrayLike | HasArrayInterface,
-    *,
-    color_order: ColorOrder | None,
-    bit_depth: int | None,
-    is_associated: bool,
-    name: str,
+    array: Any, *, color_order: ColorOrder | None, bit_depth: int | None, name: str
 ) -> tuple[Float32Array, int]:
-    """Return new pixels in R, G, B, float32 (H, W, 3) in [0, 1], and the bits per sample; see `Photo.from_array`.
-
-    Raises
-    ------
-    PhotoError
-        If `Photo.from_array` does not take such an array.
-    """
+    """Return new pixels in R, G, B, float32 (H, W, 3) in [0, 1], and the bits per sample; see `Photo.from_array`."""
     order = _stated_order(array, color_order, name)
     values = _samples(array, name)
     order = _checked_order(values, order, name)
     bits = _checked_bits(values, bit_depth, name)
-    planes = np.atleast_3d(values)
+    planes = np.atleast_3d(values)[..., [order.index(letter) for letter in ("RGB" if "R" in order else "LLL")]]
     if values.dtype.kind == "f":
         check_range(planes, name)
-        planes = planes.astype(np.float32)
-    else:
-        planes = _encoded(planes, bits, name)
-    color = planes[..., [order.index(letter) for letter in ("RGB" if "R" in order else "LLL")]]
-    if is_associated and "A" in order:
-        color = _divided(color, planes[..., order.index("A")])
-    return np.ascontiguousarray(color), bits
+        return np.ascontiguousarray(planes, np.float32), bits
+    return np.ascontiguousarray(_encoded(planes, bits, name)), bits
 
 
 def check_range(pixels: NDArray[np.floating], name: str) -> None:
@@ -112,12 +83,10 @@ def _samples(array: Any, name: str) -> NDArray[Any]:
     """Return an array of 8- or 16-bit codes or of floating-point numbers; refuse any other."""
     if array is None:
         raise PhotoError("array_is_none", path=name)
-    if isinstance(array, str | Path):
-        raise PhotoError("array_is_file_name", path=name, file=array)
     try:
         values = np.asarray(array)
-    except (TypeError, ValueError) as problem:
-        raise PhotoError("array_unusable", path=name, kind=type(array).__name__, problem=problem) from None
+    except (TypeError, ValueError):
+        raise PhotoError("array_sample_type", path=name, kind=f"a {type(array).__name__}") from None
     if values.dtype.kind == "f" or (values.dtype.kind == "u" and values.dtype.itemsize <= 2):
         return values
     raise PhotoError("array_sample_type", path=name, kind=values.dtype)
@@ -155,10 +124,3 @@ def _encoded(codes: NDArray[Any], bits: int, name: str) -> Float32Array:
     if highest > largest:
         raise PhotoError("array_above_bit_depth", path=name, code=highest, bit_depth=bits, largest=largest)
     return np.asarray(np.divide(codes, np.float32(largest), dtype=np.float32))
-
-
-def _divided(color: Float32Array, alpha: Float32Array) -> Float32Array:
-    """Return associated color, shape (H, W, 3), divided by alpha, shape (H, W); 0 where nothing is covered."""
-    coverage = np.where(alpha > 0, alpha, np.float32(np.inf))[..., None]
-    divided: Float32Array = np.minimum(color / coverage, 1)
-    return divided

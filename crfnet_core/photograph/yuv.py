@@ -47,28 +47,14 @@ _SUBSAMPLING = {(1, 1): "444", (2, 1): "422", (2, 2): "420", (4, 1): "411", (1, 
 
 @dataclass(frozen=True)
 class Coding:
-    """How a frame codes RGB.
+    """How a frame codes RGB."""
 
-    Parameters
-    ----------
-    matrix : str
-        Name of the matrix; "RGB" if the frame holds RGB or gray.
-    red, blue : float
-        Weights of red and blue in luma (K_R and K_B of H.273, 8.3).
-    is_full_range : bool
-        Whether black is code 0 and white the largest; otherwise 16 and 235, times 2 ** (bits - 8).
-    is_centered : bool
-        Whether chroma samples lie between luma samples horizontally, as in still pictures, or on them, as in video.
-    assumptions : tuple of str
-        Properties that the frame does not state, and the value taken instead, in words.
-    """
-
-    matrix: str
-    red: float
+    matrix: str  # its name; "RGB" if the frame holds RGB or gray
+    red: float  # the weights of red and blue in luma (K_R and K_B of H.273, 8.3)
     blue: float
-    is_full_range: bool
-    is_centered: bool
-    assumptions: tuple[str, ...] = ()
+    is_full_range: bool  # whether black is code 0 and white the largest; else 16 and 235, times 2 ** (bits - 8)
+    is_centered: bool  # whether chroma lies between luma samples horizontally, as in still pictures, or on them
+    assumptions: tuple[str, ...] = ()  # properties that the frame does not state, and the values taken, in words
 
     def __str__(self) -> str:
         """Return matrix and range in words."""
@@ -78,14 +64,8 @@ class Coding:
     def from_frame(cls, frame: VideoFrame, *, is_still: bool, nclx: tuple[int, bool] | None = None) -> Coding | None:
         """Return the coding of a decoded frame; None if its matrix or its samples are not read.
 
-        Parameters
-        ----------
-        frame : av.VideoFrame
-            As decoded.
-        is_still : bool
-            Whether it is a still picture (JPEG or AVIF), for which untagged means BT.601 in full range.
-        nclx : (int, bool), optional
-            Matrix and full range flag of the container, which override the frame's.
+        For a still picture (JPEG or AVIF), untagged means BT.601 in full range. `nclx` holds the matrix and the full
+        range flag of the container, which override the frame's.
         """
         form, bits = frame.format, bit_depth(frame)
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
@@ -95,16 +75,11 @@ class Coding:
         matrix, color_range = int(frame.colorspace), int(frame.color_range)
         if nclx:
             matrix, color_range = nclx[0], _FULL_RANGE if nclx[1] else 1
-        if len(form.components) < 3:
-            return cls._gray(color_range, is_still=is_still)
+        if len(form.components) < 3:  # gray has no matrix; untagged it is full range, as FFmpeg takes it
+            is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
+            assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()
+            return cls("RGB", 0.0, 0.0, is_full_range=is_full, is_centered=False, assumptions=assumptions)
         return cls._yuv(matrix, color_range, frame.height, is_still=is_still)
-
-    @classmethod
-    def _gray(cls, color_range: int, *, is_still: bool) -> Coding:
-        """Return the coding of gray, which has no matrix; untagged it is full range, as FFmpeg takes it."""
-        is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
-        assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()
-        return cls("RGB", 0.0, 0.0, is_full_range=is_full, is_centered=False, assumptions=assumptions)
 
     @classmethod
     def _yuv(cls, matrix: int, color_range: int, lines: int, *, is_still: bool) -> Coding | None:
@@ -127,21 +102,9 @@ def bit_depth(frame: VideoFrame) -> int:
 
 
 def rgb_codes(frame: VideoFrame, coding: Coding, largest: int) -> CodeArray:
-    """Return the RGB codes of a frame, as stored: not turned upright.
+    """Return the RGB codes of a frame, 0 to `largest` (255 to 65535), rounded, uint8 or uint16, shape (H, W, 3).
 
-    Parameters
-    ----------
-    frame : av.VideoFrame
-        As decoded.
-    coding : Coding
-        How it codes RGB.
-    largest : int
-        The code of white: 255 to 65535.
-
-    Returns
-    -------
-    ndarray, uint8 or uint16, shape (H, W, 3)
-        Codes 0 to `largest`, rounded; limited range is cut off below black and above white.
+    They are not turned upright. Limited range is cut off below black and above white.
     """
     planes = _planes(frame)
     height, width = planes[0].shape

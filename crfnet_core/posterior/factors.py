@@ -11,8 +11,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from crfnet_core.photograph.metadata import Device, FileOrigin
-from crfnet_core.photograph.metadata.encodings import Encoding
+from crfnet_core.photograph.metadata import Device, Encoding, FileOrigin
 from crfnet_core.posterior.families import Family
 
 #: Least product of factors. Metadata can be wrong (copied, stripped, an unknown model): pixels that are sure win.
@@ -57,9 +56,6 @@ FACTORS: dict[str, tuple[float, ...]] = {
     "16:9": (1, 0.4, 0.3, 0.3, 0.7, 0.7, 0.8, 2, 1),
     # Phones as long as their screens, and cinema.
     "2:1": (1, 0.1, 0.1, 0.3, 0.5, 0.5, 0.5, 1, 0.8),
-    # The profile was written by a program that knew the values.
-    Encoding.LINEAR: (0.02, 0.02, 0.02, 0.05, 0.1, 0.05, 1, 0.05, 0.3),
-    Encoding.LOG: (0.02, 0.02, 0.02, 0.05, 0.1, 0.1, 0.05, 1, 0.3),
     # DPX holds scanned film, log and video frames; no still camera writes it.
     Encoding.FOOTAGE: (0.05, 0.05, 0.1, 0.2, 0.5, 1, 0.5, 1, 0.5),
     # Every camera takes movies, and programs make them.

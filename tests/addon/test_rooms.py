@@ -150,6 +150,6 @@ def repeated(module, name):
 
 
 def test_the_suffixes_of_heic_that_are_there_before_the_estimator_are_its_own(addon_folder):
-    from crfnet_core.photograph.image_io import HEIF_SUFFIXES
+    from crfnet_core.photograph.image_io.file_kinds import HEIF_SUFFIXES
 
     assert repeated(addon_folder / "scene" / "plates.py", "HEIF_SUFFIXES") == HEIF_SUFFIXES

@@ -262,12 +262,6 @@ def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed
     np.testing.assert_array_equal(photo[index], before)
 
 
-def test_the_words_for_a_photograph_compute_no_pixels(tmp_path):
-    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
-    assert repr(photo).startswith("Photo(")
-    assert "pixels" not in vars(photo)
-
-
 def test_other_metadata_leave_the_photograph_as_it_was(tmp_path):
     photo = read_photo(write_image(tmp_path / "a.png", CODES8))
     other = photo.with_metadata(None)

@@ -104,11 +104,6 @@ def exotic_tiff(path):
     path.write_bytes(tiff(2, 2, content=bytes(12)).replace(scheme, struct.pack("<HHII", 259, 3, 1, 34926)))
 
 
-def plain_jpeg(path):
-    jpeg(path.with_suffix(".jpg"))
-    path.with_suffix(".jpg").rename(path)
-
-
 def long_tiff(path):
     path.write_bytes(tiff(2, 2, bits=32, content=bytes(48)))
 
@@ -184,7 +179,6 @@ FOUR_INKS = _four_inks()
         (signed_tiff, "a.tif", "sample_type"),
         (exotic_tiff, "a.tif", "coding_not_read"),
         (deep_jpeg, "a.jpg", "coding_not_read"),
-        (plain_jpeg, "a.null", "null_suffix"),
         (long_tiff, "a.tif", "sample_type"),
         (bilevel_tiff, "a.tif", "sample_type"),
         (huge_jpeg, "a.jpg", "too_many_pixels"),

@@ -13,9 +13,8 @@ from crfnet_core import AnalysisOptions, ResponseEstimate, ResponseNetwork, esti
 from crfnet_core.estimate.result import SCHEMA_VERSION
 from crfnet_core.files import json_text
 from crfnet_core.library import CameraLibrary
-from crfnet_core.photograph.metadata import FileOrigin
+from crfnet_core.photograph.metadata import Encoding, FileOrigin
 from crfnet_core.photograph.metadata.devices import Device
-from crfnet_core.photograph.metadata.encodings import Encoding
 from crfnet_core.photograph.metadata.origin import SHAPES
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.cameras import camera, photograph

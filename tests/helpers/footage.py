@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from crfnet_core.photograph.recognition import log_curves
+from crfnet_core.photograph.recognition import LOG_CURVES
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 
@@ -39,7 +39,7 @@ def log_picture(name: str, *, seed: int = 0, bits: int = 8) -> Float32Array:
     light = scene_light(seed=seed)
     light = np.minimum(light, 0.18 * 2**4.8)
     noise = np.random.default_rng(seed).standard_normal(light.shape) * np.sqrt(2e-5 * light + 9e-8)
-    return quantized(log_curves()[name](light + 0.002 + noise), bits)
+    return quantized(LOG_CURVES[name](light + 0.002 + noise), bits)
 
 
 def ordinary_picture(*, seed: int = 0) -> Float32Array:

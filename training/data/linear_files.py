@@ -12,7 +12,8 @@ import rawpy
 from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.image_io import LINEAR_SIGNATURES, RAW_SUFFIXES, first_line
+from crfnet_core.photograph.image_io import first_line
+from crfnet_core.photograph.image_io.file_kinds import LINEAR_SIGNATURES, RAW_SUFFIXES
 from crfnet_core.photograph.image_io.header_checks import check_size
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.scenes import BAND, LUMINANCE, area_averaged

@@ -9,27 +9,10 @@ heif             HEIC and AVIF, which OpenImageIO's wheel cannot read
 problems         the errors of files that cannot be decoded
 """
 
-from crfnet_core.photograph.image_io.file_kinds import (
-    HEIF_SUFFIXES,
-    LINEAR_SIGNATURES,
-    PHOTOGRAPH_SUFFIXES,
-    RAW_SUFFIXES,
-    SIGNATURES,
-)
+from crfnet_core.photograph.image_io.file_kinds import PHOTOGRAPH_SUFFIXES
 from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS
 from crfnet_core.photograph.image_io.problems import first_line, oiio_message
 from crfnet_core.photograph.image_io.reading import read_codes, read_metadata, read_photo
 
-__all__ = [
-    "HEIF_SUFFIXES",
-    "LINEAR_SIGNATURES",
-    "MAX_PIXELS",
-    "PHOTOGRAPH_SUFFIXES",
-    "RAW_SUFFIXES",
-    "SIGNATURES",
-    "first_line",
-    "oiio_message",
-    "read_codes",
-    "read_metadata",
-    "read_photo",
-]
+__all__ = ["MAX_PIXELS", "PHOTOGRAPH_SUFFIXES", "first_line", "oiio_message"]
+__all__ += ["read_codes", "read_metadata", "read_photo"]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import struct
 from pathlib import Path
-from typing import Literal
+from typing import BinaryIO, Literal
 
 from crfnet_core.errors import PhotoError
 
@@ -44,9 +44,6 @@ AVIF_BRANDS = (b"avif", b"avis")
 #: Suffixes of Truevision TGA, which has no signature.
 TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
 
-#: Suffixes for which OpenImageIO invents a picture, whatever is in the file.
-_NULL_SUFFIXES = (".null", ".nul")
-
 #: Suffixes of HEIC and AVIF.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
 
@@ -60,15 +57,9 @@ _HEAD = 12
 
 
 def file_kind(path: Path) -> str:
-    """Return the file's format, such as "JPEG", or refuse it.
+    """Return the file's format, such as "JPEG".
 
-    Raises
-    ------
-    PhotoError
-        If the file is absent, empty, or of a format that is not read; scene-linear files, camera raw, GIF and TGA with
-        a palette have errors of their own.
-    OSError
-        If it cannot be opened.
+    Raise PhotoError if the file is absent, empty, or of a format that is not read, and OSError if it cannot be opened.
     """
     if path.is_dir():
         raise PhotoError("photograph_is_folder", path=path)
@@ -76,25 +67,27 @@ def file_kind(path: Path) -> str:
         raise PhotoError("no_such_photograph", path=path)
     with path.open("rb") as file:
         head = file.read(_HEAD)
-        brands = _split(head[8:] + file.read(_brands_length(head))) if head[4:8] == b"ftyp" else ()
+        brands = _brands(head, file) if head[4:8] == b"ftyp" else ()
     if not head:
         raise PhotoError("photograph_is_empty", path=path)
     _check_kind(path, head, brands)
     for kind, signatures in SIGNATURES.items():
         if head.startswith(signatures):
             return kind
-    kind = _container_kind(head, brands) or _targa_kind(path)
-    if not kind:
-        raise PhotoError("not_an_image_file", path=path)
-    return kind
+    if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
+        return "WebP"
+    for kind, names in (("AVIF", AVIF_BRANDS), ("HEIC", HEIC_BRANDS)):
+        if any(brand in names for brand in brands):
+            return kind
+    if _is_targa(path):
+        return "TGA"
+    raise PhotoError("not_an_image_file", path=path)
 
 
 def _check_kind(path: Path, head: bytes, brands: tuple[bytes, ...]) -> None:
     """Refuse camera raw, scene-linear files and GIF."""
     if path.suffix.lower() in RAW_SUFFIXES or _RAW_BRAND in brands or _is_raw(path, head):
         raise PhotoError("camera_raw", path=path)
-    if path.suffix.lower() in _NULL_SUFFIXES:
-        raise PhotoError("null_suffix", path=path, suffix=path.suffix)
     for kind, signatures in LINEAR_SIGNATURES.items():
         if head.startswith(signatures):
             raise PhotoError("scene_linear_file", path=path, kind=kind)
@@ -127,44 +120,28 @@ def tiff_directory(path: Path) -> dict[int, int]:
         order: Literal["little", "big"] = "little" if head.startswith(b"II") else "big"
         file.seek(int.from_bytes(head[4:], order))
         content = file.read(12 * min(int.from_bytes(file.read(2), order), _MOST_ENTRIES))
-    entries = (content[at : at + 12] for at in range(0, len(content) - 11, 12))
-    return {int.from_bytes(each[:2], order): _value(each, order) for each in entries}
+    directory = {}
+    for at in range(0, len(content) - 11, 12):
+        tag, kind = (int.from_bytes(content[begin : begin + 2], order) for begin in (at, at + 2))
+        directory[tag] = int.from_bytes(content[at + 8 : at + (10 if kind == 3 else 12)], order)  # 3 is SHORT
+    return directory
 
 
-def _value(entry: bytes, order: Literal["little", "big"]) -> int:
-    """Return the number in a directory's entry: two bytes for SHORT, else four."""
-    is_short = int.from_bytes(entry[2:4], order) == 3
-    return int.from_bytes(entry[8 : 10 if is_short else 12], order)
-
-
-def _container_kind(head: bytes, brands: tuple[bytes, ...]) -> str:
-    """Return the format of a RIFF or ISO base media file; empty for others, and for movies."""
-    if head.startswith(b"RIFF") and head.endswith(b"WEBP"):
-        return "WebP"
-    if any(brand in AVIF_BRANDS for brand in brands):
-        return "AVIF"
-    return "HEIC" if any(brand in HEIC_BRANDS for brand in brands) else ""
-
-
-def _brands_length(head: bytes) -> int:
-    """Return how many bytes of brands follow the first 12 bytes of an ISO base media file."""
-    return min(max(int.from_bytes(head[:4], "big") - _HEAD, 0), 1024)
-
-
-def _split(brands: bytes) -> tuple[bytes, ...]:
-    """Return the brands: the major one, then, behind its version, the compatible ones."""
+def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:
+    """Return the brands of an ISO base media file: the major one, then, behind its version, the compatible ones."""
+    length = min(max(int.from_bytes(head[:4], "big") - _HEAD, 0), 1024)
+    brands = head[8:] + file.read(length)
     return tuple(brands[at : at + 4] for at in range(0, len(brands), 4) if at != 4)
 
 
-def _targa_kind(path: Path) -> str:
-    """Return "TGA" or "": TGA (Truevision TGA 2.0) is known by suffix and header. Refuse one with a palette."""
+def _is_targa(path: Path) -> bool:
+    """Return whether a file is TGA (Truevision TGA 2.0), by suffix and header; refuse one with a palette."""
     if path.suffix.lower() not in TARGA_SUFFIXES:
-        return ""
+        return False
     with path.open("rb") as file:
         header = file.read(18).ljust(18, b"\0")
     has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
-    if not (has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)):
-        return ""
-    if kind in (1, 9):
+    is_valid = has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)
+    if is_valid and kind in (1, 9):
         raise PhotoError("palette", path=path, kind="a TGA file with a palette")
-    return "TGA"
+    return is_valid

@@ -17,7 +17,7 @@ WHITE_IS_ZERO, READ_PHOTOMETRICS = 0, (0, 1, 2, 6)
 RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, (32844, 32845)
 OTHER_PHOTOMETRICS = {4: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
-#: The profile that libjxl makes for pixels that it has decoded to linear light.
+#: The profile that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
 LINEAR_JXL_PROFILE = "RGB_D65_SRG_Rel_Lin"
 
 
@@ -27,18 +27,17 @@ def check_size(path: Path, width: int, height: int) -> None:
         raise PhotoError("too_many_pixels", path=path, width=width, height=height, megapixels=MAX_PIXELS // 10**6)
 
 
-def checked_bit_depth(path: Path, header: Any) -> int:
+def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     """Return the bits per sample, 8, 10, 12 or 16, after checking that the header belongs to an encoded photograph.
 
-    Raises
-    ------
-    PhotoError
-        If it is too large, a volume, camera raw, of other colors than gray and RGB, of a palette, of floats, or of
-        less than 8 bits.
+    Raise PhotoError if it is too large, a volume, camera raw, of other colors than gray and RGB, of a palette, of
+    floats, of less than 8 bits, or a lossy JPEG XL that libjxl decodes to linear light.
     """
     check_size(path, header.width, header.height)
     if header.depth != 1:
         raise PhotoError("volume", path=path)
+    if kind == "JPEG XL" and header.get_string_attribute("ICCProfile:profile_description") == LINEAR_JXL_PROFILE:
+        raise PhotoError("jxl_linear", path=path)
     _check_color(path, header)
     sample = str(header.format)
     if sample in ("half", "float", "double"):
@@ -48,13 +47,6 @@ def checked_bit_depth(path: Path, header: Any) -> int:
     if not stored or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
     return bits if bits in (8, 10, 12) else 16
-
-
-def check_is_encoded(path: Path, header: Any, kind: str) -> None:
-    """Refuse a lossy JPEG XL whose ICC profile libjxl cannot name: libjxl decodes it to linear light."""
-    profile = header.get_string_attribute("ICCProfile:profile_description")
-    if kind == "JPEG XL" and profile == LINEAR_JXL_PROFILE:
-        raise PhotoError("jxl_linear", path=path)
 
 
 def with_plain_texts(header: Any) -> Any:
@@ -73,19 +65,12 @@ def _check_color(path: Path, header: Any) -> None:
         raise PhotoError("camera_raw", path=path)
     if photometric in LINEAR_PHOTOMETRICS:
         raise PhotoError("scene_linear_file", path=path, kind="LogLuv TIFF")
-    if kind := _paletted_kind(header, photometric):
-        raise PhotoError("palette", path=path, kind=kind)
+    # A BMP file with gray has a palette, but one channel.
+    is_bmp = header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8
+    tables = {"TIFF": photometric == PALETTE_PHOTOMETRIC, "PNG": header.get_int_attribute("png:palette"), "BMP": is_bmp}
+    if kind := next((kind for kind, has_table in tables.items() if has_table), ""):
+        raise PhotoError("palette", path=path, kind=f"a {kind} file with a palette")
     is_ink = header.get_string_attribute("jpeg:ColorSpace") in ("CMYK", "YCbCrK")
     if is_ink or photometric not in READ_PHOTOMETRICS:
         kind = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
         raise PhotoError("other_colors", path=path, kind=kind)
-
-
-def _paletted_kind(header: Any, photometric: int) -> str:
-    """Return the kind of a file whose pixels are the numbers of colors in a table; empty for others."""
-    if photometric == PALETTE_PHOTOMETRIC:
-        return "a TIFF file with a palette"
-    if header.get_int_attribute("png:palette"):
-        return "a PNG file with a palette"
-    is_bmp = header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8  # gray ones have a channel
-    return "a BMP file with a palette" if is_bmp else ""

@@ -18,10 +18,11 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.image_io.header_checks import check_size, with_plain_texts
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
@@ -30,8 +31,8 @@ from crfnet_core.photograph.yuv import Coding, rgb_codes
 #: EXIF's Orientation.
 _ORIENTATION = 0x0112
 
-#: Metadata, as pi-heif and Pillow name it.
-_SEGMENTS = ("exif", "xmp", "icc_profile")
+#: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; ICC profiles fill many.
+_MOST_BYTES = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}
 
 #: Errors of the decoders for damaged files.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
@@ -48,7 +49,7 @@ _CICP = ("color_primaries", "transfer_characteristics", "matrix_coefficients", "
 
 @dataclass(frozen=True)
 class _Picture:
-    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, upright, and its metadata by `_SEGMENTS`."""
+    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, upright, and its metadata."""
 
     samples: NDArray[Any]
     bit_depth: int
@@ -61,18 +62,7 @@ def read_heif(path: Path, kind: str) -> CodeValues:
 
     Limited range is expanded, and YCbCr turned into RGB by the file's own matrix; the primaries stay as they are. The
     header has the names that OpenImageIO gives to the EXIF, XMP and ICC profile of a JPEG, and `CICP`, four integers.
-
-    Parameters
-    ----------
-    path : Path
-        The file.
-    kind : {"HEIC", "AVIF"}
-        Its format.
-
-    Raises
-    ------
-    PhotoError
-        If the file is damaged or too large, or the library that decodes it is not installed.
+    Raise PhotoError if the file is damaged or too large, or the library that decodes it is not installed.
     """
     boxes = _boxes(path)
     if not _has_named_items(boxes):
@@ -122,18 +112,11 @@ def _heic(main: Any) -> _Picture:
     bit_depth = 8 if samples.dtype == np.uint8 else info["bit_depth"]
     if bit_depth > 8:
         samples = samples >> (16 - bit_depth)  # pi-heif shifts the codes up to 16 bits
-    return _Picture(
-        samples=np.atleast_3d(samples),
-        bit_depth=bit_depth,
-        segments=_segments(info),
-        is_associated=main.premultiplied_alpha,
-    )
+    return _Picture(np.atleast_3d(samples), bit_depth, _segments(info), is_associated=main.premultiplied_alpha)
 
 
 def _avif(path: Path, bit_depth: int) -> _Picture:
     """Return the picture of an AVIF file, turned upright."""
-    from PIL import Image
-
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # `check_size` has its own limit
         with Image.open(path, formats=["AVIF"]) as image:
@@ -146,8 +129,8 @@ def _avif(path: Path, bit_depth: int) -> _Picture:
 
 
 def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
-    """Return the metadata that pi-heif or Pillow found, as `_SEGMENTS` names it."""
-    return {name: info[name] for name in _SEGMENTS if info.get(name)}
+    """Return the metadata that pi-heif or Pillow found, as `_MOST_BYTES` names it."""
+    return {name: info[name] for name in _MOST_BYTES if info.get(name)}
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
@@ -193,12 +176,9 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    for attribute in _segment_attributes(picture):
+    for attribute in _segment_attributes(picture.segments):
         if not attribute.name.startswith(("jpeg:", "oiio:")):
-            value = attribute.value
-            if isinstance(value, str):  # EXIF may hold other bytes than UTF-8, which OpenImageIO gives as surrogates
-                value = value.encode(errors="replace").decode()
-            header.attribute(attribute.name, attribute.type, value)
+            header.attribute(attribute.name, attribute.type, attribute.value)
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
     if cicp:
@@ -206,14 +186,12 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     return header
 
 
-def _segment_attributes(picture: _Picture) -> list[Any]:
-    """Return what OpenImageIO reads in EXIF, XMP and ICC profile, by way of a JPEG of one pixel that carries them.
+def _segment_attributes(segments: Mapping[str, bytes]) -> list[Any]:
+    """Return the attributes that OpenImageIO reads in EXIF, XMP and ICC profile of a JPEG of one pixel with them.
 
-    So the names are those that a JPEG of the same camera gives. What does not fit into a JPEG's segments is left out.
+    So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
     """
-    from PIL import Image
-
-    fitting = {name: content for name, content in picture.segments.items() if len(content) < _most_bytes(name)}
+    fitting = {name: content for name, content in segments.items() if len(content) < _MOST_BYTES[name]}
     if not fitting:
         return []
     with tempfile.TemporaryDirectory() as folder:
@@ -221,12 +199,8 @@ def _segment_attributes(picture: _Picture) -> list[Any]:
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
         problems.oiio_message()
-        attributes = list(source.spec().extra_attribs) if source else []
-        if source:
-            source.close()
+        if source is None:
+            return []
+        attributes = list(with_plain_texts(source.spec()).extra_attribs)
+        source.close()
     return attributes
-
-
-def _most_bytes(segment: str) -> int:
-    """Return the size from which a JPEG cannot carry a segment; ICC profiles go into many."""
-    return 1 << 24 if segment == "icc_profile" else 65000

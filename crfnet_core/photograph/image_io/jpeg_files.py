@@ -23,18 +23,10 @@ _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
 @dataclass(frozen=True)
 class JpegFile:
-    """A JPEG file with a checked header.
+    """A JPEG file with a checked header."""
 
-    Parameters
-    ----------
-    metadata : FileMetadata
-        The metadata in its segments.
-    warnings : frozenset of str
-        Messages of libjpeg about stray bytes between the segments of the header, which touch no pixel.
-    """
-
-    metadata: FileMetadata
-    warnings: frozenset[str]
+    metadata: FileMetadata  # in its segments
+    warnings: frozenset[str]  # messages of libjpeg about stray bytes in the header, which touch no pixel
 
     def damage(self, problem: str) -> str:
         """Return the messages of a decoder, one a line, without those that touch no pixel."""
@@ -62,12 +54,8 @@ def checked_jpeg(path: Path) -> JpegFile:
 def base_image(path: Path) -> bytes:
     """Return the standard image of an Ultra HDR JPEG, for which OpenImageIO with libultrahdr gives linear half floats.
 
-    The file holds two JPEG pictures; without the second, the gain map, it is an ordinary one.
-
-    Raises
-    ------
-    PhotoError
-        If the file holds one picture only.
+    The file holds two JPEG pictures; without the second, the gain map, it is an ordinary one. Raise PhotoError if it
+    holds one picture only.
     """
     with _mapped(path) as content:
         scan = max((begin for _, _, begin, _ in _segments(content)), default=0)

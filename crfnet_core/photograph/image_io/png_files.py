@@ -30,13 +30,6 @@ def with_color_chunks(header: Any, path: Path) -> Any:
 
     They are "png:palette", "oiio:BitsPerSample" below 8, "CICP", "png:sRGB", "chromaticities" and "png:gamma"; the last
     two only where no other chunk describes the encoding.
-
-    Parameters
-    ----------
-    header : OpenImageIO.ImageSpec
-        As OpenImageIO has read it.
-    path : Path
-        The file.
     """
     chunks, complete = _color_chunks(path), oiio.ImageSpec(header)
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]

@@ -18,12 +18,7 @@ from PIL import Image
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
 from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, file_kind, tiff_directory
-from crfnet_core.photograph.image_io.header_checks import (
-    WHITE_IS_ZERO,
-    check_is_encoded,
-    checked_bit_depth,
-    with_plain_texts,
-)
+from crfnet_core.photograph.image_io.header_checks import WHITE_IS_ZERO, checked_bit_depth, with_plain_texts
 from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
@@ -37,7 +32,7 @@ _ROWS = 256
 #: Pages of a TIFF file that are searched for the first that is not a reduced picture.
 _MOST_PAGES = 64
 
-#: The formats that OpenImageIO does not read.
+#: The formats that OpenImageIO's wheel does not read.
 HEIF_KINDS = ("HEIC", "AVIF")
 
 
@@ -96,8 +91,7 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
         with _opened(path, kind) as file:
             if file.has_gain_map:
                 return _base_codes(path).metadata
-            checked_bit_depth(path, file.header)
-            check_is_encoded(path, file.header, kind)
+            checked_bit_depth(path, file.header, kind)
             return file.metadata()
 
 
@@ -130,8 +124,7 @@ class _OpenFile:
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
-        bit_depth = checked_bit_depth(self.path, self.header)
-        check_is_encoded(self.path, self.header, self.kind)
+        bit_depth = checked_bit_depth(self.path, self.header, self.kind)
         values = self._decoded()
         if self.header.get_int_attribute("tiff:PhotometricInterpretation", 1) == WHITE_IS_ZERO and bit_depth > 8:
             values = ~values  # OpenImageIO inverts such samples of 8 bits only
@@ -162,9 +155,8 @@ class _OpenFile:
 
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
-        values = _masked_bmp(self.path) if self.kind == "BMP" else None
-        if values is not None:
-            return values
+        if self.kind == "BMP":
+            return _bmp_samples(self.path)
         values = _samples(self.source, self.header)
         problem = problems.oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
@@ -217,12 +209,8 @@ def _seek_picture(source: Any) -> None:
     problems.oiio_message(source)
 
 
-def _masked_bmp(path: Path) -> NDArray[np.uint8] | None:
-    """Return the samples of a BMP file with masks of its channels, which OpenImageIO ignores; None for others."""
-    with path.open("rb") as file:
-        compression = file.read(34)[30:]
-    if compression not in (b"\3\0\0\0", b"\6\0\0\0"):  # BI_BITFIELDS, BI_ALPHABITFIELDS
-        return None
+def _bmp_samples(path: Path) -> NDArray[np.uint8]:
+    """Return the samples of a BMP file, by Pillow, as OpenImageIO ignores the masks of channels."""
     try:
         with Image.open(path, formats=["BMP"]) as image:
             return np.atleast_3d(np.asarray(image))
@@ -231,7 +219,7 @@ def _masked_bmp(path: Path) -> NDArray[np.uint8] | None:
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
-    """Return the samples in an open file, shape (H, W, 1 to 4), or None; whole pictures OpenImageIO holds twice."""
+    """Return the samples in an open file, shape (H, W, 1 to 4), or None; of whole pictures OpenImageIO makes a copy."""
     channels = min(header.nchannels, 4)
     if header.tile_width or header.get_string_attribute("planarconfig") == "separate":  # strips may hold a whole plane
         picture: NDArray[Any] | None = source.read_image(source.current_subimage(), 0, 0, channels, header.format)

@@ -7,7 +7,6 @@ icc             primaries and linear curves of ICC profiles
 jpeg            the segments of a JPEG file before its first scan; the tables of the IJG library
 devices         phone, compact or camera with interchangeable lenses, by maker and model
 editors         programs that edit or develop photographs, by name
-encodings       the encoding of code values that the file states
 origin          the conclusions: device, editor, scaled or not, saved again or not, and this in words
 
 Nothing here opens a file: `image_io` hands over the header and the segments. Damaged metadata is never an error.
@@ -15,6 +14,6 @@ Nothing here opens a file: `image_io` hands over the header and the segments. Da
 
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
-from crfnet_core.photograph.metadata.origin import FileOrigin, file_origin, with_stated_device
+from crfnet_core.photograph.metadata.origin import Encoding, FileOrigin, file_origin, with_stated_device
 
-__all__ = ["Device", "FileMetadata", "FileOrigin", "file_origin", "with_stated_device"]
+__all__ = ["Device", "Encoding", "FileMetadata", "FileOrigin", "file_origin", "with_stated_device"]

@@ -35,7 +35,8 @@ PRIMARIES = {
 #: TransferCharacteristics of ITU-T H.273, Table 3, other than of ordinary pictures for a display.
 TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 
-#: Transfer characteristic in a DPX header (SMPTE ST 268) -> the encoding that follows.
+#: Transfer characteristic in a DPX header (SMPTE ST 268) -> the encoding that follows. "Linear" proves nothing: ffmpeg
+#: writes it into every DPX, and Blender into all but log.
 DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 
 #: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first.
@@ -64,28 +65,18 @@ PROFILE_TRANSFERS = (
     (r"\bhlg(?![a-z0-9])|\bhybrid log", "HLG"),
 )
 
-#: ffmpeg writes this into every DPX, and Blender into every one that it does not write as log, whatever the frame is.
-_MEANINGLESS_DPX_TRANSFER = "Linear"
-
 
 @dataclass(frozen=True)
 class ColorTags:
     """The color tags of a file.
 
-    Parameters
-    ----------
-    primaries : Primaries, optional
-        None if the file has no tag, or one that cannot be expressed by primaries: see `source`.
-    transfer : str
-        The published encoding that a tag names, such as "HLG", "PQ", "linear" or "S-Log3"; empty if there is none, or
-        if it is an ordinary one (sRGB, BT.709), which does not show a camera's response.
-    source : str
-        The tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none.
+    `transfer` is the published encoding that a tag names, such as "HLG", "linear" or "S-Log3"; empty if there is none,
+    or an ordinary one (sRGB, BT.709), which does not show a camera's response.
     """
 
-    primaries: Primaries | None = None
+    primaries: Primaries | None = None  # None without a tag, or if it cannot be expressed by primaries: see `source`
     transfer: str = ""
-    source: str = ""
+    source: str = ""  # the tag, for example "ICC profile", "CICP" or "EXIF"; empty if the file has none
 
 
 def cicp_tags(codes: Sequence[int]) -> ColorTags:
@@ -97,17 +88,7 @@ def cicp_tags(codes: Sequence[int]) -> ColorTags:
 
 
 def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
-    """Return color tags with the encoding that DPX's header or an ICC profile's name states, unless they have one.
-
-    Parameters
-    ----------
-    color : ColorTags
-        The tags by the numbers of ICC profile, CICP and EXIF.
-    dpx : str
-        The transfer characteristic of a DPX file.
-    profile : str
-        Description of the ICC profile.
-    """
+    """Return tags with the encoding that DPX's transfer characteristic or an ICC profile's name states, if without."""
     if color.transfer:
         return color
     if dpx in DPX_TRANSFERS:
@@ -117,11 +98,6 @@ def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
 
 
 def profile_transfer(profile: str) -> str:
-    """Return the encoding that an ICC profile's description, or DPX's transfer characteristic, names; empty if none."""
+    """Return the encoding that an ICC profile's description names; empty if none."""
     text = profile.casefold()
     return next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")
-
-
-def dpx_transfer(value: str) -> str:
-    """Return the transfer characteristic of a DPX file; empty if it is one that programs write into any file."""
-    return "" if value == _MEANINGLESS_DPX_TRANSFER else value

@@ -23,27 +23,25 @@ class Device(StrEnum):
 
 _PHONE, _COMPACT, _CAMERA, _SCANNER, _UNKNOWN = Device
 
-#: Beginnings of the makes, in lower case, of makers of phones (and tablets) only.
-PHONE_MAKERS = (
-    *("apple", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus", "oppo", "realme", "vivo", "iqoo"),
-    *("motorola", "lg", "lge", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion", "zte"),
-    "nubia",
-    *("lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm", "essential"),
-    *("fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee", "umidigi"),
-    *("blackview", "sharp", "fujitsu", "gionee", "coolpad", "letv", "leeco", "micromax", "amazon"),
-)
-
-#: Beginnings of the makes of makers of compacts only (as far as photographs of them are seen).
-COMPACT_MAKERS = (
-    *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "praktica"),
-    *("general imaging", "ge", "toshiba", "sanyo", "traveler", "aiptek", "kyocera"),
-)
-
-#: Beginnings of the makes of makers of digital backs, or cameras with interchangeable lenses, only.
-CAMERA_MAKERS = ("phase one", "leaf", "mamiya", "pixii", "zenit")
-
-#: Beginnings of the makes of makers of scanners only: the photograph behind is on film or paper.
-SCANNER_MAKERS = ("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon")
+#: Kind -> beginnings of the makes, in lower case, of makers of this kind alone, as far as photographs of them are seen.
+#: Phones include tablets, cameras digital backs; behind a scanner, the photograph is on film or paper.
+MAKERS = {
+    Device.PHONE: (
+        *("apple", "google", "huawei", "honor", "xiaomi", "redmi", "poco", "oneplus", "oppo", "realme", "vivo", "iqoo"),
+        *("motorola", "lg", "lge", "htc", "nokia", "hmd", "microsoft", "blackberry", "rim", "research in motion"),
+        *("zte", "nubia", "lenovo", "asus", "acer", "tcl", "alcatel", "meizu", "sony ericsson", "sonyericsson", "palm"),
+        *("essential", "fairphone", "wiko", "tecno", "infinix", "itel", "nothing", "razer", "bq", "ulefone", "doogee"),
+        *("umidigi", "blackview", "sharp", "fujitsu", "gionee", "coolpad", "letv", "leeco", "micromax", "amazon"),
+    ),
+    Device.SCANNER: (
+        *("noritsu", "plustek", "pacific image", "reflecta", "imacon", "microtek", "umax", "mustek", "pakon"),
+    ),
+    Device.COMPACT: (
+        *("casio", "vivitar", "benq", "polaroid", "concord", "jenoptik", "medion", "rollei", "agfa", "praktica"),
+        *("general imaging", "ge", "toshiba", "sanyo", "traveler", "aiptek", "kyocera"),
+    ),
+    Device.CAMERA: ("phase one", "leaf", "mamiya", "pixii", "zenit"),
+}
 
 #: Beginning of the make, in lower case -> (pattern at the beginning of the model without the make, kind), first first.
 PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
@@ -109,44 +107,26 @@ _OTHER_NAMES = {"hewlett": "hp", "eastman kodak": "kodak", "asahi": "pentax", "s
 
 
 def device_of(make: str, model: str) -> Device:
-    """Return the kind of device; UNKNOWN where neither the maker nor the model shows it.
+    """Return the kind of device by EXIF Make and Model; UNKNOWN where neither shows it.
 
-    Parameters
-    ----------
-    make, model : str
-        EXIF Make and Model; where the make is absent, the model may begin with it ("NIKON D90").
+    Where the make is absent, the model may begin with it ("NIKON D90").
     """
     maker = (make or model).casefold().strip()
     for begin, name in _OTHER_NAMES.items():
         maker = name if maker.startswith(begin) else maker
-    for makers, device in (
-        (PHONE_MAKERS, _PHONE),
-        (SCANNER_MAKERS, _SCANNER),
-        (COMPACT_MAKERS, _COMPACT),
-        (CAMERA_MAKERS, _CAMERA),
-    ):
+    for device, makers in MAKERS.items():
         if any(re.match(rf"{re.escape(name)}\b", maker) for name in makers):
             return device
-    for name, patterns in PATTERNS.items():
-        if maker.startswith(name):
-            return _of_model(name, model, patterns)
-    return _UNKNOWN
+    name = next((name for name in PATTERNS if maker.startswith(name)), "")
+    plain = re.sub(
+        rf"^(?:{name}\w*|fujifilm|ricoh)\b[ _-]*", "", model.casefold().strip()
+    )  # without the maker in front
+    return next((device for pattern, device in PATTERNS.get(name, ()) if re.match(pattern, plain)), _UNKNOWN)
 
 
 def camera_name(make: str, model: str) -> str:
     """Return make and model in one name: "Canon EOS 20D", "FUJIFILM X-E1"; empty where both are."""
-    first = make.split()[0] if make.split() else ""
-    repeats = bool(first) and model.casefold().startswith(first.casefold())
-    return " ".join((model if repeats else f"{_short(make)} {model}").split())
-
-
-def _of_model(maker: str, model: str, patterns: tuple[tuple[str, Device], ...]) -> Device:
-    """Return the kind of the first pattern that fits the model, with the maker's name left out in front."""
-    name = re.sub(rf"^(?:{maker}\w*|fujifilm|ricoh)\b[ _-]*", "", model.casefold().strip())
-    return next((device for pattern, device in patterns if re.match(pattern, name)), _UNKNOWN)
-
-
-def _short(make: str) -> str:
-    """Return a make without its legal form: "NIKON" for "NIKON CORPORATION"."""
-    ending = r",? *(corporation|corp\.?|co\.?,? *ltd\.?|company,? *ltd\.?|imaging corp\.?|inc\.?|ag)\.?$"
-    return re.sub(ending, "", make.strip(), flags=re.IGNORECASE)
+    if make.split() and model.casefold().startswith(make.split()[0].casefold()):
+        return " ".join(model.split())
+    legal_form = r",? *(corporation|corp\.?|co\.?,? *ltd\.?|company,? *ltd\.?|imaging corp\.?|inc\.?|ag)\.?$"
+    return " ".join(f"{re.sub(legal_form, '', make.strip(), flags=re.IGNORECASE)} {model}".split())

@@ -55,12 +55,7 @@ _EDITOR, _DEVELOPER = _any_of(EDITORS), _any_of(DEVELOPERS)
 def editor_name(software: str, history: Sequence[str] = ()) -> str:
     """Return the program that edited or developed the photograph, as it writes itself, or an empty text.
 
-    Parameters
-    ----------
-    software : str
-        EXIF Software; in many files the camera's firmware.
-    history : sequence of str
-        Programs in the XMP history; the last counts, where `software` names none.
+    It is EXIF Software, in many files the camera's firmware, or else the last editor in the XMP history.
     """
     return next((name for name in (software, *reversed(history)) if is_editor(name)), "")
 

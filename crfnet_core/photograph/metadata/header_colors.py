@@ -32,17 +32,7 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
 
     The ICC profile comes before CICP. In PNG it comes after CICP, and before sRGB, chromaticities and gamma (PNG
     Specification, third edition, 4.3). Then come EXIF, and what OpenEXR files have. A profile that works by tables
-    gives no primaries, and no other source does then.
-
-    Parameters
-    ----------
-    header : OpenImageIO.ImageSpec
-        Of the picture that is read: its attributes "ICCProfile" (bytes), "CICP" (four codes), "Exif:ColorSpace",
-        "colorInteropID", "chromaticities" (x and y of red, green, blue and white), and of PNG "png:sRGB", "png:gamma".
-    file_format : str
-        As in `FileMetadata`.
-    interop_index : str
-        EXIF InteroperabilityIndex, which OpenImageIO does not read.
+    gives no primaries, and no other source does then. OpenImageIO does not read the InteroperabilityIndex of EXIF.
     """
     icc = read_icc(bytes(np.asarray(_sequence(header, "ICCProfile"), dtype=np.uint8)))
     codes = cicp_tags(_sequence(header, "CICP"))

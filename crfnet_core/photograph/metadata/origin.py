@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, fields, replace
+from enum import StrEnum
 from typing import Any
 
 from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of
 from crfnet_core.photograph.metadata.editors import editor_name, is_developer
-from crfnet_core.photograph.metadata.encodings import FOOTAGE, Encoding, encoding_of, encoding_words
 from crfnet_core.photograph.metadata.file_metadata import FileMetadata
 from crfnet_core.photograph.metadata.jpeg import ijg_quality
 
@@ -42,6 +42,18 @@ INDISTINCT_QUALITY = 98
 #: photographers have 90 and more.
 SENT_QUALITY = 85
 
+
+class Encoding(StrEnum):
+    """The encoding of a format that holds no still photographs."""
+
+    FOOTAGE = "film or video"
+    MOVIE = "movie"
+    UNKNOWN = ""
+
+
+#: Formats of files that hold no still photographs -> their encoding.
+FOOTAGE = {"DPX": Encoding.FOOTAGE, "movie": Encoding.MOVIE}
+
 _DEVICES = {
     Device.PHONE: "a phone",
     Device.COMPACT: "a compact camera",
@@ -52,48 +64,20 @@ _DEVICES = {
 
 @dataclass(frozen=True)
 class FileOrigin:
-    """How a file was made, by its metadata.
-
-    Parameters
-    ----------
-    device : Device
-        The kind of device that took the photograph.
-    camera : str
-        Maker and model; empty if the file names none.
-    editor : str
-        The program that edited or developed the photograph; empty if none is known.
-    is_scaled : bool, optional
-        Whether the picture was scaled after the camera; None if unknown.
-    is_resaved : bool, optional
-        Whether a program encoded the file; False if just as the camera wrote it, None if unknown.
-    jpeg_quality : int, optional
-        The quality at which the IJG library writes the file's quantization tables; None for other tables.
-    picture_shape : str
-        Ratio of the sides: "3:2", "4:3", "16:9", "2:1" or "other".
-    encoding : Encoding
-        The encoding of code values that the file states.
-    words : tuple of str
-        The same in plain words, one part of a sentence each.
-    renderer : str
-        The program that rendered the picture, so that no camera took it; empty if none is known.
-    is_developed : bool
-        Whether a program developed the photograph from a raw file: XMP names the file, or the editor is such a program.
-    is_told : bool
-        Whether a person has stated the device: see `with_stated_device`.
-    """
+    """How a file was made, by its metadata; texts are empty where nothing is known."""
 
     device: Device
-    camera: str
-    editor: str
-    is_scaled: bool | None
-    is_resaved: bool | None
-    jpeg_quality: int | None
-    picture_shape: str
+    camera: str  # maker and model
+    editor: str  # the program that edited or developed the photograph
+    is_scaled: bool | None  # after the camera took it; None if unknown
+    is_resaved: bool | None  # whether a program encoded the file; False if just as the camera wrote it
+    jpeg_quality: int | None  # at which the IJG library writes the file's quantization tables; None for other tables
+    picture_shape: str  # ratio of the sides: "3:2", "4:3", "16:9", "2:1" or "other"
     encoding: Encoding
-    words: tuple[str, ...]
-    renderer: str = ""
-    is_developed: bool = False
-    is_told: bool = False
+    words: tuple[str, ...]  # the same in plain words, one part of a sentence each
+    renderer: str = ""  # the program that rendered the picture, so that no camera took it
+    is_developed: bool = False  # by a program, from a raw file: XMP names the file, or the editor is such a program
+    is_told: bool = False  # whether a person has stated the device: see `with_stated_device`
 
     @property
     def is_sent_copy(self) -> bool:
@@ -111,45 +95,33 @@ class FileOrigin:
 
 def file_origin(metadata: FileMetadata) -> FileOrigin:
     """Return how a file was made, by its metadata."""
-    device, camera = device_of(metadata.make, metadata.model), camera_name(metadata.make, metadata.model)
+    device = device_of(metadata.make, metadata.model)
     is_adobes = metadata.has_adobe or bool(metadata.raw_file)
     editor = editor_name(metadata.software, metadata.history) or (ADOBE if is_adobes else "")
-    is_developed = _is_developed(metadata, editor)
     quality = ijg_quality(metadata.luma_table, metadata.chroma_table)
     encoded_by = _encoded_by_program(metadata, device, quality)
     is_scaled = _is_scaled(metadata, is_changed=bool(editor) or encoded_by is True)
-    is_resaved = True if editor or is_scaled else encoded_by
-    encoding = encoding_of(metadata)
-    return FileOrigin(
+    origin = FileOrigin(
         device=device,
-        camera=camera,
+        camera=camera_name(metadata.make, metadata.model),
         editor=editor,
         is_scaled=is_scaled,
-        is_resaved=is_resaved,
+        is_resaved=True if editor or is_scaled else encoded_by,
         jpeg_quality=quality,
         picture_shape=picture_shape(metadata.width, metadata.height),
-        encoding=encoding,
-        words=(
-            f"rendered by {metadata.renderer}" if metadata.renderer else _taken_words(camera, device),
-            *_saved_words(editor, is_developed, is_scaled, is_resaved, quality),
-            *_scaled_words(metadata, is_scaled),
-            *(["turned upright, as the file asks"] if metadata.is_turned else []),
-            *encoding_words(metadata, encoding),
-        ),
+        encoding=FOOTAGE.get(metadata.file_format, Encoding.UNKNOWN),
+        words=(),
         renderer=metadata.renderer,
-        is_developed=is_developed,
+        is_developed=_is_developed(metadata, editor),
     )
+    return replace(origin, words=tuple(_words(origin, metadata)))
 
 
 def with_stated_device(origin: FileOrigin, device: Device) -> FileOrigin:
     """Return `origin` with the device that the user states; it overrides the file's.
 
-    UNKNOWN stands for a camera of another or an unknown kind. A rendering stays one.
-
-    Raises
-    ------
-    ValueError
-        If it is not a device.
+    UNKNOWN stands for a camera of another or an unknown kind. A rendering stays one. Raise ValueError if it is not a
+    device.
     """
     if origin.renderer:
         return origin
@@ -212,13 +184,8 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
         return None
     if size[1] < SCALED_BELOW or (size[1] in WEB_SIDES and metadata.file_format == "JPEG" and not metadata.has_camera):
         return True
-    return False if _is_native(*size) else None
-
-
-def _is_native(shorter: int, longer: int) -> bool:
-    """Return whether sensors have such a size: whole blocks, one of their shapes, enough pixels."""
-    is_large = shorter * longer >= NATIVE_PIXELS
-    return is_large and _is_in_blocks(shorter, longer) and picture_shape(longer, shorter) != "other"
+    is_large, is_of_sensor = size[0] * size[1] >= NATIVE_PIXELS, picture_shape(*size) != "other"
+    return False if is_large and is_of_sensor and _is_in_blocks(*size) else None
 
 
 def _is_in_blocks(shorter: int, longer: int) -> bool:
@@ -226,35 +193,27 @@ def _is_in_blocks(shorter: int, longer: int) -> bool:
     return longer % NATIVE_MULTIPLES[0] == 0 and shorter % NATIVE_MULTIPLES[1] == 0
 
 
-def _taken_words(camera: str, device: Device) -> str:
-    """Return the words for the camera that took the photograph."""
-    if not camera:
-        return "the file names no camera"
-    return f"taken by {camera}, {_DEVICES[device]}" if device else f"taken by {camera}"
-
-
-def _saved_words(
-    editor: str, is_developed: bool, is_scaled: bool | None, is_resaved: bool | None, quality: int | None
-) -> list[str]:
-    """Return the words for the program that saved the file, if it is known."""
-    if is_developed:
-        return [f"developed from a raw file by {editor}"]
-    if editor:
-        return [f"saved by {editor}"]
-    if is_resaved is False:
-        return ["the file is as the camera wrote it"]
-    if is_resaved and not is_scaled:
-        return [
-            f"encoded again by a program, as JPEG of quality {quality}" if quality else "encoded again by a program"
-        ]
-    return []
-
-
-def _scaled_words(metadata: FileMetadata, is_scaled: bool | None) -> list[str]:
-    """Return that the picture was scaled, surely if EXIF keeps the size before."""
-    if not is_scaled:
-        return []
-    now, exif_size = f"{metadata.width} x {metadata.height}", metadata.exif_size
-    if exif_size and sorted(exif_size) != sorted((metadata.width, metadata.height)):
-        return [f"scaled from {exif_size[0]} x {exif_size[1]} to {now} pixels after the camera wrote it"]
-    return [f"probably scaled after the camera wrote it: it has {now} pixels"]
+def _words(origin: FileOrigin, metadata: FileMetadata) -> Iterator[str]:
+    """Yield the words for an origin, one part of a sentence each."""
+    if origin.renderer or not origin.camera:
+        yield f"rendered by {origin.renderer}" if origin.renderer else "the file names no camera"
+    else:
+        yield f"taken by {origin.camera}" + (f", {_DEVICES[origin.device]}" if origin.device else "")
+    if origin.editor:
+        yield f"developed from a raw file by {origin.editor}" if origin.is_developed else f"saved by {origin.editor}"
+    elif origin.is_resaved is False:
+        yield "the file is as the camera wrote it"
+    elif origin.is_resaved and not origin.is_scaled:
+        quality = origin.jpeg_quality
+        yield "encoded again by a program" + (f", as JPEG of quality {quality}" if quality else "")
+    size, exif_size = (metadata.width, metadata.height), metadata.exif_size
+    if origin.is_scaled and exif_size and sorted(exif_size) != sorted(size):
+        before, now = (f"{width} x {height}" for width, height in (exif_size, size))
+        yield f"scaled from {before} to {now} pixels after the camera wrote it"
+    elif origin.is_scaled:
+        yield f"probably scaled after the camera wrote it: it has {size[0]} x {size[1]} pixels"
+    if metadata.is_turned:
+        yield "turned upright, as the file asks"
+    if origin.encoding:
+        is_movie = origin.encoding == Encoding.MOVIE
+        yield "a frame of a movie" if is_movie else f"{metadata.file_format} files hold {origin.encoding}"

@@ -54,60 +54,6 @@ class LinearToe:
         return np.where(x < self.cut, self.e * x + self.f, self.c * np.log10(self.a * above + self.b) + self.d)
 
 
-#: ARRI, "ALEXA Log C Curve: Usage in VFX" (2012), SUP 3.x, linear scene exposure factor at EI 800.
-ARRI_LOGC3 = LinearToe(0.010591, 5.555556, 0.052272, 0.247190, 0.385537, 5.367655, 0.092809)
-
-#: Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
-SONY_SLOG3 = LinearToe(
-    0.01125, 1 / 0.19, 0.01 / 0.19, 261.5 / 1023, 420 / 1023, (171.2102946929 - 95) / 0.01125 / 1023, 95 / 1023
-)
-
-#: Canon, "Input Transform Version 202007", Canon Log 3 v1.2. Its x is reflectance / 0.9; here the linear part goes on
-#: below x = -0.014, where the published curve bends once more.
-CANON_LOG3 = LinearToe(0.014 * 0.9, 14.98325 / 0.9, 1, 0.36726845, 0.12240537, 1.9754798 / 0.9, 0.12512219)
-
-#: The same for Canon Log and Canon Log 2, v1.2, whose curves are mirrored below black: here their tangents go on.
-CANON_LOG = LinearToe(0, 10.1596 / 0.9, 1, 0.45310179, 0.12512248, 0.45310179 * 10.1596 / 0.9 / np.log(10), 0.12512248)
-CANON_LOG2 = LinearToe(
-    0, 87.09937546 / 0.9, 1, 0.24136077, 0.092864125, 0.24136077 * 87.09937546 / 0.9 / np.log(10), 0.092864125
-)
-
-#: Panasonic, "VARICAM V-Log/V-Gamut" (2014).
-PANASONIC_VLOG = LinearToe(0.01, 1, 0.00873, 0.241514, 0.598206, 5.6, 0.125)
-
-#: RED Digital Cinema, "White Paper on REDWideGamutRGB and Log3G10" (2017).
-RED_LOG3G10 = LinearToe(-0.01, 155.975327, 1 + 0.01 * 155.975327, 0.224282, 0, 15.1927, 0.01 * 15.1927)
-
-#: DJI, "White Paper on D-Log and D-Gamut" (2017).
-DJI_DLOG = LinearToe(0.0078, 0.9892, 0.0108, 0.256663, 0.584555, 6.025, 0.0929)
-
-#: Fujifilm, "F-Log Data Sheet Ver. 1.1" and "F-Log2 Data Sheet Ver. 1.0".
-FUJIFILM_FLOG = LinearToe(0.00089, 0.555556, 0.009468, 0.344676, 0.790453, 8.735631, 0.092864)
-FUJIFILM_FLOG2 = LinearToe(0.000889, 5.555556, 0.064829, 0.245281, 0.384316, 8.799461, 0.092864)
-
-#: Blackmagic Design, "Blackmagic Generation 5 Color Science" (2021): A ln(x + B) + C, and D x + E below 0.005.
-BLACKMAGIC_FILM5 = LinearToe(
-    0.005,
-    1,
-    0.005494072432257808,
-    0.08692876065491224 * np.log(10),
-    0.5300133392291939,
-    8.283605932402494,
-    0.09246575342465753,
-)
-
-#: Sony, "S-Log2 Technical Paper" (2012): S-Log of 155 x / 219 of x = reflectance / 0.9, in the codes 64 to 940 of 1023.
-SONY_SLOG2 = LinearToe(
-    0,
-    155 / 219 / 0.9,
-    0.037584,
-    0.432699 * 876 / 1023,
-    ((0.616596 + 0.03) * 876 + 64) / 1023,
-    3.53881278538813 / 0.9 * 876 / 1023,
-    (0.030001222851889303 * 876 + 64) / 1023,
-)
-
-
 def arri_logc4(reflectance: ArrayLike) -> Float64Array:
     """Return code values of LogC4 (ARRI, "LogC4 Logarithmic Color Space: Specification", 2022)."""
     x = np.asarray(reflectance, dtype=np.float64)
@@ -132,22 +78,45 @@ def nikon_nlog(reflectance: ArrayLike) -> Float64Array:
     return np.where(x < 0.328, 650 * np.cbrt(x + 0.0075), 150 * np.log(np.maximum(x, 0.328)) + 619) / 1023
 
 
-def log_curves() -> dict[str, LogCurve]:
-    """Return name -> curve, from reflectance (any shape) to code values in about [0.09, 1], not clipped."""
-    return {
-        "ARRI LogC3": ARRI_LOGC3,
-        "ARRI LogC4": arri_logc4,
-        "Apple Log": apple_log,
-        "Blackmagic Film Gen 5": BLACKMAGIC_FILM5,
-        "Canon Log": CANON_LOG,
-        "Canon Log 2": CANON_LOG2,
-        "Canon Log 3": CANON_LOG3,
-        "DJI D-Log": DJI_DLOG,
-        "Fujifilm F-Log": FUJIFILM_FLOG,
-        "Fujifilm F-Log2": FUJIFILM_FLOG2,
-        "Nikon N-Log": nikon_nlog,
-        "Panasonic V-Log": PANASONIC_VLOG,
-        "RED Log3G10": RED_LOG3G10,
-        "Sony S-Log2": SONY_SLOG2,
-        "Sony S-Log3": SONY_SLOG3,
-    }
+#: Curve -> function from reflectance (any shape) to code values in about [0.09, 1], not clipped.
+LOG_CURVES: dict[str, LogCurve] = {
+    # ARRI, "ALEXA Log C Curve: Usage in VFX" (2012), SUP 3.x, linear scene exposure factor at EI 800.
+    "ARRI LogC3": LinearToe(0.010591, 5.555556, 0.052272, 0.247190, 0.385537, 5.367655, 0.092809),
+    "ARRI LogC4": arri_logc4,
+    "Apple Log": apple_log,
+    # Blackmagic Design, "Blackmagic Generation 5 Color Science" (2021): A ln(x + B) + C, and D x + E below 0.005.
+    "Blackmagic Film Gen 5": LinearToe(
+        *(0.005, 1, 0.005494072432257808, 0.08692876065491224 * np.log(10), 0.5300133392291939),
+        *(8.283605932402494, 0.09246575342465753),
+    ),
+    # Canon, "Input Transform Version 202007", v1.2, whose x is reflectance / 0.9. The curves of Canon Log and Canon Log
+    # 2 are mirrored below black: here their tangents go on. Canon Log 3 bends once more below x = -0.014: here not.
+    "Canon Log": LinearToe(
+        *(0, 10.1596 / 0.9, 1, 0.45310179, 0.12512248, 0.45310179 * 10.1596 / 0.9 / np.log(10), 0.12512248)
+    ),
+    "Canon Log 2": LinearToe(
+        *(0, 87.09937546 / 0.9, 1, 0.24136077, 0.092864125),
+        *(0.24136077 * 87.09937546 / 0.9 / np.log(10), 0.092864125),
+    ),
+    "Canon Log 3": LinearToe(0.014 * 0.9, 14.98325 / 0.9, 1, 0.36726845, 0.12240537, 1.9754798 / 0.9, 0.12512219),
+    # DJI, "White Paper on D-Log and D-Gamut" (2017).
+    "DJI D-Log": LinearToe(0.0078, 0.9892, 0.0108, 0.256663, 0.584555, 6.025, 0.0929),
+    # Fujifilm, "F-Log Data Sheet Ver. 1.1" and "F-Log2 Data Sheet Ver. 1.0".
+    "Fujifilm F-Log": LinearToe(0.00089, 0.555556, 0.009468, 0.344676, 0.790453, 8.735631, 0.092864),
+    "Fujifilm F-Log2": LinearToe(0.000889, 5.555556, 0.064829, 0.245281, 0.384316, 8.799461, 0.092864),
+    "Nikon N-Log": nikon_nlog,
+    # Panasonic, "VARICAM V-Log/V-Gamut" (2014).
+    "Panasonic V-Log": LinearToe(0.01, 1, 0.00873, 0.241514, 0.598206, 5.6, 0.125),
+    # RED Digital Cinema, "White Paper on REDWideGamutRGB and Log3G10" (2017).
+    "RED Log3G10": LinearToe(-0.01, 155.975327, 1 + 0.01 * 155.975327, 0.224282, 0, 15.1927, 0.01 * 15.1927),
+    # Sony, "S-Log2 Technical Paper" (2012): S-Log of 155 x / 219 of x = reflectance / 0.9, in the codes 64 to 940.
+    "Sony S-Log2": LinearToe(
+        *(0, 155 / 219 / 0.9, 0.037584, 0.432699 * 876 / 1023, ((0.616596 + 0.03) * 876 + 64) / 1023),
+        *(3.53881278538813 / 0.9 * 876 / 1023, (0.030001222851889303 * 876 + 64) / 1023),
+    ),
+    # Sony, "Technical Summary for S-Gamut3.Cine/S-Log3 and S-Gamut3/S-Log3".
+    "Sony S-Log3": LinearToe(
+        *(0.01125, 1 / 0.19, 0.01 / 0.19, 261.5 / 1023, 420 / 1023),
+        *((171.2102946929 - 95) / 0.01125 / 1023, 95 / 1023),
+    ),
+}

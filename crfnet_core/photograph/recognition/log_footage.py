@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from crfnet_core.photograph.recognition.levels import Levels
-from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, MOST_REFLECTANCE, LogCurve, log_curves
+from crfnet_core.photograph.recognition.log_curves import LEAST_REFLECTANCE, LOG_CURVES, MOST_REFLECTANCE, LogCurve
 from crfnet_core.types import Float64Array
 
 #: Log curves put black at 0.088 and above; noise goes a little below. Of 92 real photographs one has no sample below
@@ -39,21 +39,11 @@ DARK = 0.01
 
 @dataclass(frozen=True)
 class NearCurve:
-    """A published curve that the levels of log footage may have.
+    """A published curve that the levels of log footage may have."""
 
-    Parameters
-    ----------
-    name : str
-        As in `log_curves`.
-    probability : float
-        The probability of this curve, by the levels alone.
-    expected_error : float
-        How far its light is expected to be off, in stops, over all curves that it may be: see `light_error`.
-    """
-
-    name: str
-    probability: float
-    expected_error: float
+    name: str  # as in `log_curves`
+    probability: float  # by the levels alone
+    expected_error: float  # of its light, in stops, over all curves that it may be: see `light_error`
 
 
 def log_factor(levels: Levels) -> float:
@@ -72,17 +62,10 @@ def nearest_curves(levels: Levels, makes: tuple[str, ...] = ()) -> tuple[NearCur
     """Return up to four published curves that explain the levels best, the likeliest first: Eq. L.4.
 
     Only black and the middle are compared, so curves of nearly the same black and gray cannot be distinguished. All
-    count as equally frequent.
-
-    Parameters
-    ----------
-    levels : Levels
-        Of log footage.
-    makes : tuple of str
-        The makers that the files name: where some are known, only their curves are tried.
+    count as equally frequent. Of makers that the files name (`makes`), where some are known, only the curves are tried.
     """
-    curves = log_curves()
-    tried = {name: curve for name, curve in curves.items() if any(_is_of(name, make) for make in makes)} or curves
+    makers = " ".join(makes).casefold()
+    tried = {name: curve for name, curve in LOG_CURVES.items() if name.split()[0].casefold() in makers} or LOG_CURVES
     scores = np.array([_log_likelihood(curve, levels) for curve in tried.values()])
     weights = np.exp(scores - scores.max())
     probabilities = weights / weights.sum()
@@ -114,8 +97,3 @@ def _reflectance(curve: LogCurve, codes: Float64Array) -> Float64Array:
     """Return the reflectances of code values."""
     reflectance = np.geomspace(LEAST_REFLECTANCE, MOST_REFLECTANCE, 4096)
     return np.interp(codes, curve(reflectance), reflectance)
-
-
-def _is_of(name: str, make: str) -> bool:
-    """Return whether a curve, such as "Sony S-Log3", belongs to a maker, such as "SONY"."""
-    return bool(make) and name.split()[0].casefold() in make.casefold()

@@ -1,6 +1,7 @@
 """Detect inputs that are not camera photographs, and advise what to use instead.
 
-They are log footage, limited range, renderings, recompressed copies and flat frames.
+They are log footage, limited range, renderings, recompressed copies and flat frames. Encodings with a published curve,
+which the file names, are refused: there is nothing to estimate.
 """
 
 from __future__ import annotations
@@ -8,17 +9,22 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
+from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import Notice
+from crfnet_core.errors import Notice, PhotoError
 from crfnet_core.photograph.metadata import FileOrigin
-from crfnet_core.photograph.recognition.levels import Levels
-from crfnet_core.photograph.recognition.limited_range import is_limited_range
+from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.photo import Photo
+from crfnet_core.photograph.recognition.levels import Levels, is_limited_range
 from crfnet_core.photograph.recognition.log_curves import COLOR_SPACES
 from crfnet_core.photograph.recognition.log_footage import nearest_curves
 
 #: Probability of log footage above which it counts as recognized.
 RECOGNIZED = 0.5
+
+#: Encoding by the name that tags give it -> color space of OpenColorIO's ACES studio config.
+TAGGED_SPACES = COLOR_SPACES | {"HLG": "Rec.2100-HLG - Display", "PQ": "Rec.2100-PQ - Display"}
 
 
 class Kind(StrEnum):
@@ -33,33 +39,15 @@ class Kind(StrEnum):
 
 @dataclass(frozen=True)
 class Recognition:
-    """An input that is not a camera photograph, by its pixels or its metadata.
-
-    Parameters
-    ----------
-    kind : Kind
-        The detected kind.
-    reason : str
-        The measurement, in words.
-    advice : str
-        A better input, in words.
-    curves : tuple of str
-        For log footage up to four published curves whose levels fit, the likeliest first.
-    probabilities : tuple of float
-        The probability of each, by the levels alone.
-    errors : tuple of float
-        The expected error of the light of each, in stops.
-    color_space : str
-        The color space in ACES configs of the curve with the least expected error; empty if it has none.
-    """
+    """An input that is not a camera photograph, by its pixels or its metadata."""
 
     kind: Kind
-    reason: str
-    advice: str
-    curves: tuple[str, ...] = ()
-    probabilities: tuple[float, ...] = ()
-    errors: tuple[float, ...] = ()
-    color_space: str = ""
+    reason: str  # the measurement, in words
+    advice: str  # a better input, in words
+    curves: tuple[str, ...] = ()  # of log footage, up to four whose levels fit, the likeliest first
+    probabilities: tuple[float, ...] = ()  # of each curve, by the levels alone
+    errors: tuple[float, ...] = ()  # expected, of the light of each, in stops
+    color_space: str = ""  # in ACES configs, of the curve with the least expected error; empty if it has none
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> Recognition | None:
@@ -77,18 +65,10 @@ def recognize(
     makes: tuple[str, ...] = (),
     origins: Sequence[FileOrigin] = (),
 ) -> Recognition | None:
-    """Return the detected kind, or None for ordinary camera photographs.
+    """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
-    Parameters
-    ----------
-    levels : Levels
-        Of all photographs of an estimate together.
-    log_probability : float
-        The probability of log footage, in which the levels have been counted: see `log_factor`.
-    makes : tuple of str
-        The makers that the files name.
-    origins : sequence of FileOrigin
-        The origin of each picture.
+    `levels` are of all pictures together; `log_probability` is of log footage and counts the levels by `log_factor`;
+    `makes` are the makers that the files name.
     """
     if levels.is_flat:
         return _recognition(Kind.FLAT, Notice("flat_frame"), Notice("flat_frame_advice"))
@@ -97,6 +77,23 @@ def recognize(
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
+
+
+def refuse_tagged(photo: Photo) -> None:
+    """Raise PhotoError if the metadata name an encoding with a published curve, with the color space to choose."""
+    if photo.metadata is None or not photo.metadata.color.transfer:
+        return
+    refuse_linear(photo.metadata.color, photo.path)
+    transfer = photo.metadata.color.transfer
+    space = TAGGED_SPACES.get(transfer, "")
+    code = "tagged_color_space" if space else "tagged_encoding"
+    raise PhotoError(code, path=photo.path, transfer=transfer, source=photo.metadata.color.source, space=space)
+
+
+def refuse_linear(color: ColorTags, path: Path) -> None:
+    """Raise PhotoError if the tags of a file say that it is linear."""
+    if color.transfer == "linear":
+        raise PhotoError("tagged_linear", path=path, source=color.source)
 
 
 def _recognition(kind: Kind, reason: Notice, advice: Notice) -> Recognition:

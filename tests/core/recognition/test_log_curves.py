@@ -5,8 +5,8 @@ import pytest
 
 from crfnet.movies.tags import LOG_TAGS
 from crfnet_core.photograph.metadata.color_tags import TRANSFERS
-from crfnet_core.photograph.recognition import COLOR_SPACES, log_curves
-from crfnet_core.photograph.recognition.tagged import TAGGED_SPACES
+from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES
+from crfnet_core.photograph.recognition.recognition import TAGGED_SPACES
 
 #: Published codes of 10 bits (black, 18 % gray, 90 % white), from the makers' tables.
 PUBLISHED = {
@@ -46,22 +46,22 @@ REFLECTANCE = np.concatenate([[0, 0.001, 0.005, 0.012, 0.18, 0.327, 0.329, 0.9, 
 
 @pytest.mark.parametrize("name", PUBLISHED)
 def test_black_gray_and_white_have_their_published_codes(name):
-    assert np.rint(log_curves()[name]([0, 0.18, 0.9]) * 1023).tolist() == pytest.approx(PUBLISHED[name], abs=1)
+    assert np.rint(LOG_CURVES[name]([0, 0.18, 0.9]) * 1023).tolist() == pytest.approx(PUBLISHED[name], abs=1)
 
 
 def test_log3g10_puts_gray_at_a_third_and_ten_stops_more_at_the_end():
-    np.testing.assert_allclose(log_curves()["RED Log3G10"]([0.18, 0.18 * 2**10]), [1 / 3, 1], atol=1e-4)
+    np.testing.assert_allclose(LOG_CURVES["RED Log3G10"]([0.18, 0.18 * 2**10]), [1 / 3, 1], atol=1e-4)
 
 
 @pytest.mark.parametrize("name", COLOUR_SCIENCE)
 def test_the_curve_is_that_of_colour_science(name):
     colour = pytest.importorskip("colour", reason="colour-science comes with the test extra")
     expected = colour.log_encoding(REFLECTANCE, function=COLOUR_SCIENCE[name])
-    np.testing.assert_allclose(log_curves()[name](REFLECTANCE), expected, atol=2e-5)
+    np.testing.assert_allclose(LOG_CURVES[name](REFLECTANCE), expected, atol=2e-5)
 
 
 def test_every_curve_has_an_independent_judge():
-    assert set(log_curves()) - set(COLOUR_SCIENCE) == {"Blackmagic Film Gen 5"}
+    assert set(LOG_CURVES) - set(COLOUR_SCIENCE) == {"Blackmagic Film Gen 5"}
 
 
 @pytest.mark.parametrize("name", COLOR_SPACES)
@@ -71,7 +71,7 @@ def test_the_named_color_space_of_the_aces_config_undoes_the_curve(name):
     config = ocio.Config.CreateFromFile("ocio://studio-config-latest")
     to_linear = config.getProcessor(COLOR_SPACES[name], "ACES2065-1").getDefaultCPUProcessor()
     reflectance = np.array([0.02, 0.18, 0.9, 4.0])
-    codes = log_curves()[name](reflectance)
+    codes = LOG_CURVES[name](reflectance)
     found = np.array([to_linear.applyRGB([code] * 3)[1] for code in codes])
     np.testing.assert_allclose(found / found[1], reflectance / 0.18, rtol=2e-3)
     assert found[1] == pytest.approx(0.18, rel=0.02)
@@ -82,12 +82,12 @@ def test_every_tag_that_names_a_color_space_names_one_of_the_aces_config():
     names = set(ocio.Config.CreateFromFile("ocio://studio-config-latest").getColorSpaceNames())
     assert set(TAGGED_SPACES.values()) <= names
     curves = {curve for marks in LOG_TAGS.values() for curve in marks.values()}
-    assert set(TAGGED_SPACES) <= {*log_curves(), *TRANSFERS.values(), *curves}
-    assert curves <= {*log_curves(), *TAGGED_SPACES}
+    assert set(TAGGED_SPACES) <= {*LOG_CURVES, *TRANSFERS.values(), *curves}
+    assert curves <= {*LOG_CURVES, *TAGGED_SPACES}
 
 
-@pytest.mark.parametrize("name", log_curves())
+@pytest.mark.parametrize("name", LOG_CURVES)
 def test_the_curve_rises_from_a_lifted_black(name):
-    codes = log_curves()[name](np.linspace(-0.005, 60, 20_000))
+    codes = LOG_CURVES[name](np.linspace(-0.005, 60, 20_000))
     assert (np.diff(codes) > 0).all()
-    assert 0.08 < log_curves()[name](0.0) < 0.16
+    assert 0.08 < LOG_CURVES[name](0.0) < 0.16

@@ -15,18 +15,18 @@ from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA, s
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.photograph.recognition import (
     COLOR_SPACES,
+    LOG_CURVES,
     Kind,
     Levels,
     Recognition,
     is_limited_range,
     light_error,
-    log_curves,
     log_factor,
     nearest_curves,
     recognize,
     refuse_tagged,
 )
-from crfnet_core.photograph.recognition.limited_range import BEYOND, BLACKS, WHITES
+from crfnet_core.photograph.recognition.levels import BEYOND, BLACKS, WHITES
 from crfnet_core.photograph.recognition.log_footage import (
     BLACK_FACTOR,
     HIGH_WHITE_FACTOR,
@@ -50,7 +50,7 @@ SENT = {
 }
 
 
-@pytest.mark.parametrize("name", log_curves())
+@pytest.mark.parametrize("name", LOG_CURVES)
 def test_the_levels_of_log_footage_speak_for_log(name):
     assert log_factor(Levels.from_pixels(log_picture(name))) == pytest.approx(BLACK_FACTOR * LOW_WHITE_FACTOR)
 
@@ -72,7 +72,7 @@ def test_walls_gray_cards_and_skies_are_no_log_footage(darkest, brightest):
     assert log_factor(Levels.from_pixels(picture)) == 1
 
 
-@pytest.mark.parametrize("name", log_curves())
+@pytest.mark.parametrize("name", LOG_CURVES)
 def test_a_maker_in_the_file_names_its_own_curves(name):
     maker = name.split()[0]
     named = nearest_curves(Levels.from_pixels(log_picture(name)), (f"{maker.upper()} CORPORATION",))
@@ -84,9 +84,9 @@ def test_a_maker_in_the_file_names_its_own_curves(name):
 def test_the_nearest_curve_has_black_and_gray_where_the_picture_has():
     for name in ("Apple Log", "ARRI LogC4", "Sony S-Log2"):
         levels = Levels.from_pixels(log_picture(name))
-        best = log_curves()[nearest_curves(levels)[0].name]
+        best = LOG_CURVES[nearest_curves(levels)[0].name]
         assert len(nearest_curves(levels)) == 4
-        assert abs(float(best(0.0)) - float(log_curves()[name](0.0))) < 0.035
+        assert abs(float(best(0.0)) - float(LOG_CURVES[name](0.0))) < 0.035
 
 
 def test_log_footage_is_recognized_with_its_remedy():
@@ -111,7 +111,7 @@ def test_without_a_maker_the_curves_have_probabilities_and_the_safest_its_error(
 
 
 def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
-    levels, curves = Levels.from_pixels(log_picture("Canon Log 2")), log_curves()
+    levels, curves = Levels.from_pixels(log_picture("Canon Log 2")), LOG_CURVES
     names = [name for name in curves if name.startswith("Canon")]
     near = {each.name: each for each in nearest_curves(levels, ("Canon",))}
     assert set(near) == set(names)
@@ -122,7 +122,7 @@ def test_the_expected_error_is_the_mean_over_the_curves_that_it_may_be():
 
 def test_an_error_of_light_is_that_of_the_shape():
     levels = Levels.from_pixels(log_picture("ARRI LogC3"))
-    curve = log_curves()["ARRI LogC3"]
+    curve = LOG_CURVES["ARRI LogC3"]
     assert light_error(curve, curve, levels) == 0
     assert light_error(lambda light: curve(2 * np.asarray(light)), curve, levels) < 0.01
 
@@ -143,7 +143,7 @@ def test_limited_range_of_10_bits():
     assert is_limited_range(Levels.from_pixels(limited))
 
 
-@pytest.mark.parametrize("name", log_curves())
+@pytest.mark.parametrize("name", LOG_CURVES)
 def test_log_footage_is_no_limited_range(name):
     assert not is_limited_range(Levels.from_pixels(log_picture(name)))
 
@@ -202,7 +202,7 @@ def test_a_messengers_copy_is_recognized_by_its_metadata(fields, found):
     [
         ("Sony S-Log3", "tagged_color_space", "S-Log3 S-Gamut3.Cine"),
         ("PQ", "tagged_color_space", "Rec.2100-PQ - Display"),
-        ("Cineon log", "tagged_encoding", None),
+        ("Cineon log", "tagged_encoding", ""),
         ("linear", "tagged_linear", None),
     ],
 )

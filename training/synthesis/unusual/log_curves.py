@@ -5,8 +5,7 @@ Training draws from the ten that the packaged models have seen; more would chang
 
 from __future__ import annotations
 
-from crfnet_core.photograph.recognition import LogCurve
-from crfnet_core.photograph.recognition import log_curves as published_curves
+from crfnet_core.photograph.recognition import LOG_CURVES, LogCurve
 
 #: The curves of the packaged models' training.
 TRAINING_CURVES = (
@@ -25,5 +24,4 @@ TRAINING_CURVES = (
 
 def log_curves() -> dict[str, LogCurve]:
     """Return name -> curve, from reflectance (any shape) to code values in about [0.09, 1], not clipped."""
-    curves = published_curves()
-    return {name: curves[name] for name in TRAINING_CURVES}
+    return {name: LOG_CURVES[name] for name in TRAINING_CURVES}
