@@ -21,7 +21,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size
+from crfnet_core.photograph.image_io.header_checks import attribute_value, check_size
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
@@ -193,12 +193,11 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    for attribute in _segment_attributes(picture):
-        if not attribute.name.startswith(("jpeg:", "oiio:")):
-            value = attribute.value
+    for name, kind, value in _segment_attributes(picture):
+        if not name.startswith(("jpeg:", "oiio:")):
             if isinstance(value, str):  # EXIF may hold other bytes than UTF-8, which OpenImageIO gives as surrogates
                 value = value.encode(errors="replace").decode()
-            header.attribute(attribute.name, attribute.type, value)
+            header.attribute(name, kind, value)
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
     if cicp:
@@ -206,10 +205,10 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     return header
 
 
-def _segment_attributes(picture: _Picture) -> list[Any]:
-    """Return what OpenImageIO reads in EXIF, XMP and ICC profile, by way of a JPEG of one pixel that carries them.
+def _segment_attributes(picture: _Picture) -> list[tuple[str, Any, Any]]:
+    """Return name, type and value of what OpenImageIO reads in EXIF, XMP and ICC profile.
 
-    So the names are those that a JPEG of the same camera gives. What does not fit into a JPEG's segments is left out.
+    A JPEG of one pixel carries them. So the names are those that a JPEG of the same camera gives. What does not fit into a JPEG's segments is left out.
     """
     from PIL import Image
 
@@ -221,10 +220,11 @@ def _segment_attributes(picture: _Picture) -> list[Any]:
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
         problems.oiio_message()
-        attributes = list(source.spec().extra_attribs) if source else []
-        if source:
-            source.close()
-    return attributes
+        if not source:
+            return []
+        header = source.spec()
+        source.close()
+    return [(each.name, each.type, attribute_value(header, each)) for each in header.extra_attribs]
 
 
 def _most_bytes(segment: str) -> int:
