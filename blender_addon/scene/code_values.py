@@ -18,8 +18,8 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
-from .packed_images import has_own_file, is_painted
 from .node_links import LOOK, PLATE
+from .packed_images import has_own_file, is_painted
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state
 
 #: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.

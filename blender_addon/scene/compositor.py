@@ -42,7 +42,7 @@ class FrameTiming:
         return cls(frames[-1] - frames[0] + 1, 1, frames[0] - 1)
 
     def shows_any(self, frames: Sequence[int]) -> bool:
-        """Return whether it shows a file of these numbers; the timing of a new editor, files 1 to 100, may show none."""
+        """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
         return any(self.offset < frame <= self.offset + self.duration for frame in frames)
 
     def set_on(self, user: ImageUser) -> None:

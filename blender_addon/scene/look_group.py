@@ -46,9 +46,8 @@ SRGB = ("sRGB", "sRGB Encoded Rec.709 (sRGB)", "sRGB - Texture", "Utility - sRGB
 def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> None:
     """Put the plate's "Camera Look <name>" before the output of a compositor tree, in place of an earlier look.
 
-    It takes back the exposure, in stops, of the plate's linearizing group, or `exposure` if the tree has none. In a tree
-    without an output, the node is added and not linked. Raise ConfigError, and change nothing, if the config lacks
-    linear Rec.709 or sRGB.
+    It takes back the exposure, in stops, of the plate's linearizing group, or `exposure` if the tree has none. Without
+    an output, it is not linked. Raise ConfigError, and change nothing, if the config lacks linear Rec.709 or sRGB.
     """
     group = _build(plate, name, curve)
     linearizing = (node for node in tree.nodes if holds_group_of(node, plate))

@@ -7,6 +7,7 @@ is never saved. The code values of plates that were packed are packed, too.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
@@ -37,7 +38,7 @@ def rename_color_spaces(_path: str = "") -> None:
         try:
             lazy_import.load(".scene.color_space_names").rename_color_spaces(images)
         except expected_errors() as problem:
-            print(f"Camera response: {problem}")
+            sys.stderr.write(f"Camera response: {problem}\n")
 
 
 @bpy.app.handlers.persistent

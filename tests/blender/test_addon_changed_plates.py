@@ -245,7 +245,6 @@ class TestWithoutTheGroup:
         assert told(image) == []
         assert applied in " ".join(labels(drawn_in(image, in_editor)))
 
-
     def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, told, tree):
         apply_nodes(image)
         group_of(tree).mute = True
