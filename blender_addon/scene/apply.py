@@ -3,8 +3,6 @@
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import bpy
 
 from crfnet.options import device_name
@@ -31,7 +29,7 @@ def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
     if completed.is_applied and completed.files is None:
         node_group.check_config()
         shown_tree(context)  # refuses one that is linked
-    stored_estimate.store(datablock, completed.estimate, lines=completed.lines)
+    stored_estimate.store(datablock, completed.estimate)
     stored_estimate.set_entry(datablock, stored_estimate.EXPOSURE, completed.stops)
     stored_estimate.set_primaries(datablock, completed.primaries)
     if job.estimation.stored is None:
@@ -67,18 +65,14 @@ def remember_settings(datablock: Datablock, job: Job) -> None:
     settings.camera = options.camera or ""
     settings.device = device_name(options.analysis.device) or "file"
     settings.ignore_metadata = not options.analysis.use_metadata
-    settings.prior = "file" if isinstance(options.prior, Path) else options.prior
-    if settings.prior == "file" and Path(bpy.path.abspath(settings.prior_file)) != options.prior:
-        settings.prior_file = str(options.prior)
+    settings.prior = str(options.prior)
 
 
 def _insert_nodes(context: bpy.types.Context, datablock: Datablock, completed: CompletedJob) -> str:
     """Build the node group, and insert it after the plate in the compositor."""
-    name = completed.job.plate.name
-    group = node_group.build_group(datablock, name, completed.estimate.curve, completed.stops)
+    group = node_group.build_group(datablock, completed.job.plate.name, completed.estimate.curve, completed.stops)
     wanted = compositor.PlateNodes(
         plate=datablock,
-        name=name,
         codes=code_values(datablock),
         group=group,
         exposure=completed.stops,

@@ -18,6 +18,7 @@ import numpy as np
 
 from . import stored_estimate
 from .color_management import data_space
+from .node_links import LOOK, PLATE
 from .packed_images import has_own_file, is_painted
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state
 
@@ -107,6 +108,13 @@ def pack_with_plates() -> None:
         is_kept_packed = plate.packed_file and plate.library is None and not is_painted(plate)
         if is_kept_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
+
+
+def data_of_another_config() -> list[Datablock]:
+    """Return the code values and LUTs that the present config does not take for data, as their space is unknown."""
+    marks = (CODE_VALUES_OF, PLATE, LOOK)
+    local = [image for image in (*bpy.data.images, *bpy.data.movieclips) if image.library is None]
+    return [image for image in local if any(map(image.get, marks)) and not image.colorspace_settings.is_data]
 
 
 def note_files_as_read() -> None:

@@ -10,36 +10,24 @@ from typing import TypeAlias
 import bpy
 
 from .node_building import GAP, WIDTH
-from .node_links import is_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
+from .node_links import compositor_trees, holds_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
 from .plates import Datablock, datablock_of_node
 
-#: What shows an image and knows the frames of a sequence: an editor's, or a compositor's Image node itself.
+#: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
 
 
 @dataclass(frozen=True)
 class FrameTiming:
-    """When an image sequence shows which file.
+    """When an image sequence shows which file."""
 
-    Parameters
-    ----------
-    duration : int
-        The number of frames.
-    start : int
-        The frame of the scene that shows the first one.
-    offset : int
-        Is added to the frame within the sequence, 1 for the first one, to get the number of the file.
-    is_cyclic : bool
-        Whether it starts again after its end.
-    """
-
-    duration: int
-    start: int
-    offset: int
-    is_cyclic: bool = False
+    duration: int  # frames
+    start: int  # the frame of the scene that shows the first file
+    offset: int  # the number of the first file, less 1
+    is_cyclic: bool = False  # whether it starts again after its end
 
     @classmethod
-    def of_user(cls, user: ImageUser) -> FrameTiming:
+    def from_user(cls, user: ImageUser) -> FrameTiming:
         """Return the timing that an editor or a node has."""
         return cls(user.frame_duration, user.frame_start, user.frame_offset, user.use_cyclic)
 
@@ -54,7 +42,7 @@ class FrameTiming:
         return cls(frames[-1] - frames[0] + 1, 1, frames[0] - 1)
 
     def shows_any(self, frames: Sequence[int]) -> bool:
-        """Return whether it shows one of the files of these numbers; that of a new editor, files 1 to 100, may not."""
+        """Return whether it shows a file of these numbers; a new editor, which shows files 1 to 100, may not."""
         return any(self.offset < frame <= self.offset + self.duration for frame in frames)
 
     def set_on(self, user: ImageUser) -> None:
@@ -65,49 +53,24 @@ class FrameTiming:
 
 @dataclass(frozen=True)
 class PlateNodes:
-    """A plate, and what its nodes in the compositor need.
-
-    Parameters
-    ----------
-    plate : Image or MovieClip
-        The plate.
-    name : str
-        Its name, by which earlier versions marked its node group.
-    codes : Image or MovieClip
-        Its copy whose pixels are code values.
-    group : NodeTree
-        Its node group.
-    exposure : float
-        The value of the Exposure socket, in stops.
-    timing : FrameTiming or None
-        When a node that is added shows which frame of a sequence; None for a single file.
-    """
+    """A plate, its copy of code values and its node group; what its nodes in the compositor need."""
 
     plate: Datablock
-    name: str
     codes: Datablock
     group: bpy.types.NodeTree
-    exposure: float
-    timing: FrameTiming | None = None
+    exposure: float  # of the Exposure socket, in stops
+    timing: FrameTiming | None = None  # of a node that is added; None for a single file
 
 
 def timing_of(context: bpy.types.Context, plate: Datablock, frames: Sequence[int]) -> FrameTiming | None:
-    """Return the timing of a plate where it is shown already, in the active editor, another one or a node.
+    """Return the timing of a plate in the active editor, another editor or a node, the first that shows its files.
 
-    Where it is shown nowhere, or with a timing that nobody has set, every file is shown on the frame of its number.
-
-    Parameters
-    ----------
-    context : Context
-        Its editor comes first.
-    plate : Image or MovieClip
-        The plate.
-    frames : sequence of int
-        The numbers of its files; empty for a single file, which has no timing, as clips, which keep their own.
+    Without one, every file is shown on the frame of its number. `frames` are the numbers of the files. Single files,
+    which have none, and clips, which keep their own, have no timing: None.
     """
     if not frames or not isinstance(plate, bpy.types.Image):
         return None
-    timings = map(FrameTiming.of_user, _users(context, plate))
+    timings = map(FrameTiming.from_user, _users(context, plate))
     set_by_user = (timing for timing in timings if timing.duration > 1 and timing.shows_any(frames))
     return next(set_by_user, FrameTiming.by_number(frames))
 
@@ -134,32 +97,30 @@ def is_switched_off(scene: bpy.types.Scene) -> bool:
 
 
 def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
-    """Linearise a plate in a compositor tree: every node that shows it shows its code values, with the group behind.
+    """Linearize a plate in a compositor tree: its nodes show its code values, and lead to its node group.
 
-    The links from the plate then start at the group. Where the group follows already, whatever stands between, it is
-    brought up to date only, and so is every other node of the group in the file. If no node shows the plate, one is
-    added, with a viewer.
+    The links from the plate then start at the group. A group that follows already, whatever stands between, is only
+    brought up to date, as all nodes of the group in the file are. If no node shows the plate, one is added, with a
+    viewer.
     """
     sources = [node for node in tree.nodes if datablock_of_node(node) == wanted.plate]
     for source in sources or [_add_plate(tree, wanted)]:
         _show(source, wanted.codes)
-        if next(_groups_behind(source, wanted.plate, wanted.name), None) is None:
+        if not _groups_behind(source, wanted.plate):
             _activate(_insert(tree, source, wanted.group))
-        for node in _groups_behind(source, wanted.plate, wanted.name):
-            node.node_tree = wanted.group
-            node.inputs["Exposure"].default_value = wanted.exposure
+    for node in (node for other in compositor_trees() for node in other.nodes if holds_group_of(node, wanted.plate)):
+        node.node_tree, node.mute = wanted.group, False
+        node.inputs["Exposure"].default_value = wanted.exposure
 
 
-def linearized_nodes(plate: Datablock, name: str) -> list[bpy.types.Node]:
-    """Return the nodes of the file that show a plate or its code values, and have its node group behind them."""
-    return [node for node in nodes_of(plate) if next(_groups_behind(node, plate, name), None) is not None]
+def is_linearized(plate: Datablock) -> bool:
+    """Return whether a node of the file shows a plate or its code values, and leads to its node group."""
+    return any(_groups_behind(node, plate) for node in nodes_of(plate))
 
 
-def _groups_behind(source: bpy.types.Node, plate: Datablock, name: str) -> Iterator[bpy.types.Node]:
-    """Yield the nodes of a plate's group that a node leads to."""
-    for node in nodes_behind(source):
-        if is_group_of(getattr(node, "node_tree", None), plate, name):
-            yield node
+def _groups_behind(source: bpy.types.Node, plate: Datablock) -> list[bpy.types.Node]:
+    """Return the nodes of a plate's group that a node leads to."""
+    return [node for node in nodes_behind(source) if holds_group_of(node, plate)]
 
 
 def _show(node: bpy.types.Node, codes: Datablock) -> None:
@@ -210,7 +171,7 @@ def _activate(node: bpy.types.Node) -> None:
 
 
 def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
-    """Return a new node for the plate, below all others and linked to a viewer; one that shows something else stays."""
+    """Return a new node for the plate, below all others and linked to a viewer that shows nothing else."""
     bottom = min((node.location_absolute.y - node.height for node in tree.nodes), default=0)
     if isinstance(wanted.plate, bpy.types.Image):
         node = tree.nodes.new("CompositorNodeImage")
@@ -235,7 +196,7 @@ def _is_free(viewer: bpy.types.Node) -> bool:
 
 
 def _users(context: bpy.types.Context, plate: bpy.types.Image) -> Iterator[ImageUser]:
-    """Yield what shows an image and may have set its timing: editors, then nodes."""
+    """Yield the editors, then the nodes, that show an image and may have set its timing."""
     areas = [area for screen in bpy.data.screens for area in screen.areas]
     for space in (context.space_data, *(area.spaces.active for area in areas)):
         if space is not None and space.type == "IMAGE_EDITOR" and space.image == plate:

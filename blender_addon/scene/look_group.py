@@ -33,11 +33,8 @@ from .node_building import (
     multiply_by_matrix,
 )
 from .node_group import linear_rec709, made_for, new_group, working_space
-from .node_links import compositor_trees, is_group_of
+from .node_links import LOOK, compositor_trees, holds_group_of
 from .plates import Datablock
-
-#: The custom property of these node groups and their images; its value is the plate's image or clip.
-LOOK = "camera_response_look_of"
 
 #: The output of the group with code values.
 CODE_VALUES = "Code Values"
@@ -47,32 +44,16 @@ SRGB = ("sRGB", "sRGB Encoded Rec.709 (sRGB)", "sRGB - Texture", "Utility - sRGB
 
 
 def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> None:
-    """Put the plate's "Camera Look <name>" before the output of a compositor tree, in place of an earlier one.
+    """Put the plate's "Camera Look <name>" before the output of a compositor tree, in place of an earlier look.
 
-    Parameters
-    ----------
-    tree : NodeTree
-        The compositor tree. If it has no output, the node is added and left alone.
-    plate : Image or MovieClip
-        The plate.
-    name : str
-        The plate's name.
-    curve : ResponseCurve
-        The plate's response.
-    exposure : float
-        The stops that the linear plate was given, which the look takes back. The Exposure of the plate's linearising
-        group counts instead, if this tree has it.
-
-    Raises
-    ------
-    ConfigError
-        If the config lacks linear Rec.709 or sRGB; nothing is changed then.
+    It takes back the exposure, in stops, of the plate's linearizing group, or `exposure` if the tree has none. Without
+    an output, it is not linked. Raise ConfigError, and change nothing, if the config lacks linear Rec.709 or sRGB.
     """
     group = _build(plate, name, curve)
-    given = (node for node in tree.nodes if is_group_of(getattr(node, "node_tree", None), plate, name))
+    linearizing = (node for node in tree.nodes if holds_group_of(node, plate))
     node = _node_before_output(tree)
     node.node_tree = group
-    node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in given), exposure)
+    node.inputs["Exposure"].default_value = next((n.inputs["Exposure"].default_value for n in linearizing), exposure)
     _link(tree, node)
     for other in tree.nodes:
         other.select = other == node
@@ -93,7 +74,7 @@ def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None
 
 def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeTree:
     """Return the plate's look; one that exists already is updated."""
-    linear, srgb, working = linear_rec709(), _srgb(), working_space()
+    linear, srgb_space, working = linear_rec709(), srgb(), working_space()
     group = made_for(plate, bpy.data.node_groups, LOOK)
     if group is None:
         group = new_group(plate, f"Camera Look {name}", LOOK, "Stops that the linear plate was given; taken back here")
@@ -110,7 +91,7 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     response = _response_image(plate, f".{group.name} Response", curve)
     codes = _encoded(grid, light.outputs[0], stored_estimate.matrix(plate), response)
     grid.link(multiply_by_alpha(grid, codes, 14), end.inputs[CODE_VALUES])
-    shown = convert_color_space(grid, srgb, working, codes, 13)
+    shown = convert_color_space(grid, srgb_space, working, codes, 13)
     grid.link(multiply_by_alpha(grid, shown, 14), end.inputs["Image"])
     return group
 
@@ -161,7 +142,7 @@ def _response_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.ty
     return image
 
 
-def _srgb() -> str:
+def srgb() -> str:
     """Return the name of sRGB in the config of this session."""
     known = color_spaces()
     for name in SRGB:

@@ -10,9 +10,11 @@ import bpy
 
 from .plates import Datablock, datablock_of_node, shown_by_node
 
-#: The custom property of the add-on's node groups and LUT images. Its value is the plate's image or clip; in files of
-#: earlier versions, the plate's name, which two plates may share.
+#: The custom property of the add-on's node groups and LUT images; its value is the plate's image or clip.
 PLATE = "camera_response_of"
+
+#: The same of the node groups "Camera Look" and their images.
+LOOK = "camera_response_look_of"
 
 
 class _Way(Enum):
@@ -59,10 +61,10 @@ def nodes_of(plate: Datablock) -> Iterator[bpy.types.Node]:
     yield from (node for tree in compositor_trees() for node in tree.nodes if datablock_of_node(node) == plate)
 
 
-def is_group_of(tree: bpy.types.NodeTree | None, plate: Datablock, name: str = "") -> bool:
-    """Return whether a node tree is a plate's node group, or one that an earlier version made for a plate of a name."""
-    owner = None if tree is None else tree.get(PLATE)
-    return owner is not None and owner in (plate, name)
+def holds_group_of(node: bpy.types.Node, plate: Datablock) -> bool:
+    """Return whether a node holds a plate's node group, muted or not."""
+    tree = getattr(node, "node_tree", None)
+    return tree is not None and tree.get(PLATE) == plate
 
 
 def linearized_twice(plate: Datablock) -> str:
@@ -79,7 +81,7 @@ def linearized_twice(plate: Datablock) -> str:
 def without_group(plate: Datablock) -> str:
     """Return that a compositor of the file shows a plate's code values as they are, and what to do; empty if none does.
 
-    So it is where the node group has been deleted, and the links around it were kept or made again.
+    The node group has been muted or deleted, and the links around it were kept or made again.
     """
     for node in nodes_of(plate):
         behind = list(nodes_behind(node))
@@ -89,8 +91,8 @@ def without_group(plate: Datablock) -> str:
 
 
 def linearizes(node: bpy.types.Node) -> bool:
-    """Return whether a node holds the node group of a plate, of whatever plate."""
-    return node.type == "GROUP" and node.node_tree is not None and PLATE in node.node_tree
+    """Return whether a node holds the node group of any plate, and is not muted."""
+    return node.type == "GROUP" and node.node_tree is not None and PLATE in node.node_tree and not node.mute
 
 
 def _title(node: bpy.types.Node) -> str:

@@ -7,7 +7,6 @@ running         the one run that is under way, and how its progress is shown
 panel           the sidebar panel and the menu entries of three editors
 estimate_box    what the panel shows of an estimate
 image_editor    what only the Image Editor has: before and after, the eyedropper for gray
-photographs     further photographs of the same camera
 plate_settings  what can be chosen for one plate
 preferences     what is chosen for every file
 more            the sub-panel "More": the look of the camera, other plates

@@ -11,32 +11,28 @@ import bpy.utils.previews
 
 from ..scene import plates, stored_estimate
 from ..work import curve_picture
-from ..work.wording import capitalized, says_too_little
-from .image_editor import analyzed_windows
+from ..work.wording import says_too_little
 from .image_editor.image_tools import CRF_OT_compare
 
 #: The pictures of responses that were drawn, by the fingerprint of the estimate.
 _previews: bpy.utils.previews.ImagePreviewCollection  # while the panels are registered
 
-#: Each verdict in a word or two, with its icon and what follows from it; the estimate says what to do if it is not to
-#: be trusted.
+#: Each verdict in a word or two, with its icon and its meaning.
 VERDICTS = {
     "good": ("Good", "CHECKMARK", ""),
     "usable": ("Usable", "INFO", "Look at the linear plate before you rely on it."),
     stored_estimate.DO_NOT_TRUST: ("Do not trust", "ERROR", ""),
 }
 
-#: The same of a picture that hardly tells one response from another, whatever its verdict.
-MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the picture says too little of its response.")
+#: The same for a picture that hardly distinguishes responses.
+MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the picture shows too little of its response.")
 
-#: The same of a response that was loaded from a LUT file.
+#: The same for a response from a LUT file, and from another plate.
 LOADED_WORDS = ("Loaded", "FILE", "")
+COPIED_WORDS = ("Copied", "DUPLICATE", "It is right only if the same camera took both, with the same settings.")
 
 #: What the picture of the curve shows.
 CAPTION = "Code value by stops below white. Blue: 90 % band. Dashed: gamma 2.2."
-
-#: How a warning begins among the lines of an estimate.
-WARNING = "Warning: "
 
 #: The mean width of a letter of the interface, what the panel and a box take beside a line, and the width of an icon:
 #: pixels at a scale of 1.
@@ -52,29 +48,24 @@ _LINE = 0.75
 def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
     """Draw the stored estimate of a plate in one box."""
     letters = letters_of(context)
-    word, icon, advice = _verdict_words(datablock)
+    word, icon, meaning = _verdict_words(datablock)
+    advice, details, warnings = stored_estimate.panel_paragraphs(datablock)
+    is_doubted = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
     box = layout.box()
     column = box.column(align=True)
     row = column.row()
-    row.alert = stored_estimate.verdict(datablock) == stored_estimate.DO_NOT_TRUST
+    row.alert = is_doubted
     row.label(text=word, icon=icon)
-    if advice:
-        draw_text(column, advice, letters)
-    if origin := stored_estimate.origin(datablock):
-        draw_text(column, origin, letters)
+    for text in (*advice, meaning, stored_estimate.origin(datablock)):
+        draw_text(column, text, letters)
     stops = stored_estimate.expected_stops(datablock)
-    if math.isfinite(stops):
+    if math.isfinite(stops) and not is_doubted:
         column.label(text=f"Expected error {stops:.2f} stop")
     box.template_icon(icon_value=curve_icon(datablock), scale=min(_LARGEST, max(_SMALLEST, _width(context) / _ICON)))
     draw_text(box, CAPTION, letters)
     if context.space_data.type == "IMAGE_EDITOR":
         _draw_comparison(box, context.space_data)
-        if where := analyzed_windows.draw_switch(box, context):
-            draw_text(box, where, letters)
-    _, *others = stored_estimate.lines(datablock)
-    warnings = [capitalized(line.removeprefix(WARNING)) for line in others if line.startswith(WARNING)]
-    if warnings:
-        draw_paragraphs(box, warnings, letters, icon="ERROR")
+    draw_paragraphs(box, warnings, letters, icon="ERROR")
     if name := stored_estimate.camera(datablock):
         draw_text(box, f"This is the response of the stored camera {name}.", letters, icon="CAMERA_DATA")
         box.operator("crf.estimate_response", text="Estimate from the Plate").camera = ""
@@ -84,26 +75,25 @@ def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, databl
     header, body = layout.panel("CRF_details", default_closed=True)
     header.label(text="Details")
     if body is not None:
-        draw_paragraphs(body, [line for line in others if not line.startswith(WARNING)], letters)
+        draw_paragraphs(body, details, letters)
 
 
 def _verdict_words(datablock: plates.Datablock) -> tuple[str, str, str]:
-    """Return the verdict in a word or two, its icon, and what follows from it or an empty text."""
-    if stored_estimate.is_loaded(datablock):
-        return LOADED_WORDS
+    """Return the verdict in a word or two, its icon, and its meaning or an empty text."""
     verdict = stored_estimate.verdict(datablock)
+    if not stored_estimate.has_verdict(datablock):
+        return LOADED_WORDS
+    if stored_estimate.origin(datablock) and verdict != stored_estimate.DO_NOT_TRUST:
+        return COPIED_WORDS
     if says_too_little(verdict, stored_estimate.warning_codes(datablock)):
         return MEAN_OF_CAMERAS
-    word, icon, advice = VERDICTS[verdict]
-    if verdict == stored_estimate.DO_NOT_TRUST:  # the first line is "The estimate is not to be trusted: ..."
-        advice = capitalized(stored_estimate.lines(datablock)[0].partition(": ")[2])
-        if kind := stored_estimate.recognized_as(datablock):
-            word = f"{word}: {kind}"
-    return word, icon, advice
+    word, icon, meaning = VERDICTS[verdict]
+    kind = stored_estimate.recognized_as(datablock)
+    return f"{word}: {kind}" if kind else word, icon, meaning
 
 
 def draw_paragraphs(layout: bpy.types.UILayout, lines: list[str], letters: int, *, icon: str = "NONE") -> None:
-    """Draw lines as paragraphs in one column, each with an icon if one is given."""
+    """Draw lines as paragraphs in one column, each with an icon; nothing if there are none."""
     column = layout.column(align=True)
     for number, line in enumerate(lines):
         if number:

@@ -61,8 +61,7 @@ def gather_job(
         estimation=Estimation(
             options=EstimateOptions(
                 model=absolute(preferences().model),
-                threads=preferences().threads,
-                prior=_prior(chosen, is_needed=not is_estimated),
+                prior=chosen["prior"],
                 camera=chosen["camera"].strip() or None,
                 analysis=AnalysisOptions(
                     use_metadata=not chosen["ignore_metadata"],
@@ -71,7 +70,6 @@ def gather_job(
             ),
             is_forced=chosen["force"],
             stored=stored_estimate.restored(datablock) if is_estimated else None,
-            photographs=() if is_estimated else _photographs(datablock),
             primaries=_known_primaries(datablock, plate) if is_estimated else None,
             origin=stored_estimate.origin(datablock) if is_estimated else "",
         ),
@@ -96,28 +94,6 @@ def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | N
     return stored_estimate.primaries(datablock) if is_same and not stored_estimate.origin(datablock) else None
 
 
-def _prior(chosen: Mapping[str, Any], *, is_needed: bool) -> str | Path:
-    """Return the name or the file of the prior; a stored estimate needs no file."""
-    if chosen["prior"] != "file":
-        return str(chosen["prior"])
-    if is_needed and not chosen["prior_file"]:
-        raise AddonError("Expect is set to File: choose a Prior File, or expect Camera")
-    return absolute(chosen["prior_file"]) or "file"
-
-
-def _photographs(datablock: plates.Datablock) -> tuple[Plate, ...]:
-    """Return the further photographs of the plate's camera, each once; places without an image are left out."""
-    images = [item.image for item in datablock.camera_response_settings.photographs if item.image is not None]
-    found = []
-    for image in dict.fromkeys(images):
-        if image != datablock:
-            try:
-                found.append(plates.plate_of(image))
-            except AddonError as problem:
-                raise AddonError(f"{image.name}, under More Photos: {problem}") from None
-    return tuple(found)
-
-
 def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -> Output:
     """Return what becomes of the response."""
     mode = ApplyMode(chosen["apply"])
@@ -125,7 +101,6 @@ def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -
         mode=mode,
         folder=absolute(chosen["folder"]) or _usual_folder(mode, plate),
         depth=chosen["depth"],
-        lut_length=preferences().lut_length,
         overwrite=chosen["overwrite"],
         despite_verdict=despite_verdict,
     )

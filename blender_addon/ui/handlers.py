@@ -7,13 +7,16 @@ is never saved. The code values of plates that were packed are packed, too.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable
 from typing import Any
 
 import bpy
 
+from .. import lazy_import
 from ..scene import code_values
-from .image_editor import analyzed_windows, comparison
+from ..work.errors import expected_errors
+from .image_editor import comparison
 
 
 @bpy.app.handlers.persistent
@@ -29,21 +32,25 @@ def note_files_as_read(_path: str = "") -> None:
 
 
 @bpy.app.handlers.persistent
+def rename_color_spaces(_path: str = "") -> None:
+    """Give the data of a file that was made under another config the names of the present one."""
+    if images := code_values.data_of_another_config():
+        try:
+            lazy_import.load(".scene.color_space_names").rename_color_spaces(images)
+        except expected_errors() as problem:
+            sys.stderr.write(f"Camera response: {problem}\n")
+
+
+@bpy.app.handlers.persistent
 def pack_code_values(*_arguments: Any) -> None:
     """Pack the code values of plates that have been packed."""
     code_values.pack_with_plates()
 
 
-@bpy.app.handlers.persistent
-def end_analyzed_windows(_path: str = "") -> None:
-    """Draw no windows over the plates of another file."""
-    analyzed_windows.switch_off()
-
-
 #: The handlers: Blender's name of the occasion, and the function.
 _HANDLERS: tuple[tuple[str, Callable[..., None]], ...] = (
     ("load_post", end_comparisons),
-    ("load_post", end_analyzed_windows),
+    ("load_post", rename_color_spaces),
     ("load_post", note_files_as_read),
     ("save_pre", pack_code_values),
     ("save_pre", end_comparisons),

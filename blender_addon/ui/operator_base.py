@@ -52,22 +52,6 @@ class ChosenPlate:
         return datablock
 
 
-class ChosenSettings(ChosenPlate):
-    """An operator that changes the settings of one plate, whether or not its response can be estimated."""
-
-    @classmethod
-    def why_not(cls, context: bpy.types.Context) -> str:
-        """Return that there is no plate, or that its settings would not be saved."""
-        return why_unchangeable(context)
-
-    def changeable_plate(self, context: bpy.types.Context) -> plates.Datablock:
-        """Return the image or clip; an AddonError if there is none, or its settings would not be saved."""
-        datablock = self.chosen_plate(context)
-        if problem := plates.why_unchangeable(datablock):
-            raise AddonError(problem)
-        return datablock
-
-
 def is_allowed(operator: type[bpy.types.Operator] | type[ChosenPlate], why_not: str) -> bool:
     """Return whether there is no reason why an operator cannot run; its tooltip tells the reason."""
     if why_not:

@@ -14,7 +14,6 @@ from .estimate_box import draw_estimate, draw_paragraphs, draw_text, letters_of
 from .image_editor.image_tools import CRF_OT_pick_gray, CRF_OT_read_as_sequence
 from .more.panel import draw_more
 from .operators import CRF_OT_apply_response, CRF_OT_cancel_run, CRF_OT_estimate_response
-from .photographs import draw_photographs
 from .plate_settings import is_applied, is_to_be_applied
 
 #: The menus of the three editors, by which Blender's search finds the operators, too.
@@ -136,7 +135,6 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
         column.prop(settings, "overwrite")
     if stored_estimate.is_stored(datablock):
         _draw_apply(layout, context, datablock)
-    draw_photographs(layout, settings)
     draw_more(layout, context, datablock)
     _draw_advanced(layout, settings)
 
@@ -167,8 +165,6 @@ def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup
     column = _split_column(body)
     column.prop(settings, "camera")
     column.prop(settings, "prior")
-    if settings.prior == "file":
-        column.prop(settings, "prior_file")
     column.prop(settings, "device")
     column.prop(settings, "ignore_metadata")
     column.prop(settings, "force")

@@ -23,11 +23,10 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
-#: What kinds of responses to expect: `crfnet.defaults.PRIORS`, or as a file says.
+#: What kinds of responses to expect: `crfnet.defaults.PRIORS`.
 PRIORS = (
     ("camera", "Camera", "Today's phones, compact cameras and cameras with interchangeable lenses, mostly unedited"),
     ("any", "Any Source", "Also film scans, old video cameras and heavily edited pictures, as likely as cameras"),
-    ("file", "File", "As a JSON file says"),
 )
 
 #: What took the plate: as its file says, or one of `crfnet.defaults.DEVICES`.
@@ -43,17 +42,11 @@ DEVICES = (
 #: wheel, and the add-on has to start without it.
 MAX_EXPOSURE = 15
 
-#: The number of each way to apply a response, as its enumeration property stores it, and the way of each number.
-_NUMBERS = {item[0]: item[-1] for item in APPLY_MODES}
-_MODES = {number: name for name, number in _NUMBERS.items()}
+#: The names of the ways to apply a response, by the order of their enumeration.
+_MODES = [item[0] for item in APPLY_MODES]
 
 #: The entry of a stored estimate with the settings that were applied last, and their names.
 APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
-
-
-def _number(name: str) -> int:
-    """Return the number of a way to apply a response; files of earlier versions may name one that is gone."""
-    return _NUMBERS.get(name, _NUMBERS["ESTIMATE"])
 
 
 def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
@@ -114,12 +107,6 @@ class PlateChoices:
     prior: bpy.props.EnumProperty(
         name="Expect", description="Which kinds of responses are likely before the plate is looked at", items=PRIORS
     )
-    prior_file: bpy.props.StringProperty(
-        name="Prior File",
-        description="JSON file with the share of each kind of response",
-        subtype="FILE_PATH",
-        options={"PATH_SUPPORTS_BLEND_RELATIVE"},
-    )
     device: bpy.props.EnumProperty(
         name="Taken With", description="What took the plate, where you know it and its file does not say", items=DEVICES
     )
@@ -133,26 +120,15 @@ class PlateChoices:
 CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
-class CRF_Photograph(bpy.types.PropertyGroup):
-    """A further photograph of the camera that took the plate."""
-
-    image: bpy.props.PointerProperty(
-        name="Photograph",
-        description="Another photograph of the same camera with the same settings",
-        type=bpy.types.Image,
-    )
-
-
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
     """The settings of one plate; until `apply` is set, it is that of the preferences."""
 
-    photographs: bpy.props.CollectionProperty(type=CRF_Photograph)
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
     apply: bpy.props.EnumProperty(
         name="Apply As",
         description="What becomes of the response",
         items=APPLY_MODES,
-        get=lambda self: _number(self.chosen or preferences().apply),
+        get=lambda self: _MODES.index(self.chosen or preferences().apply),
         set=lambda self, number: setattr(self, "chosen", _MODES[number]),
     )
 
@@ -169,19 +145,13 @@ def is_applied(datablock: bpy.types.ID) -> bool:
     """
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
-    is_by_nodes = datablock.camera_response_settings.apply == "NODES"
-    return not is_by_nodes or bool(compositor.linearized_nodes(datablock, datablock.name))
+    return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock)
 
 
 def is_to_be_applied(datablock: bpy.types.ID) -> bool:
     """Return whether settings of a plate with an estimate have been changed since they were applied."""
     applied = datablock[stored_estimate.KEY].get(APPLIED)
-    if applied is None:
-        return False
-    present = _comparable(datablock.camera_response_settings)
-    if "alpha" in present and "alpha" not in applied:  # applied by a version before the setting counted
-        del present["alpha"]
-    return applied.to_dict() != present
+    return applied is not None and applied.to_dict() != _comparable(datablock.camera_response_settings)
 
 
 def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
@@ -196,7 +166,7 @@ def _comparable(settings: CRF_PlateSettings) -> dict[str, str | float]:
     return chosen
 
 
-_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_Photograph, CRF_PlateSettings))
+_register_classes, _unregister_classes = bpy.utils.register_classes_factory((CRF_PlateSettings,))
 
 
 def register() -> None:

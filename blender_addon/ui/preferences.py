@@ -10,21 +10,10 @@ from ..work.errors import AddonError
 #: The name by which Blender knows the add-on: that of its root package.
 ADDON = __package__.rpartition(".")[0]
 
-#: Entries of LUT files by default. It is `crfnet.defaults.LUT_LENGTH` again, because `crfnet` comes as a wheel, and the
-#: add-on has to start without it.
-LUT_LENGTH = 4081
-
-#: What becomes of a response, `work.job.ApplyMode`. The numbers at the end are stored in .blend files;
-#: 1 was that of an earlier way.
+#: The uses of a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
-    ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 4),
-    (
-        "NODES",
-        "Nodes",
-        "At once: a node group linearizes the plate in the compositor",
-        "NODETREE",
-        0,
-    ),
+    ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 0),
+    ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor", "NODETREE", 1),
     ("BAKE", "Bake", "Write linear EXR files beside the plate, and load them", "FILE_IMAGE", 2),
     (
         "EXPORT",
@@ -47,16 +36,6 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         subtype="DIR_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
-    threads: bpy.props.IntProperty(
-        name="Threads", description="Processor threads of the estimate. 0: all", min=0, max=256
-    )
-    lut_length: bpy.props.IntProperty(
-        name="LUT Length",
-        description=f"Entries of LUT files: {LUT_LENGTH} is exact on all 8-bit codes, 65536 on all 16-bit codes",
-        default=LUT_LENGTH,
-        min=256,
-        max=65536,
-    )
     folder: bpy.props.StringProperty(
         name="Output Folder",
         description="Folder for baked and exported files. Empty: the plate's own folder",
@@ -78,8 +57,6 @@ class CRF_AddonPreferences(bpy.types.AddonPreferences):
         layout.prop(self, "apply")
         layout.prop(self, "folder", placeholder="The plate's own folder")
         layout.prop(self, "model", placeholder="The add-on's own model")
-        layout.prop(self, "threads", text="Threads (0: All)")
-        layout.prop(self, "lut_length")
 
 
 def preferences() -> CRF_AddonPreferences:

@@ -2,10 +2,8 @@
 """An estimate as the entries that a .blend file keeps, and back.
 
 The entries are texts, numbers and flat lists of numbers in double precision, because a custom property holds nothing
-else; several texts are one, with a line each; families, what the metadata says, what the photographs are recognized as
-and the stored camera are texts in JSON. Files saved with these names must stay readable: a change of them needs a new
-`scene.stored_estimate.LAYOUT`. Layout 1 knew neither the expected shape error nor families, prior and metadata; the
-first files of layout 2 have neither recognition nor a stored camera.
+else; several texts are joined by line breaks, and nested values are JSON. A change of the entries needs a new
+`scene.stored_estimate.LAYOUT`.
 """
 
 from __future__ import annotations
@@ -41,7 +39,6 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
         "metadata": json.dumps([dataclasses.asdict(origin) for origin in estimate.origins], ensure_ascii=False),
         "recognition": json.dumps(estimate.recognition and dataclasses.asdict(estimate.recognition)),
         "camera": json.dumps(estimate.camera and dataclasses.asdict(estimate.camera), ensure_ascii=False),
-        "warnings": "\n".join(map(str, estimate.warnings)),
         "notices": json.dumps([[notice.code, dict(notice.facts)] for notice in estimate.warnings], ensure_ascii=False),
         "weights": estimate.weights.tolist(),
         "brightness": estimate.curve.brightness.tolist(),
@@ -56,17 +53,10 @@ def entries_of(estimate: ResponseEstimate) -> dict[str, Any]:
 
 
 def loaded_estimate(curve: ResponseCurve, model: str) -> ResponseEstimate:
-    """Return a response that was not estimated, in the place of an estimate.
+    """Return a response from a LUT file in the place of an estimate; `model` names the file.
 
     Its errors are NaN, its band has no width, and it has no windows and no families. Its verdict, which is not shown,
     lets it be applied.
-
-    Parameters
-    ----------
-    curve : ResponseCurve
-        The response.
-    model : str
-        Where it comes from, beginning with `wording.LOADED`.
     """
     return ResponseEstimate(
         curve=curve,
@@ -86,31 +76,23 @@ def loaded_estimate(curve: ResponseCurve, model: str) -> ResponseEstimate:
 
 
 def estimate_of(entries: Mapping[str, Any]) -> ResponseEstimate:
-    """Return the estimate of which `entries_of` made these entries.
-
-    Of an estimate of layout 1, the expected shape error is NaN, and there are no families, no prior and no metadata.
-
-    Raises
-    ------
-    CurveError
-        If the curve is no longer that of a response, because another program changed it.
-    """
+    """Return the estimate that `entries_of` made these entries from; raise CurveError if their curve was damaged."""
     return ResponseEstimate(
         curve=ResponseCurve(np.array(entries["brightness"])),
         weights=np.array(entries["weights"]),
         windows=tuple(_windows(entries)),
         uncertainty=entries["uncertainty"],
-        shape_uncertainty=entries.get("shape_uncertainty", math.nan),
+        shape_uncertainty=entries["shape_uncertainty"],
         band=np.array([entries["lower"], entries["upper"]]),
-        families={Family(name): share for name, share in json.loads(entries.get("families", "{}")).items()},
+        families={Family(name): share for name, share in json.loads(entries["families"]).items()},
         verdict=Verdict(entries["verdict"]),
-        prior=entries.get("prior", ""),
-        origins=tuple(map(FileOrigin.from_dict, json.loads(entries.get("metadata", "[]")))),
-        warnings=tuple(_warnings(entries)),
+        prior=entries["prior"],
+        origins=tuple(map(FileOrigin.from_dict, json.loads(entries["metadata"]))),
+        warnings=tuple(Notice(code, facts) for code, facts in json.loads(entries["notices"])),
         model=entries["model"],
-        photos=_lines(entries["photos"]),
-        recognition=Recognition.from_dict(json.loads(entries.get("recognition", "null"))),
-        camera=CameraAnswer.from_dict(json.loads(entries.get("camera", "null"))),
+        photos=tuple(entries["photos"].splitlines()),
+        recognition=Recognition.from_dict(json.loads(entries["recognition"])),
+        camera=CameraAnswer.from_dict(json.loads(entries["camera"])),
     )
 
 
@@ -129,16 +111,3 @@ def _windows(entries: Mapping[str, Any]) -> Iterator[WindowEstimate]:
             expected_error=entries["window_errors"][n],
             kept=bool(entries["window_kept"][n]),
         )
-
-
-def _warnings(entries: Mapping[str, Any]) -> Iterator[Notice]:
-    """Yield the warnings; files of earlier versions have their sentences alone."""
-    if "notices" in entries:
-        yield from (Notice(code, facts) for code, facts in json.loads(entries["notices"]))
-    else:
-        yield from map(Notice.from_text, _lines(entries["warnings"]))
-
-
-def _lines(text: str) -> tuple[str, ...]:
-    """Return the lines of a text; none of an empty one."""
-    return tuple(text.split("\n")) if text else ()

@@ -6,7 +6,7 @@ from __future__ import annotations
 import os
 import tempfile
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -20,6 +20,8 @@ from crfnet.plates.frames import FrameSequence, find_frames, pattern_frames, sam
 from crfnet.plates.primaries import plate_primaries
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
+from crfnet_core.photograph.image_io import read_metadata
+from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.types import Uint8Array
 
 from .errors import AddonError
@@ -95,6 +97,16 @@ def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = Fa
         return plate_primaries(read_color_tags(path, is_encoded=is_encoded)).primaries or REC709
 
 
+def camera_of(plate: Plate) -> str:
+    """Return make and model of the camera that a plate's file names; empty if it names none or cannot be read."""
+    try:
+        with frame_reader(plate) as read:
+            (path,) = read(FrameSequence(frames_of(plate).paths[:1])).paths
+            return file_origin(read_metadata(path)).camera
+    except (AddonError, CRFNetError):
+        return ""
+
+
 def sample(sequence: FrameSequence) -> FrameSequence:
     """Return the frames of a sequence that the response is estimated from, with their numbers."""
     chosen = sample_frames(sequence)
@@ -116,24 +128,6 @@ def frame_reader(plate: Plate) -> Iterator[FrameReader]:
         return
     with _temporary_folder(plate) as folder:
         yield partial(_written, plate, folder)
-
-
-@contextmanager
-def sampled_files(plates: Sequence[tuple[Plate, FrameSequence]]) -> Iterator[tuple[FrameSequence, ...]]:
-    """Yield, for each plate, the files that the response is estimated from; temporary ones are removed at the end.
-
-    Parameters
-    ----------
-    plates : sequence of (Plate, FrameSequence)
-        The plates with their frames, as `frames_of` returns them.
-
-    Raises
-    ------
-    AddonError
-        See `frame_reader`.
-    """
-    with ExitStack() as stack:
-        yield tuple(stack.enter_context(frame_reader(plate))(sample(frames)) for plate, frames in plates)
 
 
 def _has_own_files(plate: Plate) -> bool:

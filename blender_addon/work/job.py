@@ -164,8 +164,6 @@ class Estimation:
         Whether it is estimated even if the plate is said to be logarithmic or linear.
     stored : ResponseEstimate or None
         An earlier estimate, which is used instead of a new one.
-    photographs : tuple of Plate
-        Further photographs of the same camera with the same settings, which share the response.
     primaries : Primaries or None
         Those of the plate, if they are known from `stored`; otherwise its file is read.
     origin : str
@@ -175,7 +173,6 @@ class Estimation:
     options: EstimateOptions
     is_forced: bool
     stored: ResponseEstimate | None = None
-    photographs: tuple[Plate, ...] = ()
     primaries: Primaries | None = None
     origin: str = ""
 
@@ -211,8 +208,6 @@ class Output:
         The folder for files; None if none is known.
     depth : {"half", "float"}
         The samples of baked files.
-    lut_length : int
-        The entries of LUT files.
     overwrite : bool
         Whether existing files may be replaced.
     despite_verdict : bool
@@ -222,7 +217,6 @@ class Output:
     mode: ApplyMode
     folder: Path | None
     depth: str
-    lut_length: int
     overwrite: bool
     despite_verdict: bool = False
 

@@ -13,7 +13,6 @@ from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet.pipeline import FileEstimate, anchored_exposure, estimate_files, response_lut
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.primaries import plate_primaries
-from crfnet.report import verdict_lines
 from crfnet_core import ResponseEstimate
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.errors import CRFNetError
@@ -24,10 +23,10 @@ from crfnet_core.types import Progress, show_progress
 from . import writers
 from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
 from .errors import AddonError, CancelledError
-from .frame_files import frames_of, primaries_of, sampled_files
+from .frame_files import frame_reader, frames_of, primaries_of, sample
 from .job import Anchor, ApplyMode, Job, Plate
 from .target_check import check_targets
-from .wording import is_loaded, loaded_line, panel_phrases
+from .wording import is_loaded
 
 #: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
@@ -65,13 +64,6 @@ class CompletedJob:
     primaries: Primaries = REC709
     problem: AddonError | CRFNetError | None = None
     offers: tuple[tuple[str, str], ...] = ()
-
-    @property
-    def lines(self) -> tuple[str, ...]:
-        """The verdict and the warnings in words, one line each."""
-        if is_loaded(self.estimate):
-            return (loaded_line(self.estimate.model),)
-        return tuple(verdict_lines(self.estimate, panel_phrases()))
 
     @property
     def is_withheld(self) -> bool:
@@ -151,7 +143,7 @@ def _completed(
     shows_frames = job.plate.has_frames and job.output.mode in _SHOWING_FRAMES
     files: writers.Written | None = None
     if job.output.mode is not ApplyMode.NODES:
-        lut = _lut(estimate, job.output.lut_length)
+        lut = _lut(estimate)
         files = writers.write(job, lut, stops, sequence, progress, primaries=estimated.primaries)
     return replace(completed, frames=_numbers(job.plate, sequence) if shows_frames else (), files=files)
 
@@ -161,38 +153,29 @@ def _numbers(plate: Plate, sequence: Callable[[], FrameSequence]) -> tuple[int, 
     return tuple(range(1, plate.frame_count + 1)) if plate.frame_count else sequence().numbers
 
 
-def _lut(estimate: ResponseEstimate, length: int) -> Lut1D:
-    """Return the inverse response as a LUT that says where the response comes from."""
-    if is_loaded(estimate):
-        return inverse_response_lut(estimate.curve, length=length, comments=(f"Inverse response, {estimate.model}",))
-    return response_lut(estimate, length=length)
+def _lut(estimate: ResponseEstimate) -> Lut1D:
+    """Return the inverse response as a LUT that names the origin of the response."""
+    if is_loaded(estimate.uncertainty):
+        return inverse_response_lut(estimate.curve, comments=(f"Inverse response, {estimate.model}",))
+    return response_lut(estimate)
 
 
 def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None = None) -> FileEstimate:
-    """Return the response of a plate, estimated from its file or several of its frames, and from further photographs.
+    """Return the response of a plate, estimated from its file or several of its frames.
 
-    Raises
-    ------
-    AddonError
-        If the color space of the plate or a photograph is logarithmic or linear and the job does not force the
-        estimate.
-    CRFNetError
-        If a file, the model or the prior cannot be read, or a file calls itself logarithmic or linear and the job does
-        not force the estimate.
+    Unless the job forces the estimate, raise AddonError if the color space of the plate is logarithmic or linear, and
+    CRFNetError if its file calls itself so. Raise CRFNetError if a file, the model or the prior cannot be read.
     """
     show_progress(progress, 0, 1)  # ends a job that was canceled before the network is loaded, which takes a second
-    plates = (job.plate, *job.estimation.photographs)
-    sequences = (sequence, *map(frames_of, job.estimation.photographs))
-    options = job.estimation.options
-    with sampled_files(list(zip(plates, sequences, strict=True))) as files:
-        if not job.estimation.is_forced:
-            for plate, frames in zip(plates, files, strict=True):
-                _check_is_encoded(plate, frames.paths[0], job.config)
-        paths = [path for frames in files for path in frames.paths]
-        has_metadata = options.analysis.use_metadata and all(plate.has_metadata for plate in plates)
-        is_overruled = has_metadata and job.estimation.is_forced and is_tagged(paths)
+    options, is_forced = job.estimation.options, job.estimation.is_forced
+    with frame_reader(job.plate) as read:
+        frames = read(sample(sequence))
+        if not is_forced:
+            _check_is_encoded(job.plate, frames.paths[0], job.config)
+        has_metadata = options.analysis.use_metadata and job.plate.has_metadata
+        is_overruled = has_metadata and is_forced and is_tagged(frames.paths)
         analysis = replace(options.analysis, use_metadata=has_metadata and not is_overruled)
-        return estimate_files(files, replace(options, analysis=analysis), progress=progress)
+        return estimate_files([frames], replace(options, analysis=analysis), progress=progress)
 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:

@@ -3,11 +3,11 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterable
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
 if TYPE_CHECKING:
-    from crfnet.report import Phrases
     from crfnet_core import ResponseEstimate
 
 #: Code of an error -> what to do in Blender, behind "; " at the end of its sentence, which names no button.
@@ -27,8 +27,6 @@ REMEDIES = {
     # pipeline
     "file_exists": "tick Overwrite",
     "files_exist": "tick Overwrite",
-    # posterior
-    "no_prior": "choose another Prior File, or expect Camera",
 }
 
 #: Code of a warning -> the few words that fit into Blender's status bar; other warnings stand there as they are.
@@ -38,10 +36,9 @@ SHORT_WARNINGS = {
     "edited": "saved by {editor}",
     "gray": "gray photograph",
     "narrow_range": "no window covers the range of brightness",
-    "several_cameras": "photographs of different cameras",
 }
 
-#: The code of the warning about a picture that hardly tells one response from another, such as a gray card.
+#: The code of the warning about a picture that hardly distinguishes responses.
 NARROW_RANGE = "narrow_range"
 
 #: Each verdict as a sentence about the response, for one-line reports.
@@ -51,26 +48,34 @@ _SENTENCES = {
     "do not trust": "the response is not to be trusted",
 }
 
-#: The beginning of the model's name of a response that was loaded from a LUT file: it is not an estimate.
-LOADED = "loaded from "
+
+class PanelText(NamedTuple):
+    """The panel's sentences about an estimate: paragraphs are separated by line breaks."""
+
+    advice: str = ""
+    details: str = ""
+    warnings: str = ""
 
 
-def panel_phrases() -> Phrases:
-    """Return the phrases of the panel for the sentences of `crfnet.report`."""
-    from crfnet.report import Phrases
+def panel_text(estimate: ResponseEstimate) -> PanelText:
+    """Return the panel's sentences about an estimate."""
+    from crfnet.report import Phrases, verdict_advice, verdict_lines
 
+    if is_loaded(estimate.uncertainty):
+        return PanelText(details=f"The response is {estimate.model}: it is not an estimate, so it has no verdict.")
     device = ", or say with Taken With under Advanced which kind of camera took it, if it is a photograph"
-    return Phrases(calibrate="", state_device=device, has_e_est=False)
+    phrases = Phrases(calibrate="", state_device=device, has_e_est=False)
+    _verdict, *lines = verdict_lines(estimate, phrases)
+    return PanelText(
+        advice=_sentence(verdict_advice(estimate, phrases)),
+        details="\n".join(lines[: len(lines) - len(estimate.warnings)]),  # the warnings come last
+        warnings="\n".join(_sentence(str(warning)) for warning in estimate.warnings),
+    )
 
 
-def is_loaded(estimate: ResponseEstimate) -> bool:
-    """Return whether a response was loaded from a LUT file."""
-    return estimate.model.startswith(LOADED)
-
-
-def loaded_line(model: str) -> str:
-    """Return the panel's line about a response that was loaded from a LUT file, in place of a verdict."""
-    return f"The response is {model}: this is no estimate, so there is no verdict."
+def is_loaded(uncertainty: float) -> bool:
+    """Return whether a response of this expected error was loaded from a LUT file: then it is NaN."""
+    return math.isnan(uncertainty)
 
 
 def problem_line(problem: Exception) -> str:
@@ -79,9 +84,9 @@ def problem_line(problem: Exception) -> str:
     return f"{problem}; {remedy}" if remedy else str(problem)
 
 
-def capitalized(text: str) -> str:
-    """Return a text with a capital letter at its beginning; the others stay as they are."""
-    return text[:1].upper() + text[1:]
+def _sentence(text: str) -> str:
+    """Return a text with a capital letter and a full stop; an empty one as it is."""
+    return f"{text[:1].upper()}{text[1:]}." if text else ""
 
 
 def says_too_little(verdict: str, codes: Iterable[str]) -> bool:
@@ -94,7 +99,7 @@ def report_line(name: str, estimate: ResponseEstimate, done: str) -> str:
 
     Blender cuts lines that are too long in their middle, so warnings are short.
     """
-    if is_loaded(estimate):
+    if is_loaded(estimate.uncertainty):
         return f"{name}: the response is {estimate.model}; {done}"
     warning = ""
     if estimate.warnings:

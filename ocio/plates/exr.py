@@ -16,6 +16,7 @@ from numpy.typing import NDArray
 
 from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import first_line, oiio_message
+from crfnet_core.photograph.image_io.header_checks import attribute_value
 
 from ..errors import PlateError
 
@@ -73,9 +74,9 @@ def linear_header(
     for attribute in source.extra_attribs:
         if attribute.name in KEPT_METADATA:
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
-            kind = "int" if isinstance(attribute.value, int) else attribute.type
-            value = one_line(attribute.value) if isinstance(attribute.value, str) else attribute.value
-            header.attribute(attribute.name, kind, value)
+            value = attribute_value(source, attribute)
+            value = one_line(value) if isinstance(value, str) else value
+            header.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
     header.attribute("compression", "zips")
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):

@@ -27,6 +27,7 @@ from .words import (
     plate_lines,
     result_line,
     source_line,
+    verdict_advice,
     verdict_lines,
 )
 
@@ -59,5 +60,6 @@ __all__ = [
     "result_line",
     "shape_error_words",
     "source_line",
+    "verdict_advice",
     "verdict_lines",
 ]

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.posterior import Family, LikelyKind, Verdict
+from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
 
 from ..defaults import GAMMA_ERROR, GAMMA_SHAPE_ERROR, MIDDLE_GRAY
@@ -22,7 +22,7 @@ from .facts import COMMAND, Phrases, agreeing, basis, curve_error_words, expecte
 VERDICTS = {
     Verdict.GOOD: "good",
     Verdict.USABLE: "usable: look at the plate before you rely on it",
-    Verdict.DO_NOT_TRUST: "not to be trusted: give the file that the camera wrote",
+    Verdict.DO_NOT_TRUST: "not to be trusted",
 }
 
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
@@ -48,7 +48,7 @@ def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> lis
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
     kind, rests_on = estimate.likely_kind, basis(estimate)
     return [
-        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, kind, phrases)}.",
+        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, phrases)}.",
         _expectation(estimate, phrases),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
@@ -168,18 +168,25 @@ def model_lines(document: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def _verdict_words(estimate: ResponseEstimate, kind: LikelyKind | None, phrases: Phrases) -> str:
-    """Return the verdict with what to do about it, which of some kinds of pictures is something of its own."""
+def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
+    """Return the advice about an estimate that is not to be trusted; empty for any other."""
     if estimate.recognition:
-        return f"not to be trusted: {estimate.recognition.advice}"
+        return estimate.recognition.advice
+    if estimate.verdict is not Verdict.DO_NOT_TRUST:
+        return ""
+    kind = estimate.likely_kind
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
-    if estimate.verdict is Verdict.DO_NOT_TRUST and remedies:
-        is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
-        is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
-        more = "" if is_known or is_stored else phrases.state_device
-        return f"not to be trusted: {remedies[0]}{more}"
-    more = phrases.calibrate if estimate.verdict is Verdict.DO_NOT_TRUST else ""
-    return f"{VERDICTS[estimate.verdict]}{more}"
+    if not remedies:
+        return f"give the file that the camera wrote{phrases.calibrate}"
+    is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
+    is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
+    return remedies[0] + ("" if is_known or is_stored else phrases.state_device)
+
+
+def _verdict_words(estimate: ResponseEstimate, phrases: Phrases) -> str:
+    """Return the verdict with the advice about it."""
+    advice = verdict_advice(estimate, phrases)
+    return f"{VERDICTS[Verdict.DO_NOT_TRUST]}: {advice}" if advice else VERDICTS[estimate.verdict]
 
 
 def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:

@@ -59,7 +59,7 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
                 stored=stored,
             ),
             exposure=Exposure(anchor=anchor, gray=gray, stops=stops),
-            output=Output(mode=mode, folder=folder, depth=depth, lut_length=4081, overwrite=overwrite),
+            output=Output(mode=mode, folder=folder, depth=depth, overwrite=overwrite),
             config=str(running_config),
         )
 

@@ -7,15 +7,13 @@ import numpy as np
 import pytest
 
 from blender_addon.work.estimate_record import entries_of, estimate_of
-from crfnet.pipeline import response_lut
-from crfnet.report import verdict_lines
 from crfnet_core.errors import CurveError, Notice
 from crfnet_core.estimate.result import CameraAnswer
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.recognition import Kind, Recognition
-from crfnet_core.posterior import Family, Verdict
+from crfnet_core.posterior import Family
 
-#: The entries of layout 2, with their types.
+#: The entries of layout 2, with their types: a change needs a new layout.
 SAVED = {
     "model": str,
     "photos": str,
@@ -27,7 +25,6 @@ SAVED = {
     "metadata": str,
     "recognition": str,
     "camera": str,
-    "warnings": str,
     "notices": str,
     "weights": list,
     "brightness": list,
@@ -39,9 +36,6 @@ SAVED = {
     "window_errors": list,
     "window_kept": list,
 }
-
-#: Entries that layout 1 lacked; it had "spread" instead.
-NEW = ("shape_uncertainty", "families", "prior", "metadata", "recognition", "camera", "notices")
 
 
 @pytest.fixture(scope="module")
@@ -61,19 +55,9 @@ def test_an_estimate_comes_back_the_same(found):
     assert [type(origin.device) for origin in again.origins] == [Device, Device]
 
 
-def test_codes_of_warnings_come_back_and_sentences_of_earlier_versions(found):
-    entries = entries_of(found)
-    assert [notice.code for notice in estimate_of(entries).warnings] == ["edited", "gray"]
-    del entries["notices"]
-    assert estimate_of(entries).warnings == found.warnings
-
-
-def test_an_estimate_without_warnings_has_none_afterwards(found):
-    assert estimate_of(entries_of(dataclasses.replace(found, warnings=()))).warnings == ()
-
-
-def test_an_estimate_without_metadata_has_none_afterwards(found):
-    assert estimate_of(entries_of(dataclasses.replace(found, origins=()))).origins == ()
+def test_an_estimate_without_warnings_and_metadata_has_none_afterwards(found):
+    again = estimate_of(entries_of(dataclasses.replace(found, warnings=(), origins=())))
+    assert again.warnings == again.origins == ()
 
 
 def test_what_the_metadata_says_may_hold_any_character(found):
@@ -96,26 +80,7 @@ def test_the_stored_camera_is_kept(found):
     assert estimate_of(entries_of(dataclasses.replace(found, camera=camera))).camera == camera
 
 
-def test_an_estimate_saved_before_recognition_has_none(found):
-    entries = entries_of(found)
-    del entries["recognition"], entries["camera"]
-    assert estimate_of(entries).recognition is None
-    assert estimate_of(entries).camera is None
-
-
-@pytest.mark.parametrize("verdict", ["good", "usable", "do not trust"])
-def test_an_estimate_of_an_earlier_version_comes_back_with_what_it_knows(found, verdict):
-    """What it does not know is left out of what is said of it."""
-    entries = {name: entry for name, entry in entries_of(found).items() if name not in NEW}
-    old = estimate_of(entries | {"spread": 0.1, "verdict": verdict})
-    np.testing.assert_array_equal(old.curve.brightness, found.curve.brightness)
-    assert np.isnan(old.shape_uncertainty)
-    assert (old.verdict, old.families, old.prior, old.origins) == (Verdict(verdict), {}, "", ())
-    assert verdict_lines(old)[0].startswith("The estimate is ")
-    assert "nan" not in " ".join([*verdict_lines(old), *response_lut(old).comments])
-
-
-def test_the_entries_are_those_of_earlier_versions(found):
+def test_the_entries_are_those_of_the_layout(found):
     """Their types exactly: a custom property must not learn of our enumerations, nor of numpy."""
     entries = entries_of(found)
     assert {name: type(entry) for name, entry in entries.items()} == SAVED

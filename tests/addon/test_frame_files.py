@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from blender_addon.work.errors import AddonError
-from blender_addon.work.frame_files import frame_reader, frames_of, sample, sampled_files
+from blender_addon.work.frame_files import frame_reader, frames_of, sample
 from blender_addon.work.job import ApplyMode
 from blender_addon.work.run import run
 from crfnet_core.photograph.image_io import read_codes
@@ -83,13 +83,3 @@ def test_a_movie_without_code_values_and_a_bake_of_one_are_refused(movie_job, tm
     with pytest.raises(AddonError, match="movies are not baked"):
         run(movie_job(mode=ApplyMode.BAKE))
     assert not (tmp_path / "out").exists()
-
-
-def test_files_of_several_plates_are_there_together(movie_job, make_job, temporary, codes):
-    movie, own = movie_job().plate, make_job().plate
-    painted = dataclasses.replace(own, content=codes)
-    with sampled_files([(plate, frames_of(plate)) for plate in (own, movie, painted)]) as files:
-        assert files[0].paths == (own.file,)
-        assert all(path.is_file() for frames in files for path in frames.paths)
-        assert [frames.paths[0].name for frames in files[1:]] == ["clip.0007.png", "plate.png"]
-    assert list(temporary.iterdir()) == []

@@ -16,7 +16,6 @@ LIGHT = ("background", "curve_picture", "errors", "job", "wording")
 REGISTERED = (
     "estimate_box",
     "handlers",
-    "image_editor.analyzed_windows",
     "image_editor.comparison",
     "image_editor.image_tools",
     "more.add_look",
@@ -26,7 +25,6 @@ REGISTERED = (
     "operator_base",
     "operators",
     "panel",
-    "photographs",
     "plate_settings",
     "preferences",
     "running",

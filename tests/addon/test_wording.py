@@ -4,9 +4,8 @@ import dataclasses
 
 import pytest
 
-from blender_addon.work.wording import capitalized, panel_phrases, problem_line, report_line
+from blender_addon.work.wording import panel_text, problem_line, report_line
 from crfnet.errors import PlateError
-from crfnet.report import verdict_lines
 from crfnet_core.errors import Notice
 from crfnet_core.posterior import Family, Verdict
 
@@ -19,12 +18,16 @@ def found(estimate, plate_file):
 def test_the_panel_names_its_own_settings_and_no_figure_of_the_papers(found):
     families = {Family.UNEXPLAINED: 1.0}
     doubtful = dataclasses.replace(found, verdict=Verdict.DO_NOT_TRUST, families=families, origins=())
-    lines = verdict_lines(doubtful, panel_phrases())
-    end = ", or say with Taken With under Advanced which kind of camera took it, if it is a photograph."
-    assert lines[0].endswith(end)
-    assert not any("E_est" in line or "--" in line or "crfnet" in line for line in lines)
-    assert "E_est" in verdict_lines(doubtful)[1]
-    assert "crfnet" not in verdict_lines(dataclasses.replace(doubtful, families={}), panel_phrases())[0]
+    text = panel_text(doubtful)
+    assert "Taken With under Advanced" in text.advice
+    assert not any(word in " ".join(text) for word in ("E_est", "--", "crfnet"))
+    assert panel_text(found).advice == ""
+
+
+def test_the_panel_has_warnings_apart(found):
+    text = panel_text(dataclasses.replace(found, warnings=(Notice("gray"), Notice("clipped"))))
+    assert [line[:4] for line in text.warnings.splitlines()] == ["Gray", "Most"]
+    assert "gray" not in text.details
 
 
 def test_an_error_has_the_remedy_in_blender():
@@ -48,8 +51,3 @@ def test_a_picture_that_says_nothing_is_not_called_usable(found):
     assert report_line("card", narrow, "done").startswith(words)
     untrusted = dataclasses.replace(narrow, verdict=Verdict.DO_NOT_TRUST)
     assert "is not to be trusted (warning" in report_line("card", untrusted, "done")
-
-
-def test_a_capital_letter_and_no_other_change():
-    assert capitalized("no camera of NIKON") == "No camera of NIKON"
-    assert capitalized("") == ""

@@ -25,14 +25,15 @@ def curve(monkeypatch, tmp_path):
 
 
 def test_a_chosen_camera_is_the_answer_and_is_remembered(image, curve):
-    from blender_addon.scene.stored_estimate import lines, restored
+    from blender_addon.scene.stored_estimate import panel_paragraphs, restored
 
     bpy.ops.crf.estimate_response(image=image.name, camera="mine")
     found = restored(image)
     np.testing.assert_array_equal(found.curve.brightness, curve.brightness)
     assert found.camera.name == "mine"
     assert image.camera_response_settings.camera == "mine"
-    assert any("mine" in line for line in lines(image))
+    _, details, _ = panel_paragraphs(image)
+    assert any("6 exposures" in line for line in details)
 
 
 def test_without_one_the_response_is_estimated(image, curve):

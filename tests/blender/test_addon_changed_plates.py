@@ -245,6 +245,14 @@ class TestWithoutTheGroup:
         assert told(image) == []
         assert applied in " ".join(labels(drawn_in(image, in_editor)))
 
+    def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, told, tree):
+        apply_nodes(image)
+        group_of(tree).mute = True
+        assert told(image) == [WITHOUT]
+        apply_nodes(image)
+        assert told(image) == []
+        assert not group_of(tree).mute
+
 
 class TestTwice:
     @pytest.fixture

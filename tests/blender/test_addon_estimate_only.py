@@ -2,7 +2,6 @@
 
 import dataclasses
 
-import numpy as np
 import pytest
 
 from tests.helpers.images import write_image
@@ -117,46 +116,6 @@ def test_changed_settings_are_known_until_they_are_applied(image):
     assert not is_to_be_applied(image)
     image.camera_response_settings.gray = 0.3  # the anchor is white
     assert not is_to_be_applied(image)
-
-
-def test_a_photograph_that_is_none_is_told_by_its_name(image):
-    image.camera_response_settings.photographs.add().image = bpy.data.images.new("blank", 8, 8)
-    with pytest.raises(RuntimeError, match="blank, under More Photos: Blank images and test grids have no camera"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
-def test_a_photograph_is_asked_once_for_its_obstacle_and_one_that_is_gone_is_told(image, codes, tmp_path, monkeypatch):
-    from blender_addon.scene import plates
-
-    second = write_image(tmp_path / "second.png", codes)
-    photograph = bpy.data.images.load(str(second))
-    image.camera_response_settings.photographs.add().image = photograph
-    asked, obstacle = [], plates.obstacle
-    monkeypatch.setattr(plates, "obstacle", lambda datablock: asked.append(datablock) or obstacle(datablock))
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert asked == [image, photograph]
-    second.unlink()
-    with pytest.raises(RuntimeError, match=r"second\.png, under More Photos: .* there is no such file"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
-def test_photographs_of_the_same_camera_are_estimated_together(image, plate_file, codes, tmp_path, estimate, in_editor):
-    from blender_addon.scene.stored_estimate import restored
-
-    second = write_image(tmp_path / "second.png", np.roll(codes, 40, axis=1))
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        for _ in range(2):  # each once
-            bpy.ops.crf.add_photographs(directory=str(tmp_path), files=[{"name": "second.png"}])
-        bpy.ops.crf.add_photographs(directory=str(plate_file.parent), files=[{"name": plate_file.name}])  # the plate
-        assert [item.image.name for item in image.camera_response_settings.photographs] == ["second.png"]
-        bpy.ops.crf.estimate_response()
-        np.testing.assert_array_equal(restored(image).weights, estimate(plate_file, second).weights)
-        bpy.ops.crf.remove_photograph(index=0)
-        assert not image.camera_response_settings.photographs
-        bpy.ops.crf.estimate_response()
-    np.testing.assert_array_equal(restored(image).weights, estimate(plate_file).weights)
-    assert "second.png" in bpy.data.images
 
 
 def test_menus_have_the_operators(addon):

@@ -128,13 +128,12 @@ def test_files_need_a_folder_that_can_be_written(image, tmp_path):
     assert "camera_response" not in image
 
 
-@pytest.mark.parametrize("choice", [{"folder": "//renders"}, {"prior": "file", "prior_file": "//prior.json"}])
-def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, choice, tmp_path, monkeypatch):
+def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     bpy.ops.wm.read_homefile(use_empty=True)
     image = bpy.data.images.load(str(plate_file))
     with pytest.raises(RuntimeError, match=r"is relative to the \.blend file: save that first"):
-        bpy.ops.crf.estimate_response(image=image.name, apply="EXPORT", **choice)
+        bpy.ops.crf.estimate_response(image=image.name, apply="EXPORT", folder="//renders")
     assert not (tmp_path / "renders").exists()
 
 
@@ -174,16 +173,3 @@ def test_the_environments_config_is_the_base(image, tmp_path, monkeypatch):
     assert studio.read_bytes() == before
     names = OCIO.Config.CreateFromFile(str(tmp_path / "mine" / "config.ocio")).getColorSpaceNames()
     assert list(names) == [*OCIO.Config.CreateFromFile(str(studio)).getColorSpaceNames(), "CRF plate"]
-
-
-def test_a_file_of_an_earlier_version_with_a_way_that_is_gone(image, tmp_path):
-    """Its plate had the mode "Color Space", and waited for it."""
-    run(image, apply="NODES")
-    image.camera_response_settings.chosen = "COLORSPACE"
-    image["camera_response"]["pending_color_space"] = "CRF plate"
-    image.use_fake_user = True
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "old.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "old.blend"))
-    image = bpy.data.images["plate.png"]
-    assert image.camera_response_settings.apply == "ESTIMATE"
-    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}

@@ -48,18 +48,6 @@ def test_where_blender_would_have_to_show_it_the_message_says_what_to_do(addon, 
     assert "camera_response" not in image
 
 
-def test_it_is_a_further_photograph(addon, avif, plate_file, in_editor, estimate):
-    from blender_addon.scene import stored_estimate
-
-    image = bpy.data.images.load(str(plate_file))
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        assert bpy.ops.crf.add_photographs(directory=str(avif.parent), files=[{"name": avif.name}]) == {"FINISHED"}
-        assert bpy.ops.crf.estimate_response() == {"FINISHED"}
-    assert stored_estimate.photos(image) == [plate_file.name, avif.name]
-    assert stored_estimate.restored(image).weights.tolist() == estimate(plate_file, avif).weights.tolist()
-
-
 def test_its_linear_plate_is_shown(addon, avif, in_editor):
     from blender_addon.scene import stored_estimate
 

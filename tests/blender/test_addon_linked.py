@@ -1,7 +1,5 @@
 """Plates that are linked from another file: nothing is changed on them, because it would not be saved."""
 
-import shutil
-
 import numpy as np
 import pytest
 
@@ -28,38 +26,18 @@ def linked(image, tmp_path):
 
 
 def state(plate):
-    settings = plate.camera_response_settings
-    return settings.gray, settings.anchor, [item.image for item in settings.photographs]
+    return plate.camera_response_settings.gray, plate.camera_response_settings.anchor
 
 
 def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked, in_editor):
     before = state(linked)
     with in_editor("IMAGE_EDITOR") as space:
         space.image = linked
-        for operator, arguments in (
-            (bpy.ops.crf.pick_gray, {}),
-            (bpy.ops.crf.add_photographs, {"files": [{"name": "second.png"}]}),
-            (bpy.ops.crf.remove_photograph, {"index": 0}),
-        ):
-            assert not operator.poll()
-            with pytest.raises(RuntimeError, match=WHY):
-                operator("INVOKE_DEFAULT", **arguments)
+        assert not bpy.ops.crf.pick_gray.poll()
+        with pytest.raises(RuntimeError, match=WHY):
+            bpy.ops.crf.pick_gray("INVOKE_DEFAULT")
     assert state(linked) == before
     assert WHY in " ".join(labels(drawn_in(linked, in_editor)))
-
-
-def test_a_script_is_told_the_same(linked):
-    for operator in (bpy.ops.crf.add_photographs, bpy.ops.crf.remove_photograph):
-        with pytest.raises(RuntimeError, match=WHY):
-            operator(image=linked.name)
-
-
-@pytest.mark.parametrize("editor", ["IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR"])
-def test_without_a_plate_they_say_so(addon, in_editor, editor):
-    from blender_addon.scene.plates import OPEN_A_PLATE
-
-    with in_editor(editor), pytest.raises(RuntimeError, match=OPEN_A_PLATE[editor]):
-        bpy.ops.crf.add_photographs()
 
 
 def test_its_look_may_be_added_because_that_changes_only_the_comp(linked):
@@ -92,14 +70,3 @@ def test_saving_leaves_the_code_values_of_the_other_file_alone(image, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
     assert {(found.name, found.library) for found in bpy.data.images} == before
     assert plate.library is not None
-
-
-def test_a_further_photograph_that_is_linked_is_told_by_its_name(image, plate_file, tmp_path):
-    shutil.copy(plate_file, tmp_path / "second.png")
-    image.use_fake_user = True
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
-    plate = link(tmp_path / "other.blend")
-    local = bpy.data.images.load(str(tmp_path / "second.png"))
-    local.camera_response_settings.photographs.add().image = plate
-    with pytest.raises(RuntimeError, match=f"plate.png, under More Photos: {WHY}"):
-        bpy.ops.crf.estimate_response(image=local.name)

@@ -81,8 +81,8 @@ def test_it_survives_saving_and_goes_to_other_plates(image, lut_file, tmp_path, 
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
     image, other = bpy.data.images["plate.png"], bpy.data.images[name]
-    assert stored_estimate.is_loaded(image)
-    assert stored_estimate.is_loaded(other)
+    assert not stored_estimate.has_verdict(image)
+    assert not stored_estimate.has_verdict(other)
     assert stored_estimate.origin(other) == "From plate.png (Loaded from camera.spi1d)"
     curves = [stored_estimate.restored(plate).curve.brightness for plate in (image, other)]
     assert np.array_equal(*curves)
@@ -93,7 +93,7 @@ def test_a_new_estimate_takes_its_place(image, lut_file):
 
     load(image, lut_file())
     bpy.ops.crf.estimate_response(image=image.name)
-    assert not stored_estimate.is_loaded(image)
+    assert stored_estimate.has_verdict(image)
     assert stored_estimate.origin(image) == ""
 
 

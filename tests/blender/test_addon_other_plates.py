@@ -2,6 +2,7 @@
 
 import pytest
 
+from tests.helpers.cameras import photograph
 from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
@@ -92,6 +93,30 @@ def test_nothing_happens_if_one_plate_cannot_be_used(images):
         copy("two.png", is_chosen=False)
     with pytest.raises(RuntimeError, match="tick at least one"):
         copy("one.png")
+
+
+def test_a_plate_of_another_camera_is_named(addon, plate, tmp_path, capfd):
+    from blender_addon.ui.more.other_plates import other_camera
+
+    one, same, two = (
+        bpy.data.images.load(str(photograph(plate, tmp_path / f"{name}.jpg", Make=make, Model="X")))
+        for name, make in (("one", "Canon"), ("same", "Canon"), ("two", "NIKON"))
+    )
+    bpy.ops.crf.estimate_response(image=one.name)
+    assert (other_camera(one, same), "NIKON" in other_camera(one, two)) == ("", True)
+    targets = [{"name": two.name, "is_clip": False, "is_chosen": True}]
+    bpy.ops.crf.copy_response(image=one.name, targets=targets)
+    assert "two.jpg: its file names another camera, " in capfd.readouterr().out
+
+
+def test_the_verdict_does_not_go_with_the_response(images, in_editor):
+    from tests.blender.test_addon_panel import drawn_in, labels
+
+    images[0]["camera_response"]["verdict"] = "good"
+    copy("two.png")
+    words = labels(drawn_in(images[1], in_editor))
+    assert words[0] == "Copied"
+    assert "Good" not in words
 
 
 def test_the_list_offers_other_plates_and_ticks_selected_nodes(images, tree, in_editor):

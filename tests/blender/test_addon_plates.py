@@ -137,7 +137,7 @@ def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon
     ("name", "words"),
     [
         ("shot.0001.png", r"shot\.####\.png: there are none of this name"),
-        ("still.png", r"still\.png: there is no such file; find it with File, External Data\s*$"),
+        ("still.png", r"still\.png: there is no such file; .*; find it with File, External Data\s*$"),
     ],
 )
 def test_frames_that_are_gone_are_told_in_the_words_of_blender(addon, tmp_path, codes, name, words):
@@ -155,5 +155,5 @@ def test_frames_that_are_no_sequence_are_told(addon, tmp_path, codes):
         write_image(tmp_path / f"IMG_{number}.png", codes)
     image = bpy.data.images.load(str(tmp_path / "IMG_0001.png"))
     image.source = "SEQUENCE"
-    with pytest.raises(RuntimeError, match=r"IMG_####\.png: .* too far apart to be one sequence; move those away"):
+    with pytest.raises(RuntimeError, match=r"IMG_####\.png: .* too far apart; .*; move those away"):
         bpy.ops.crf.estimate_response(image=image.name)

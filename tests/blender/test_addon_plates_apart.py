@@ -169,28 +169,12 @@ class TestNothingIsLinearizedTwice:
 
         wanted = compositor.PlateNodes(
             plate=image,
-            name="plate",
             codes=bpy.data.images["plate.png code values"],
             group=bpy.data.node_groups["Camera Response plate"],
             exposure=1,
         )
         compositor.apply_group(edited, wanted)
         assert len(groups(edited)) == expected
-
-    def test_a_file_of_an_earlier_version(self, image, tree):
-        """There the plate itself was Non-Color, and the group was marked with the plate's name."""
-        old = bpy.data.node_groups.new("Camera Response plate", "CompositorNodeTree")
-        old.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-        old.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")
-        old["camera_response_of"] = "plate"
-        source = add_node(tree, image)
-        image.colorspace_settings.name = "Non-Color"
-        node = tree.nodes.new("CompositorNodeGroup")
-        node.node_tree = old
-        tree.links.new(source.outputs["Image"], node.inputs[0])
-        apply(image)
-        assert groups(tree) == [node]
-        assert node.node_tree["camera_response_of"] == image
 
     def test_nodes_first_then_the_color_space(self, image, tree, composited, codes, estimate, plate_file):
         """Whatever color space the plate gets, its nodes are as they were."""

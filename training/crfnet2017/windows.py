@@ -99,7 +99,7 @@ def read_splits(data: Path) -> dict[str, TrainingScenes]:
     curves, luminance = read_dorf(data / DORF_FILE), reference_luminance(scenes["train"])
     exposures = np.array([automatic_exposure(curve, luminance) for curve in curves], dtype=np.float32)
     return {
-        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), np.float32(curves), exposures)
+        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), curves.astype(np.float32), exposures)
         for split, members in scenes.items()
     }
 

@@ -9,7 +9,6 @@ import bpy
 from ... import lazy_import
 from ...scene import color_management, plates, stored_estimate
 from ...work.errors import AddonError, expected_errors
-from ...work.wording import LOADED, loaded_line
 from .. import running
 from ..image_editor import comparison
 from ..operator_base import ChosenPlate, failed
@@ -58,12 +57,12 @@ class CRF_OT_load_lut(ChosenPlate, bpy.types.Operator):
                 raise AddonError("No LUT file is chosen: choose one")
             lut = lazy_import.load("crfnet.luts.files").read_lut(path)
             curve = lazy_import.load("crfnet.luts.response").response_of_lut(lut)
-            model = f"{LOADED}{path.name}"
+            model = f"loaded from {path.name}"
             loaded = lazy_import.load(".work.estimate_record").loaded_estimate(curve, model)
         except expected_errors() as problem:
             return failed(self, problem)
         comparison.end_all()
-        stored_estimate.store(plate, loaded, lines=[loaded_line(model)])
+        stored_estimate.store(plate, loaded)
         stored_estimate.set_entry(plate, stored_estimate.ORIGIN, f"Loaded from {path.name}")
         stored_estimate.set_primaries(plate, primaries)
         running.redraw_editors(context.window_manager)

@@ -53,11 +53,13 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
         """Let the user choose among all other plates of the file."""
         self.targets.clear()
-        selected = _selected(context)
-        for datablock in other_plates(plates.active_datablock(context)):
+        source, selected = plates.active_datablock(context), _selected(context)
+        self._cameras = []
+        for datablock in other_plates(source):
             target = self.targets.add()
             target.name, target.is_clip = datablock.name, isinstance(datablock, bpy.types.MovieClip)
-            target.is_chosen = datablock in selected
+            self._cameras.append(other_camera(source, datablock))
+            target.is_chosen = datablock in selected and not self._cameras[-1]
         if not self.targets:
             self.report({"INFO"}, "There is no other plate in this file: open one first")
             return {"CANCELLED"}
@@ -66,15 +68,18 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
     def draw(self, _context: bpy.types.Context) -> None:
         """Draw the list."""
         column = self.layout.column(align=True)
-        for target in self.targets:
-            column.prop(target, "is_chosen", text=target.name, icon="TRACKER" if target.is_clip else "IMAGE_DATA")
+        for target, camera in zip(self.targets, self._cameras, strict=True):
+            row = column.row()
+            row.alert = bool(camera)
+            row.prop(target, "is_chosen", text=f"{target.name} ({camera})" if camera else target.name)
 
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Apply it to one plate after the other, once all of them are known to be usable."""
         done = 0
         try:
             source = self.estimated_plate(context)
-            jobs = [_job(source, datablock) for datablock in self._chosen(source)]
+            chosen = self._chosen(source)
+            jobs = [_job(source, datablock) for datablock in chosen]
             comparison.end_all()
             for job in jobs:
                 _apply(context, source, job)
@@ -84,6 +89,9 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
             return {"FINISHED"} if done else result
         running.redraw_editors(context.window_manager)
         self.report({"INFO"}, f"{source.name}: {_count(done)} its response now; {_what_was_done(source)}")
+        for datablock in chosen:
+            if camera := other_camera(source, datablock):
+                self.report({"WARNING"}, f"{datablock.name}: its file names another camera, {camera}")
         return {"FINISHED"}
 
     def _chosen(self, source: plates.Datablock) -> list[plates.Datablock]:
@@ -100,6 +108,15 @@ def other_plates(source: plates.Datablock) -> Iterator[plates.Datablock]:
     for datablock in (*bpy.data.images, *bpy.data.movieclips):
         if datablock != source and not datablock.name.startswith(".") and not plates.obstacle(datablock):
             yield datablock
+
+
+def other_camera(source: plates.Datablock, target: plates.Datablock) -> str:
+    """Return the camera that the file of a plate names, if the estimate of another plate is from other cameras."""
+    cameras = stored_estimate.camera_models(source)
+    if not cameras or target.source == "MOVIE":
+        return ""
+    camera: str = lazy_import.load(".work.frame_files").camera_of(plates.plate_of(target))
+    return "" if camera in cameras else camera
 
 
 def _selected(context: bpy.types.Context) -> list[plates.Datablock]:
@@ -125,7 +142,6 @@ def _job(source: plates.Datablock, target: plates.Datablock) -> "Job":
         job.estimation,
         stored=stored_estimate.restored(source),
         origin=f"From {source.name}" + (f" ({origin})" if origin else ""),
-        photographs=(),
     )
     return replace(job, estimation=came)
 

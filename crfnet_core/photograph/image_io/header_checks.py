@@ -49,12 +49,19 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     return bits if bits in (8, 10, 12) else 16
 
 
+def attribute_value(header: Any, attribute: Any) -> Any:
+    """Return the value of an attribute of a header. Its own `value` crashes Blender 4.5 if it is an empty text."""
+    is_text = str(attribute.type) == "string"
+    return header.get_string_attribute(attribute.name) if is_text else attribute.value
+
+
 def with_plain_texts(header: Any) -> Any:
     """Return a header whose texts are printable: OpenImageIO hands bytes that are not UTF-8 on as lone surrogates."""
     plain = oiio.ImageSpec(header)
     for attribute in header.extra_attribs:
-        if isinstance(attribute.value, str) and not attribute.value.isprintable():
-            plain.attribute(attribute.name, one_line(attribute.value))
+        value = attribute_value(header, attribute)
+        if isinstance(value, str) and not value.isprintable():
+            plain.attribute(attribute.name, one_line(value))
     return plain
 
 

@@ -22,7 +22,7 @@ from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import check_size, with_plain_texts
+from crfnet_core.photograph.image_io.header_checks import attribute_value, check_size, with_plain_texts
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
@@ -176,9 +176,10 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    for attribute in _segment_attributes(picture.segments):
+    carried = _segment_header(picture.segments)
+    for attribute in carried.extra_attribs:
         if not attribute.name.startswith(("jpeg:", "oiio:")):
-            header.attribute(attribute.name, attribute.type, attribute.value)
+            header.attribute(attribute.name, attribute.type, attribute_value(carried, attribute))
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
     if cicp:
@@ -186,21 +187,20 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     return header
 
 
-def _segment_attributes(segments: Mapping[str, bytes]) -> list[Any]:
-    """Return the attributes that OpenImageIO reads in EXIF, XMP and ICC profile of a JPEG of one pixel with them.
+def _segment_header(segments: Mapping[str, bytes]) -> Any:
+    """Return the header that OpenImageIO reads of a JPEG of one pixel with EXIF, XMP and ICC profile.
 
     So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
     """
     fitting = {name: content for name, content in segments.items() if len(content) < _MOST_BYTES[name]}
     if not fitting:
-        return []
+        return oiio.ImageSpec()
     with tempfile.TemporaryDirectory() as folder:
         carrier = Path(folder, "carrier.jpg")
         Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
         source = oiio.ImageInput.open(str(carrier))
         problems.oiio_message()
-        if source is None:
-            return []
-        attributes = list(with_plain_texts(source.spec()).extra_attribs)
-        source.close()
-    return attributes
+        header = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
+        if source is not None:
+            source.close()
+    return header

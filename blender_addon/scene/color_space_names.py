@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""Rename the color spaces of the add-on's images and nodes in a file that was made under another OpenColorIO config.
+
+Blender takes a name that the present config lacks for sRGB, without a word.
+"""
+
+from __future__ import annotations
+
+import bpy
+
+from .color_management import data_space
+from .look_group import srgb
+from .node_group import linear_rec709, working_space
+from .node_links import LOOK, PLATE
+
+
+def rename_color_spaces(images: list[bpy.types.Image | bpy.types.MovieClip]) -> None:
+    """Take images for data, and give all Convert Colorspace nodes of the add-on the names of the present config.
+
+    Raise ConfigError if it lacks a space.
+    """
+    for image in images:
+        image.colorspace_settings.name = data_space()
+    linear, working = linear_rec709(), working_space()
+    for group in bpy.data.node_groups:
+        if PLATE in group:
+            _convert(group, (linear, working))
+        elif LOOK in group:
+            _convert(group, (working, linear), (srgb(), working))
+
+
+def _convert(group: bpy.types.NodeTree, *conversions: tuple[str, str]) -> None:
+    """Set source and target of the Convert Colorspace nodes of a group, in the order in which they were made."""
+    nodes = [node for node in group.nodes if node.bl_idname == "CompositorNodeConvertColorSpace"]
+    for node, (source, target) in zip(nodes, conversions, strict=True):
+        node.from_color_space, node.to_color_space = source, target
