@@ -46,11 +46,11 @@ def exists(root, name):
         path = root.joinpath(*parts[:size])
         source = next((file for file in (path / "__init__.py", path.with_suffix(".py")) if file.is_file()), None)
         if source:
-            return is_defined(ast.parse(source.read_text(encoding="utf-8")).body, parts[size:])
+            return is_defined(root, ast.parse(source.read_text(encoding="utf-8")).body, parts[size:])
     return False
 
 
-def is_defined(body, names):
+def is_defined(root, body, names):
     """Whether statements define `names`, each within the one before it."""
     if not names:
         return True
@@ -58,17 +58,17 @@ def is_defined(body, names):
     for statement in body:
         match statement:
             case ast.ClassDef(name=name, body=inner) if name == first:
-                return is_defined(inner, rest)
+                return is_defined(root, inner, rest)
             case ast.FunctionDef(name=name) if name == first:
                 return not rest
             case ast.Assign(targets=targets) if first in names_in(*targets):
                 return not rest
             case ast.AnnAssign(target=target) if first in names_in(target):
                 return not rest
-            case ast.If(body=inner) if is_defined(inner, names):  # names that are imported when they are used
+            case ast.If(body=inner) if is_defined(root, inner, names):  # names that are imported when they are used
                 return True
-            case ast.ImportFrom(names=imported) if first in {alias.asname or alias.name for alias in imported}:
-                return not rest
+            case ast.ImportFrom(names=aliases, module=module) if first in {each.asname or each.name for each in aliases}:
+                return not rest or exists(root, ".".join((module, *names)))
     return False
 
 
