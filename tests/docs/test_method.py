@@ -67,7 +67,7 @@ def is_defined(root, body, names):
                 return not rest
             case ast.If(body=inner) if is_defined(root, inner, names):  # names that are imported when they are used
                 return True
-            case ast.ImportFrom(names=aliases, module=module) if first in {each.asname or each.name for each in aliases}:
+            case ast.ImportFrom(names=aliases, module=module) if first in {alias.name for alias in aliases}:
                 return not rest or exists(root, ".".join((module, *names)))
     return False
 
