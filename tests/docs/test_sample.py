@@ -1,4 +1,4 @@
-"""The pictures and the sample in docs/ are what the code makes."""
+"""The sample and the pictures in docs/ are what the code makes."""
 
 import importlib.util
 import re
@@ -6,9 +6,12 @@ import re
 import numpy as np
 import pytest
 
+from crfnet.defaults import GRAY_BRIGHTNESS
+from crfnet.luts.exposure import anchored_exposure
 from crfnet.luts.files import WRITERS
+from crfnet_core.response.curve import ResponseCurve
 
-#: A number that is no part of a word, such as the digest of a model.
+#: A number that is not a part of a word, such as the digest of a model.
 NUMBER = re.compile(r"(?<![\w.+-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.])")
 
 #: The id of a CLF file is a digest of its table.
@@ -21,28 +24,17 @@ SAME = 2e-4
 LARGEST_PICTURE = 1_200_000
 
 
-def load(root, name):
-    spec = importlib.util.spec_from_file_location(name, root / "docs" / f"{name}.py")
-    module = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(module)
-    return module
-
-
 @pytest.fixture(scope="module")
-def make_sample(root):
-    return load(root, "make_sample")
+def script(root):
+    """Load a script of docs/ by its name."""
 
+    def load(name):
+        spec = importlib.util.spec_from_file_location(name, root / "docs" / f"{name}.py")
+        module = importlib.util.module_from_spec(spec)
+        spec.loader.exec_module(module)
+        return module
 
-@pytest.fixture(scope="module")
-def written(make_sample, tmp_path_factory):
-    folder = tmp_path_factory.mktemp("sample")
-    make_sample.make_sample(folder)
-    return folder
-
-
-@pytest.fixture(scope="module")
-def sample(root):
-    return root / "docs" / "sample"
+    return load
 
 
 def text_and_numbers(path):
@@ -51,44 +43,49 @@ def text_and_numbers(path):
     return NUMBER.sub("#", text), np.array(NUMBER.findall(text), dtype=np.float64)
 
 
-def test_the_sample_holds_what_the_command_writes(sample, written):
-    assert {path.name for path in written.iterdir()} == {path.name for path in sample.iterdir()} - {"README.md"}
-
-
-def test_the_config_is_byte_for_byte_the_sample(sample, written):
-    assert (written / "config.ocio").read_bytes() == (sample / "config.ocio").read_bytes()
-
-
-@pytest.mark.parametrize("name", [*(f"plate{suffix}" for suffix in WRITERS), "plate.json"])
-def test_luts_and_figures_are_the_sample_but_for_the_last_digits(sample, written, name):
-    text, numbers = text_and_numbers(written / name)
-    sample_text, sample_numbers = text_and_numbers(sample / name)
-    assert text == sample_text
-    np.testing.assert_allclose(numbers, sample_numbers, rtol=SAME, atol=SAME)
-
-
-def test_the_sheet_is_a_picture_of_half_the_size(sample, written):
+def test_the_sample_is_what_the_command_writes(root, script, tmp_path):
+    """Byte for byte the config; LUTs and figures but for the last digits; the picture by its size."""
     image = pytest.importorskip("matplotlib.image")
-    assert image.imread(written / "plate_sheet.png").shape == image.imread(sample / "plate_sheet.png").shape
-    assert (sample / "plate_sheet.png").stat().st_size < LARGEST_PICTURE
+    sample = root / "docs" / "sample"
+    script("make_sample").make_sample(tmp_path)
+    assert {path.name for path in tmp_path.iterdir()} == {path.name for path in sample.iterdir()} - {"README.md"}
+    assert (tmp_path / "config.ocio").read_bytes() == (sample / "config.ocio").read_bytes()
+    for name in (*(f"plate{suffix}" for suffix in WRITERS), "plate.json"):
+        (text, numbers), (sample_text, sample_numbers) = map(text_and_numbers, (tmp_path / name, sample / name))
+        assert text == sample_text
+        np.testing.assert_allclose(numbers, sample_numbers, rtol=SAME, atol=SAME)
+    assert image.imread(tmp_path / "plate_sheet.png").shape == image.imread(sample / "plate_sheet.png").shape
 
 
-def test_halving_takes_the_mean_of_four_pixels(make_sample):
-    picture = np.arange(16.0).reshape(4, 4, 1)
-    np.testing.assert_array_equal(make_sample.halved(picture)[..., 0], [[2.5, 4.5], [10.5, 12.5]])
+@pytest.mark.parametrize(
+    ("name", "draw", "picture"),
+    [
+        ("make_picture", "draw_picture", "picture.png"),
+        ("make_exposure_picture", "draw_exposure_picture", "pictures/exposure.jpg"),
+    ],
+)
+def test_pictures_are_drawn(root, script, tmp_path, name, draw, picture):
+    pytest.importorskip("matplotlib")
+    getattr(script(name), draw)(tmp_path / picture)
+    assert all(20_000 < (folder / picture).stat().st_size < LARGEST_PICTURE for folder in (tmp_path, root / "docs"))
 
 
-def test_the_picture_of_the_readme_is_drawn(root, tmp_path):
-    load(root, "make_picture").draw_picture(tmp_path / "picture.png")
-    assert 100_000 < (tmp_path / "picture.png").stat().st_size < LARGEST_PICTURE
-    assert (root / "docs" / "picture.png").stat().st_size < LARGEST_PICTURE
-
-
-def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(root):
-    blurred = load(root, "make_picture").disk_blurred
+def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(script):
+    blurred = script("make_picture").disk_blurred
     np.testing.assert_allclose(blurred(np.full((5, 6, 3), 0.3), 2.0), 0.3)
     point = np.zeros((9, 9, 1))
     point[4, 4] = 1
     spread = blurred(point, 2.0)[..., 0]
     assert spread.sum() == pytest.approx(1)
     assert spread[4, 4] == spread[4, 5] > spread[4, 6] > spread[6, 6] == 0
+
+
+@pytest.mark.parametrize(("gray", "is_same"), [(None, False), (GRAY_BRIGHTNESS, True)])
+def test_photographed_and_rendered_cards_are_equal_with_the_anchor_only(script, gray, is_same):
+    exposure = script("make_exposure_picture")
+    curve = ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 0.37)
+    light = curve.inverse(exposure.with_gray_card(np.full((200, 500, 3), 0.5, np.float32)))
+    shown = exposure.displayed(exposure.with_rendered_objects(light * 2 ** anchored_exposure(curve, gray=gray)))
+    photographed, rendered = (shown[-40, exposure.left_of(place) + 10] for place in (0, 1))
+    np.testing.assert_allclose(rendered, 0.349, atol=0.002)
+    assert (np.abs(photographed - rendered).max() < 1e-4) == is_same

@@ -35,8 +35,8 @@ def test_the_devices_are_those_with_a_family_of_their_own():
     assert set(defaults.DEVICES) == (set(Device) & set(Family)) | {"other"}
 
 
-def test_the_usage_states_the_limits_of_the_verdicts(root):
-    usage = (root / "docs" / "USAGE.md").read_text(encoding="utf-8")
+def test_the_reference_states_the_limits_of_the_verdicts(root):
+    usage = (root / "docs" / "REFERENCE.md").read_text(encoding="utf-8")
     percent = brightness_percent(verdict.GOOD_ERROR)
     assert f"| good | {verdict.GOOD_STOPS:.2f} stop | {verdict.GOOD_ERROR:g} ({percent:.1f} %" in usage
     assert f"| usable | {verdict.USABLE_STOPS:.2f} stop |" in usage
