@@ -21,7 +21,7 @@ class CRFNetError(Exception):
     code : str
         Names the problem: a key of `sentences`.
     **facts : object
-        What the sentence names, such as the path, the value found and the value needed.
+        The names in the sentence, such as the path, the value found and the value needed.
     """
 
     #: The sentences of all codes; a package that adds codes overrides it with its own table.
@@ -72,7 +72,7 @@ def filled(sentence: str, facts: Mapping[str, object]) -> str:
 
 
 class PhotoError(CRFNetError):
-    """A photograph that cannot be read or cannot be analyzed."""
+    """A photograph that cannot be read or analyzed."""
 
 
 class ModelError(CRFNetError):

@@ -55,7 +55,6 @@ SENTENCES: Mapping[str, str] = {
     "no_windows_asked": "{count} windows cannot be analyzed; ask for at least 1, usually {usual}",
     "smaller_than_window": "the photograph is {width} x {height} pixels; at least {least} x {least} are needed: give"
     " the original, never one scaled up",
-    "step_too_large": "a step of {step} pixels does not fit into {width} x {height} pixels; take 1 to {most}",
     # files
     "exists": "{path}: exists already; choose another name or ask to overwrite it",
     "folder_absent": "{path}: the folder {folder} does not exist; create it first",

@@ -120,8 +120,9 @@ class _Problem:
         self.slope_basis = np.diff(model.basis[::8], axis=0) * (STEPS / 8)
         self.slope_mean = np.diff(model.mean[::8]) * (STEPS / 8)
         self.offset_precision = np.linalg.inv(_offset_covariance(self.channels))
-        self.trend = np.zeros((self.frames, self.channels))
-        self.trend[:, self.channels // 2] = (exposures - exposures.mean()) / (np.ptp(exposures) ** 2 * self.frames / 12)
+        trend = np.zeros((self.frames, self.channels))
+        trend[:, self.channels // 2] = (exposures - exposures.mean()) / (np.ptp(exposures) ** 2 * self.frames / 12)
+        self.trend = trend.ravel() / TREND_DEVIATION
 
     def linearize(self, state: _State) -> _System:
         """Return cost, residuals and normal equations."""
@@ -138,14 +139,12 @@ class _Problem:
         at = size + frame[None] * self.channels + seen.channel[:, None]
         jacobian[np.arange(len(residual))[:, None], frame[None], at] = curve.slope
         weighted = (jacobian * weight[..., None]).reshape(-1, jacobian.shape[-1])
-        matrix = weighted.T @ jacobian.reshape(-1, jacobian.shape[-1])
-        right = weighted.T @ residual.ravel()
-        prior_cost = self._add_priors(state, matrix, right)
+        prior_cost, prior_matrix, prior_right = self._priors(state)
         return _System(
             cost=cost + prior_cost,
             residual=residual,
-            matrix=matrix,
-            right=right,
+            matrix=weighted.T @ jacobian.reshape(-1, jacobian.shape[-1]) + prior_matrix,
+            right=weighted.T @ residual.ravel() + prior_right,
             coupling=np.einsum("mt,mtp->mp", weight * curve.slope, jacobian),
             diagonal=(weight * curve.slope**2).sum(axis=1) + 1e-6,
             irradiance_right=(weight * curve.slope * residual).sum(axis=1),
@@ -180,52 +179,30 @@ class _Problem:
         is_too_dark = seen.is_white & (curve.brightness < white) & (log_exposed < HIGHEST)
         return residual, seen.is_used | is_too_dark
 
-    def _add_priors(self, state: _State, matrix: Float64Array, right: Float64Array) -> float:
-        """Add the priors to the normal equations of weights and offsets, and return their cost."""
-        size = len(state.weights)
-        of_weights, of_offsets = slice(size), slice(size, None)
-        return (
-            self._add_weight_prior(state.weights, matrix[of_weights, of_weights], right[of_weights])
-            + self._add_slope_prior(state.weights, matrix[of_weights, of_weights], right[of_weights])
-            + self._add_frame_priors(state.offsets, matrix[of_offsets, of_offsets], right[of_offsets])
-            + self._add_trend_prior(state.offsets, matrix[of_offsets, of_offsets], right[of_offsets])
-        )
+    def _priors(self, state: _State) -> tuple[float, Float64Array, Float64Array]:
+        """Return the cost of the priors of weights and offsets, and their normal equations, (P, P) and (P,)."""
+        weight_cost, weight_matrix, weight_right = self._weight_prior(state.weights)
+        offset_cost, offset_matrix, offset_right = self._offset_prior(state.offsets)
+        size, offsets = len(weight_right), len(offset_right)
+        matrix = np.block([[weight_matrix, np.zeros((size, offsets))], [np.zeros((offsets, size)), offset_matrix]])
+        return weight_cost + offset_cost, matrix, np.append(weight_right, offset_right)
 
-    def _add_weight_prior(self, weights: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
-        """Add that the weights are normal: see `CurveModel.precision`."""
-        matrix += self.model.precision
-        right -= self.model.precision @ weights
-        return float(weights @ self.model.precision @ weights)
-
-    def _add_slope_prior(self, weights: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
-        """Add a penalty on slopes below `LEAST_SLOPE`."""
+    def _weight_prior(self, weights: Float64Array) -> tuple[float, Float64Array, Float64Array]:
+        """Return the prior of the weights: they are normal, and slopes below `LEAST_SLOPE` cost."""
         slope = self.slope_mean + self.slope_basis @ weights
         is_low = slope < LEAST_SLOPE
         rows = self.slope_basis[is_low] / SLOPE_DEVIATION
         lacking = (LEAST_SLOPE - slope[is_low]) / SLOPE_DEVIATION
-        matrix += rows.T @ rows
-        right += rows.T @ lacking
-        return float(lacking @ lacking)
+        pull = self.model.precision @ weights
+        return float(weights @ pull + lacking @ lacking), self.model.precision + rows.T @ rows, rows.T @ lacking - pull
 
-    def _add_frame_priors(self, offsets: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
-        """Add that the offsets of a frame are normal, but for Huber's tails: see `_offset_covariance`."""
-        cost = 0.0
-        for frame, offset in enumerate(offsets):
-            part = slice(frame * self.channels, (frame + 1) * self.channels)
-            distance = np.sqrt(np.array(offset @ self.offset_precision @ offset))
-            weight = float(_huber_weight(distance))
-            matrix[part, part] += weight * self.offset_precision
-            right[part] -= weight * self.offset_precision @ offset
-            cost += float(_huber_cost(distance))
-        return cost
-
-    def _add_trend_prior(self, offsets: Float64Array, matrix: Float64Array, right: Float64Array) -> float:
-        """Add that green's offsets have no trend over the exposures: see `TREND_DEVIATION`."""
-        trend = self.trend.ravel() / TREND_DEVIATION
-        excess = float(trend @ offsets.ravel())
-        matrix += np.outer(trend, trend)
-        right -= trend * excess
-        return excess**2
+    def _offset_prior(self, offsets: Float64Array) -> tuple[float, Float64Array, Float64Array]:
+        """Return the prior of the offsets: normal in each frame but for Huber's tails, and without a trend in green."""
+        distance = np.sqrt(np.einsum("tc,cd,td->t", offsets, self.offset_precision, offsets))
+        frames = np.kron(np.diag(_huber_weight(distance)), self.offset_precision)
+        excess = float(self.trend @ offsets.ravel())
+        cost = float(_huber_cost(distance).sum()) + excess**2
+        return cost, frames + np.outer(self.trend, self.trend), -frames @ offsets.ravel() - self.trend * excess
 
 
 def _offset_covariance(channels: int) -> Float64Array:

@@ -129,14 +129,14 @@ def _window_estimates(
         if not one.photograph.windows:
             continue
         agrees = pooling.agreeing(one.window_evidences).tolist()
-        for window, evidence, kept in zip(one.photograph.windows, one.window_evidences, agrees, strict=True):
+        for window, evidence, is_kept in zip(one.photograph.windows, one.window_evidences, agrees, strict=True):
             alone = Posterior.from_evidences(bank, prior, [evidence])
-            estimates.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, kept))
+            estimates.append(WindowEstimate(number, window, alone.mean_weights, alone.expected_distance, is_kept))
     return tuple(estimates)
 
 
 def _doubts(photographs: Sequence[CutPhotograph], origins: Sequence[FileOrigin]) -> list[Notice]:
-    """Return why an estimate cannot be good; the expected errors do not show it."""
+    """Return the reasons that keep an estimate from being good; the expected errors do not show them."""
     doubts, cameras = [], list(dict.fromkeys(origin.camera for origin in origins if origin.camera))
     if len(cameras) > 1:
         doubts.append(Notice("several_cameras", {"cameras": ", ".join(cameras)}))
@@ -157,7 +157,7 @@ def _warnings(
     recognition: Recognition | None,
     doubts: Sequence[Notice],
 ) -> tuple[Notice, ...]:
-    """Return what makes a poor estimate likely."""
+    """Return the reasons to expect a poor estimate."""
     warnings = [Notice("recognized", {"reason": recognition.reason})] if recognition else []
     warnings += [*editor_warnings(origins), *doubts]
     windows = [window for photograph in photographs for window in photograph.windows]

@@ -15,7 +15,7 @@ class AnalysisOptions:
     Parameters
     ----------
     use_metadata : bool
-        Whether what the files say about their making counts: see `crfnet_core.photograph.metadata`.
+        Whether the files' metadata counts: see `crfnet_core.photograph.metadata`.
     device : Device, optional
         The kind of camera, if the user states it; it overrides the files. UNKNOWN is a camera of another kind.
     windows : int

@@ -48,7 +48,7 @@ class CameraAnswer:
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any] | None) -> CameraAnswer | None:
-        """Return what `dataclasses.asdict` made of it, also after JSON; None for an estimate of photographs alone."""
+        """Return the answer in a document; None for an estimate of photographs alone."""
         return None if entry is None else cls(*(entry[field.name] for field in dataclasses.fields(cls)))
 
 
@@ -79,7 +79,7 @@ class ResponseEstimate(EqualByFields):
     origins : tuple of FileOrigin
         How each photograph was made, by its metadata; empty if metadata is ignored.
     warnings : tuple of Notice
-        What makes a poor estimate likely.
+        Reasons to expect a poor estimate.
     model : str
         Name and hash of the network.
     photos : tuple of str

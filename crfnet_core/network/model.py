@@ -6,7 +6,7 @@ import hashlib
 import json
 from dataclasses import asdict, dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, get_origin, get_type_hints
 
 from crfnet_core.errors import ModelError
 from crfnet_core.files import atomic_write_text, read_bytes, read_json
@@ -129,17 +129,4 @@ def _read_object(path: Path) -> dict[str, Any]:
 
 
 #: Entry of model.json -> its type.
-_KINDS: dict[str, type] = {
-    "name": str,
-    "sha256": str,
-    "basis": str,
-    "components": int,
-    "window_size": int,
-    "input_name": str,
-    "output_names": list,
-    "normalization": str,
-    "opset": int,
-    "training_commit": str,
-    "training": dict,
-    "accuracy": dict,
-}
+_KINDS = {name: get_origin(kind) or kind for name, kind in get_type_hints(ModelConfig).items()} | {"output_names": list}

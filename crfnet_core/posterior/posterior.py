@@ -47,9 +47,11 @@ class Posterior(EqualByFields):
             log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
             ordinary = bank.ordinary
             before = logarithms[ordinary]
-            average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
+            # Among ordinary responses the evidence counts with the prior's exponent; their total probability stays.
             after = before + prior.evidence * likelihoods[ordinary]
             logarithms[ordinary] = after + _log_sum(before) - _log_sum(after)
+            # Unusual families gain on the average of ordinary responses, as far as lookalikes allow.
+            average = _log_sum(before + likelihoods[ordinary]) - _log_sum(before)
             gains = _bounded(log_odds - average, prior.lookalikes)
             for family, gain in zip(UNUSUAL, gains, strict=True):
                 logarithms[bank.members(family)] += gain

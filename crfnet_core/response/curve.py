@@ -204,20 +204,20 @@ class _PiecewiseLinear:
 
     def __call__(self, arguments: ArrayLike) -> Any:
         """Return the function at each argument, clipped to [0, 1], in the shape of `arguments`."""
-        given = np.asarray(arguments)
-        if self._most < np.inf and (largest := float(np.fmax.reduce(given, axis=None, initial=0))) > self._most:
+        values = np.asarray(arguments)
+        if self._most < np.inf and (largest := float(np.fmax.reduce(values, axis=None, initial=0))) > self._most:
             raise CurveError("brightness_codes", found=largest)
-        if given.dtype.kind in "iu" and given.size and given.max() > 1:
-            raise CurveError("brightness_codes", found=int(given.max()))
-        kind = np.float32 if given.dtype.kind == "f" and given.dtype.itemsize <= 4 else np.float64
-        if given.size <= BLOCK:
-            return kind(np.interp(given.astype(np.float64), self._knots, self._values))
-        found = np.empty(given.shape, kind)
-        source, target = given.reshape(-1), found.reshape(-1)
-        for start in range(0, given.size, BLOCK):
+        if values.dtype.kind in "iu" and values.size and values.max() > 1:
+            raise CurveError("brightness_codes", found=int(values.max()))
+        kind = np.float32 if values.dtype.kind == "f" and values.dtype.itemsize <= 4 else np.float64
+        if values.size <= BLOCK:
+            return kind(np.interp(values.astype(np.float64), self._knots, self._values))
+        result = np.empty(values.shape, kind)
+        source, target = values.reshape(-1), result.reshape(-1)
+        for start in range(0, values.size, BLOCK):
             block = np.s_[start : start + BLOCK]
             target[block] = self._evaluated(source[block].astype(np.float64))
-        return found
+        return result
 
     @cached_property
     def _table(self) -> tuple[IndexArray, Float64Array, Float64Array, Float64Array, Float64Array]:
@@ -242,13 +242,13 @@ class _PiecewiseLinear:
             cells = (arguments * CELLS).astype(np.intp)
         index = first.take(cells, mode="clip")
         index += arguments >= following.take(index, mode="clip")
-        found = arguments - knots.take(index, mode="clip")
-        found *= slopes.take(index, mode="clip")
-        found += values.take(index, mode="clip")
-        if np.isnan(found.max()):
-            unknown = np.isnan(found)
-            found[unknown] = np.interp(arguments[unknown], self._knots, self._values)
-        return found
+        result = arguments - knots.take(index, mode="clip")
+        result *= slopes.take(index, mode="clip")
+        result += values.take(index, mode="clip")
+        if np.isnan(result.max()):
+            unknown = np.isnan(result)
+            result[unknown] = np.interp(arguments[unknown], self._knots, self._values)
+        return result
 
 
 def nearest_increasing(samples: ArrayLike) -> Float64Array:

@@ -83,22 +83,16 @@ def filled_codes(codes: Uint8Array) -> int:
 
 
 def select_windows(
-    pixels: Pixels,
-    *,
-    count: int = WINDOWS_PER_PHOTOGRAPH,
-    seed: int = 0,
-    step: int | None = None,
-    coverage: int = FULL_COVERAGE,
+    pixels: Pixels, *, count: int = WINDOWS_PER_PHOTOGRAPH, seed: int = 0, coverage: int = FULL_COVERAGE
 ) -> tuple[Window, ...]:
     """Return the windows of a photograph to analyze (CRF-net paper, Sec. 3.2).
 
     Even positions are drawn at random. A window is taken if its 256-bin histogram over all channels has at least
     `coverage` bins filled; 0 takes the first positions. If `POSITIONS_TRIED` positions do not give enough of them, the
     best-covering others fill the number: look at `Window.covers_range`. The same seed gives the same windows; there are
-    fewer than `count` only if the photograph has fewer positions. `step` is `sampling_step` by default.
+    fewer than `count` only if the photograph has fewer positions.
 
-    Raise PhotoError if the photograph is smaller than a window of this step, `count` or `step` is below 1, or `seed` is
-    negative.
+    Raise PhotoError if the photograph is smaller than a window, `count` is below 1, or `seed` is negative.
     """
     if count < 1:
         raise PhotoError("no_windows_asked", count=count, usual=WINDOWS_PER_PHOTOGRAPH)
@@ -107,10 +101,7 @@ def select_windows(
     height, width = pixels.shape[:2]
     if min(height, width) < WINDOW_SIZE:
         raise PhotoError("smaller_than_window", width=width, height=height, least=WINDOW_SIZE)
-    step = sampling_step(height, width) if step is None else step
-    if step < 1 or window_extent(step) > min(height, width):
-        most = (min(height, width) - 1) // (WINDOW_SIZE - 1)
-        raise PhotoError("step_too_large", step=step, width=width, height=height, most=most)
+    step = sampling_step(height, width)
     chosen: list[Window] = []
     others: list[Window] = []
     for x, y in _positions(height, width, step, seed):

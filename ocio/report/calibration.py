@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 from typing import Any
 
@@ -16,25 +15,17 @@ from crfnet_core.types import plain_values
 from ..output_files import OutputFiles
 from .documents import file_names, rounded
 
-#: Largest change of the white balance between frames, in stops, that is not worth a line.
-STILL_BALANCE = 0.05
-
 
 def calibration_lines(calibration: Calibration) -> list[str]:
     """Return the measurement and how far to trust it, in plain words: one line each."""
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
-    drift = _balance_drift(calibration)
     return [
         f"{_frames_words(calibration)}.",
         f"The response is measured: the shape of the linear light to {shape:.2f} stop, its scale relative to white to"
         f" {scale:.2f} stop (standard deviations); {white}.",
         f"The curve explains the frames to {calibration.residual:.1f} of 255 codes (RMS); their exposures were read as"
         f" {calibration.labels} and are {_largest_offset(calibration):.2f} stop from that at most.",
-        *(
-            [f"The white balance changes by up to {drift:.2f} stop between the frames; this was allowed for."]
-            * (drift > STILL_BALANCE)
-        ),
         *(f"Warning: {warning}." for warning in calibration.warnings),
     ]
 
@@ -133,10 +124,3 @@ def _largest_offset(calibration: Calibration) -> float:
     """Return by how many stops green in the used frames is from their labels at most."""
     offsets = [float(frame.offsets[len(frame.offsets) // 2]) for frame in calibration.frames if frame.is_used]
     return max(map(abs, offsets))
-
-
-def _balance_drift(calibration: Calibration) -> float:
-    """Return by how many stops red or blue change relative to green, between the used frames."""
-    offsets = np.stack([frame.offsets for frame in calibration.frames if frame.is_used])
-    drift = float(np.ptp(offsets - offsets[:, offsets.shape[1] // 2, None], axis=0).max())
-    return drift if math.isfinite(drift) else 0.0

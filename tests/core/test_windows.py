@@ -25,16 +25,16 @@ def half_flat():
 
 
 def test_windows_that_cover_the_range_are_preferred(half_flat):
-    windows = select_windows(half_flat, step=1)
+    windows = select_windows(half_flat)
     assert len(windows) == 10
     assert all(window.covers_range for window in windows)
     assert all(window.x + window.extent > 500 for window in windows)
 
 
 def test_any_window_will_do_when_no_coverage_is_asked_for(half_flat):
-    windows = select_windows(half_flat, step=1, count=20, coverage=0)
+    windows = select_windows(half_flat, count=20, coverage=0)
     assert not all(window.covers_range for window in windows)
-    assert windows[:3] == select_windows(half_flat, step=1, count=3, coverage=0)
+    assert windows[:3] == select_windows(half_flat, count=3, coverage=0)
 
 
 def test_filled_counts_the_bins_of_all_channels_together():
@@ -70,14 +70,6 @@ def test_less_than_one_window_is_refused(count):
     with pytest.raises(PhotoError) as caught:
         select_windows(noise(300, 300), count=count)
     assert caught.value.code == "no_windows_asked"
-
-
-@pytest.mark.parametrize("step", [3, 0, -1])
-def test_a_step_that_does_not_fit_is_refused(step):
-    with pytest.raises(PhotoError) as caught:
-        select_windows(noise(453, 500), step=step)
-    assert (caught.value.code, caught.value.facts["most"]) == ("step_too_large", 2)
-    assert {window.extent for window in select_windows(noise(453, 500), step=2)} == {453}
 
 
 @pytest.mark.parametrize(
