@@ -19,9 +19,7 @@ from crfnet_core.colorimetry import (
     REC2020,
     Primaries,
     adaptation,
-    chromaticity_of,
     conversion_matrix,
-    rgb_to_xyz,
     xyz_of,
 )
 from crfnet_core.photograph.image_io import read_photo
@@ -79,22 +77,11 @@ class TestMatrices:
         expected = colour.matrix_RGB_to_RGB(*spaces, chromatic_adaptation_transform="Bradford")
         np.testing.assert_allclose(conversion_matrix(NAMES[source], NAMES[target]), expected, atol=1e-9)
 
-    @pytest.mark.parametrize(("source", "target"), [*itertools.permutations(NAMES.values(), 2)])
-    def test_white_stays_white(self, source, target):
-        np.testing.assert_allclose(conversion_matrix(source, target) @ np.ones(3), 1, atol=1e-12)
-
     def test_a_conversion_to_itself_is_exact(self):
         np.testing.assert_array_equal(conversion_matrix(PROPHOTO, PROPHOTO), np.eye(3))
 
     def test_adaptation_moves_the_white(self):
         np.testing.assert_allclose(adaptation(D65, D50) @ xyz_of(D65), xyz_of(D50), atol=1e-12)
-
-    def test_a_chromaticity_comes_back(self):
-        assert chromaticity_of(3 * xyz_of((0.3, 0.6))) == pytest.approx((0.3, 0.6))
-
-    def test_primaries_on_a_line_are_refused(self):
-        with pytest.raises(np.linalg.LinAlgError):
-            rgb_to_xyz((0.1, 0.1), (0.2, 0.2), (0.3, 0.3), D65)
 
 
 class TestIccProfiles:
@@ -142,17 +129,9 @@ class TestIccProfiles:
     def test_what_gives_no_primaries_is_unknown(self, icc):
         assert read_icc(icc).primaries is None
 
-    def test_a_gray_profile_says_nothing_of_primaries(self):
-        assert read_icc(profile({}, color=b"GRAY")) == ColorTags()
-
-    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp"])
-    def test_other_bytes_are_no_profile(self, icc):
+    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp", profile({}, color=b"GRAY")])
+    def test_gray_profiles_and_other_bytes_say_nothing(self, icc):
         assert read_icc(icc) == ColorTags()
-
-    def test_any_part_of_a_profile_is_read_without_an_error(self):
-        whole = matrix_profile(DISPLAY_P3)
-        for length in range(len(whole)):
-            read_icc(whole[:length])
 
     def test_damage_anywhere_in_a_profile_is_no_error(self):
         rng = np.random.default_rng(0)
@@ -161,6 +140,7 @@ class TestIccProfiles:
             damaged = whole.copy()
             damaged[rng.integers(0, len(whole), 4)] = rng.integers(0, 256, 4)
             read_icc(damaged.tobytes())
+            read_icc(damaged.tobytes()[: rng.integers(0, len(whole))])
 
     @pytest.mark.parametrize("version", [2, 4])
     @pytest.mark.parametrize(
@@ -227,9 +207,6 @@ class TestFiles:
         for length in range(0, len(whole) - 8, 3):
             header = read_jpeg_header(with_jpeg_segment(content, 0xE1, whole[:length]))
             assert (header.interop_index, header.has_jfif) == ("", True)
-
-    def test_a_file_without_tags_says_nothing(self, tmp_path):
-        assert self.tags(write_image(tmp_path / "a.jpg", GRAY)) == ColorTags()
 
     def test_a_profile_may_hold_cicp(self, tmp_path):
         icc = matrix_profile(REC2020, cicp=b"cicp" + bytes(4) + bytes([9, 16, 0, 1]))

@@ -4,7 +4,6 @@ import io
 import struct
 import subprocess
 import sys
-import warnings
 from pathlib import Path
 
 import numpy as np
@@ -28,30 +27,30 @@ def widened(codes, bits):
     return np.round(np.asarray(codes) * (65535 / (2**bits - 1))).astype(np.uint16)
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx"])
+FORMATS = {
+    **{"a.png": "PNG", "a.tif": "TIFF", "a.webp": "WebP", "a.dpx": "DPX", "a.bmp": "BMP", "a.tga": "TGA"},
+    **{"a.jp2": "JPEG 2000", "a.j2k": "JPEG 2000", "a.jxl": "JPEG XL"},
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
 def test_8_bit_codes_over_255(tmp_path, name):
-    photo = read_photo(write_image(tmp_path / name, CODES8, Compression="lossless"))
+    codes = np.tile(CODES8, (16, 16, 1))  # JPEG 2000 and JPEG XL are not written any smaller
+    compression = "jpegxl:100" if name == "a.jxl" else "lossless"
+    photo = read_photo(write_image(tmp_path / name, codes, compression=compression))
     assert photo.pixels.dtype == np.float32
     assert photo.pixels.flags.c_contiguous
-    assert photo.bit_depth == 8
-    assert not photo.is_gray
-    assert photo.path == tmp_path / name
-    np.testing.assert_array_equal(photo.pixels, (CODES8 / 255).astype(np.float32))
+    assert (photo.bit_depth, photo.is_gray, photo.path) == (8, False, tmp_path / name)
+    assert photo.metadata.file_format == FORMATS[name]
+    np.testing.assert_array_equal(photo.pixels, (codes / 255).astype(np.float32))
 
 
-def test_all_8_bit_codes_are_the_nearest_float(tmp_path):
-    ramp = np.repeat(np.arange(256, dtype=np.uint8).reshape(16, 16, 1), 3, axis=2)
-    pixels = read_photo(write_image(tmp_path / "a.png", ramp)).pixels
-    np.testing.assert_array_equal(pixels[..., 0].ravel(), (np.arange(256) / 255).astype(np.float32))
-    assert pixels.min() == 0
-    assert pixels.max() == 1
-
-
-@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.dpx"])
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.dpx", "a.jxl"])
 def test_16_bit_codes_over_65535(tmp_path, name):
-    photo = read_photo(write_image(tmp_path / name, CODES16))
+    codes = np.tile(CODES16, (16, 16, 1))
+    photo = read_photo(write_image(tmp_path / name, codes, compression="jpegxl:100" if name == "a.jxl" else "none"))
     assert photo.bit_depth == 16
-    np.testing.assert_array_equal(photo.pixels, (CODES16 / 65535).astype(np.float32))
+    np.testing.assert_array_equal(photo.pixels, (codes / 65535).astype(np.float32))
 
 
 @pytest.mark.parametrize(("name", "bits"), [("a.dpx", 10), ("a.dpx", 12), ("a.tif", 10), ("a.tif", 12)])
@@ -130,12 +129,6 @@ def test_unassociated_alpha_is_dropped_and_the_codes_are_kept(tmp_path, name):
     assert values.metadata.alpha == "straight"
 
 
-def test_opaque_webp_with_alpha_keeps_its_codes(tmp_path):
-    opaque = np.concatenate([CODES8, np.full((2, 2, 1), 255, np.uint8)], axis=2)
-    path = write_image(tmp_path / "a.webp", opaque, Compression="lossless", oiio__UnassociatedAlpha=1)
-    np.testing.assert_array_equal(read_photo(path).pixels, (CODES8 / 255).astype(np.float32))
-
-
 def test_associated_alpha_is_divided_out(tmp_path):
     stored = np.array([[[0, 0, 0, 0], [50, 100, 25, 100], [10, 20, 30, 255], [90, 0, 0, 80]]], np.uint8)
     photo = read_photo(write_image(tmp_path / "a.tif", stored))
@@ -163,10 +156,6 @@ def test_first_of_several_frames(tmp_path):
     path = write_image(tmp_path / "a.tif", CODES8, np.zeros_like(CODES8))
     assert oiio.ImageInput.open(str(path)).seek_subimage(1, 0)
     np.testing.assert_array_equal(read_codes(path).codes, CODES8)
-
-
-def test_one_pixel(tmp_path):
-    assert read_photo(write_image(tmp_path / "a.png", CODES8[:1, :1])).pixels.shape == (1, 1, 3)
 
 
 @pytest.mark.parametrize(("content", "name"), [("a.png", "b.jpg"), ("a.jpg", "b.png"), ("a.tif", "b")])
@@ -260,18 +249,3 @@ def test_some_pixels_are_those_of_all_pixels_before_and_after_these_are_computed
     assert photo.shape == photo.pixels.shape == (40, 30, 3)
     np.testing.assert_array_equal(before, photo.pixels[index])
     np.testing.assert_array_equal(photo[index], before)
-
-
-def test_other_metadata_leave_the_photograph_as_it_was(tmp_path):
-    photo = read_photo(write_image(tmp_path / "a.png", CODES8))
-    other = photo.with_metadata(None)
-    assert other.metadata is None
-    assert photo.metadata is not None
-    np.testing.assert_array_equal(other.pixels, photo.pixels)
-
-
-def test_reading_twice_gives_the_same(tmp_path):
-    path = write_image(tmp_path / "a.png", CODES8)
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        np.testing.assert_array_equal(read_photo(path).pixels, read_photo(path).pixels)
