@@ -28,7 +28,7 @@ def widened(codes, bits):
 
 
 FORMATS = {
-    **{"a.png": "PNG", "a.tif": "TIFF", "a.webp": "WebP", "a.dpx": "DPX", "a.bmp": "BMP", "a.tga": "TGA"},
+    **{"a.png": "PNG", "a.tif": "TIFF", "a.webp": "WebP", "a.dpx": "DPX", "a.bmp": "BMP"},
     **{"a.jp2": "JPEG 2000", "a.j2k": "JPEG 2000", "a.jxl": "JPEG XL"},
 }
 

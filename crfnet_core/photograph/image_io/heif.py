@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import tempfile
-import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -19,6 +18,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 from PIL import Image
+from PIL.AvifImagePlugin import AvifImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
@@ -117,13 +117,11 @@ def _heic(main: Any) -> _Picture:
 
 def _avif(path: Path, bit_depth: int) -> _Picture:
     """Return the picture of an AVIF file, turned upright."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # `check_size` has its own limit
-        with Image.open(path, formats=["AVIF"]) as image:
-            check_size(path, *image.size)
-            exif, info = Image.Exif(), dict(image.info)
-            exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
-            samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
+    with AvifImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+        check_size(path, *image.size)
+        exif, info = Image.Exif(), dict(image.info)
+        exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
+        samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
     turn = EXIF_TURNS.get(exif.get(_ORIENTATION, 1), UPRIGHT)
     return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), _segments(info))
 
