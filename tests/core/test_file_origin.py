@@ -8,6 +8,7 @@ from crfnet_core.photograph.metadata import Device, FileMetadata, FileOrigin, fi
 from crfnet_core.photograph.metadata.color_tags import profile_transfer
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_LUMA, scaled_table
 from crfnet_core.photograph.metadata.origin import ADOBE, picture_shape
+from crfnet_core.posterior import Family
 
 OWN_TABLE = (3,) * 64
 OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": OWN_TABLE, "file_format": "JPEG"}
@@ -163,7 +164,7 @@ def test_words(fields, words):
     assert origin(**fields).words == words
 
 
-def test_a_told_device_takes_the_place_of_the_files():
+def test_a_stated_device_takes_the_place_of_the_files():
     own = origin(**OWN_CAMERA, software="GIMP 2.8")
     told = with_stated_device(own, Device.PHONE)
     assert (told.device, told.camera, told.editor, told.is_told) == (Device.PHONE, own.camera, own.editor, True)
@@ -172,7 +173,7 @@ def test_a_told_device_takes_the_place_of_the_files():
     assert with_stated_device(own, Device.UNKNOWN).words == ("taken with a camera", *own.words[1:])
 
 
-def test_a_rendering_stays_one_whatever_is_told():
+def test_a_rendering_stays_one_whatever_is_stated():
     rendering = origin(renderer="Blender")
     assert with_stated_device(rendering, Device.CAMERA) == rendering
 
@@ -196,3 +197,12 @@ def test_dng_converter_keeps_the_cameras_picture():
 @pytest.mark.parametrize(("size", "is_scaled"), [((493, 328), True), ((640, 480), False), ((4000, 3001), False)])
 def test_a_program_that_scales_may_rewrite_the_size_in_exif(size, is_scaled):
     assert origin(**OWN_CAMERA, width=size[0], height=size[1], exif_size=size).is_scaled is is_scaled
+
+
+@pytest.mark.parametrize("use_metadata", [True, False])
+def test_a_stated_device_counts_in_the_estimate(estimate, plate, use_metadata):
+    stated, other = estimate(plate, device=Device.PHONE, use_metadata=use_metadata), estimate(plate)
+    assert (stated.origins[0].device, stated.origins[0].is_told) == (Device.PHONE, True)
+    assert (stated.origins[0].picture_shape == "16:9") is use_metadata
+    assert stated.families[Family.PHONE] > 1.2 * other.families[Family.PHONE]
+    assert stated.families[Family.CAMERA] < 0.2 * other.families[Family.CAMERA]

@@ -45,8 +45,7 @@ def test_exif_is_read(tmp_path, name):
     assert metadata.file_format == {"a.jpg": "JPEG", "a.png": "PNG", "a.tif": "TIFF"}[name]
 
 
-@pytest.mark.parametrize("subsampling", ["4:4:4", "4:2:2", "4:2:0"])
-@pytest.mark.parametrize("quality", [50, 75, 92])
+@pytest.mark.parametrize(("quality", "subsampling"), [(50, "4:4:4"), (75, "4:2:2"), (92, "4:2:0")])
 def test_tables_and_subsampling_of_the_ijg_library(tmp_path, quality, subsampling):
     path = tmp_path / "a.jpg"
     jpeg(path, Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)

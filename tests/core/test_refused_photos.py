@@ -2,7 +2,6 @@
 
 import os
 import struct
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,8 +13,7 @@ from crfnet_core.errors import PhotoError, one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS, read_photo
 from tests.helpers.crafted_files import jpeg, png, tiff, with_jpeg_size
 from tests.helpers.images import write_image
-
-ROOT = Path(__file__).parents[2]
+from tests.helpers.memory import memory_of_reading
 
 
 def refusal(path):
@@ -163,20 +161,9 @@ def test_bombs_take_little_memory(tmp_path):
     bombs = {**HUGE, "huge.jpg": with_jpeg_size(jpeg(tmp_path / "a.jpg", jpeg__progressive=1), 50000, 50000)}
     for name, content in bombs.items():
         (tmp_path / name).write_bytes(content)
-    names = [str(tmp_path / name) for name in bombs]
-    code = (
-        "import resource, sys\n"
-        "from crfnet_core.photograph.image_io import read_photo\n"
-        "from crfnet_core.errors import PhotoError\n"
-        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "for name in sys.argv[1:]:\n"
-        "    try:\n        read_photo(name)\n        sys.exit('was read')\n"
-        "    except PhotoError:\n        pass\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"
-    )
-    run = subprocess.run([sys.executable, "-c", code, *names], cwd=ROOT, capture_output=True, text=True, timeout=30)
-    assert run.returncode == 0, run.stderr
-    assert int(run.stdout) < 50_000, "kB beyond what the imports take"
+    size, is_read = memory_of_reading(*(tmp_path / name for name in bombs))
+    assert not is_read
+    assert size < 50_000, "kB"
 
 
 def test_unreadable_file(tmp_path, monkeypatch):

@@ -65,29 +65,12 @@ def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
 
 
 def with_gain_map(content, mark):
-    """Return a HEIC with one more box in front of its first, which says that there is a gain map."""
-    if mark == b"tmap":
-        size = struct.unpack(">I", content[:4])[0]
-        moved = size + 4
-        return _shifted(struct.pack(">I", moved) + content[4:size] + mark + content[size:], 4)
-    at = content.index(b"ipco") - 4
-    box = struct.pack(">I", 12 + len(mark) + 1) + b"auxC" + bytes(4) + mark + b"\0"
-    content = content[:at] + _grown(content[at:], b"ipco", len(box), box)
-    for name in (b"iprp", b"meta"):
-        at = content.index(name) - 4
-        content = (
-            content[:at]
-            + struct.pack(">I", struct.unpack(">I", content[at : at + 4])[0] + len(box))
-            + content[at + 4 :]
-        )
-    return _shifted(content, len(box))
-
-
-def _grown(content, name, by, box):
-    """Return a file's end that begins with a box, with another box at the end of this one."""
-    size = struct.unpack(">I", content[:4])[0]
-    assert content[4:8] == name
-    return struct.pack(">I", size + by) + content[4:size] + box + content[size:]
+    """Return a HEIC with one more box, which holds a mark, at the end of `meta`."""
+    at = content.index(b"meta") - 4
+    size = int.from_bytes(content[at : at + 4])
+    box = struct.pack(">I", 8 + len(mark)) + b"free" + mark
+    grown = struct.pack(">I", size + len(box)) + content[at + 4 : at + size] + box
+    return _shifted(content[:at] + grown + content[at + size :], len(box))
 
 
 def _shifted(content, by):
@@ -203,6 +186,14 @@ def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
     with pytest.raises(PhotoError, match="the type of an item is no text"):
         read_photo(tmp_path / "a.heic")
+
+
+def test_a_film_without_pictures_is_refused(heif, monkeypatch):
+    av = pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
+    monkeypatch.setattr(av.container.InputContainer, "decode", lambda *_, **__: iter(()), raising=False)
+    with pytest.raises(PhotoError) as caught:
+        read_photo(heif / "limited10.avif")
+    assert caught.value.code == "damaged"
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
