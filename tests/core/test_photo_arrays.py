@@ -4,6 +4,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_photo
@@ -83,7 +84,7 @@ def test_the_bit_depth_is_that_of_the_type(kind, bits):
     ],
 )
 def test_an_image_of_pillow_knows_its_order(mode, array):
-    image = pytest.importorskip("PIL.Image").fromarray(array, mode)
+    image = Image.fromarray(array, mode)
     gray = mode.startswith("L")
     np.testing.assert_array_equal(Photo.from_array(image).pixels, EXACT[..., [0, 0, 0] if gray else [0, 1, 2]])
 
@@ -91,9 +92,7 @@ def test_an_image_of_pillow_knows_its_order(mode, array):
 @pytest.mark.parametrize("byte_order", ["<", ">"])
 def test_an_image_of_pillow_with_16_bits(byte_order):
     codes = np.array([[0, 1, 300], [40000, 65534, 65535]], f"{byte_order}u2")
-    image = pytest.importorskip("PIL.Image").frombytes(
-        f"I;16{'B' if byte_order == '>' else ''}", (3, 2), codes.tobytes()
-    )
+    image = Image.frombytes(f"I;16{'B' if byte_order == '>' else ''}", (3, 2), codes.tobytes())
     photo = Photo.from_array(image, bit_depth=16)
     np.testing.assert_array_equal(photo.pixels[..., 1], (codes / 65535).astype(np.float32))
     assert code_of(image) == "array_without_bit_depth"
@@ -108,19 +107,19 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
     ],
 )
 def test_another_mode_of_pillow_is_refused(mode, code):
-    image = pytest.importorskip("PIL.Image").new(mode, (4, 4))
+    image = Image.new(mode, (4, 4))
     assert code_of(image) == code
 
 
 def test_an_order_that_contradicts_pillow_is_refused():
-    image = pytest.importorskip("PIL.Image").fromarray(CODES)
+    image = Image.fromarray(CODES)
     assert code_of(image, color_order="BGR") == "pillow_order_stated"
 
 
 def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
     path = write_image(tmp_path / "a.png", codes)
     expected = read_photo(path).pixels
-    image = pytest.importorskip("PIL.Image").open(path)
+    image = Image.open(path)
     np.testing.assert_array_equal(Photo.from_array(image).pixels, expected)
     cv2 = pytest.importorskip("cv2")
     np.testing.assert_array_equal(Photo.from_array(cv2.imread(str(path)), color_order="BGR").pixels, expected)
