@@ -34,7 +34,7 @@ def adaptation(source: Chromaticity, target: Chromaticity) -> Float64Array:
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
 
 
-#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and that of ACES ("D60", SMPTE ST 2065-1).
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and the white of ACES ("D60", SMPTE ST 2065-1).
 D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)

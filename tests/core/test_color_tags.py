@@ -1,4 +1,4 @@
-"""Primaries and matrices, judged by colour-science; what ICC profiles, CICP and EXIF say of them."""
+"""Primaries and matrices, judged by colour-science, and the tags of ICC profiles, CICP and EXIF."""
 
 import itertools
 import struct
@@ -62,7 +62,7 @@ class TestMatrices:
         np.testing.assert_allclose(corners(NAMES[name]), expected, atol=1e-4)
 
     @pytest.mark.parametrize("name", NAMES)
-    def test_rgb_to_xyz_is_the_normalised_primary_matrix(self, name):
+    def test_the_matrix_to_xyz_is_the_normalized_primary_matrix(self, name):
         primaries = NAMES[name]
         expected = colour.models.normalised_primary_matrix(corners(primaries)[:6], primaries.white)
         np.testing.assert_allclose(primaries.to_xyz(), expected, atol=1e-12)
@@ -97,20 +97,20 @@ class TestIccProfiles:
         assert nearest > 30 * SAME_COLORANTS
 
     def test_rounding_does_not_hide_them(self):
-        # The colourants of the sRGB profile of 1998, rounded to four digits.
+        # The colorants of the sRGB profile of 1998, rounded to four digits.
         columns = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
         tags = {f"{name}XYZ": numbers(b"XYZ ", xyz) for name, xyz in zip("rgb", columns, strict=True)}
         assert read_icc(matrix_profile(REC709, version=2, **tags)).primaries is REC709
 
     @pytest.mark.parametrize(("version", "chad"), [(2, False), (2, True), (4, True)])
     def test_others_are_found_under_their_own_white(self, version, chad):
-        found = read_icc(matrix_profile(OWN, version=version, states_adaptation=chad)).primaries
-        np.testing.assert_allclose(corners(found), corners(OWN), atol=2e-4)
-        assert (found.name, found.interop_id) == ("primaries of its own", "")
+        unnamed = read_icc(matrix_profile(OWN, version=version, states_adaptation=chad)).primaries
+        np.testing.assert_allclose(corners(unnamed), corners(OWN), atol=2e-4)
+        assert (unnamed.name, unnamed.interop_id) == ("primaries of its own", "")
 
     def test_without_a_word_on_adaptation_the_white_is_d50(self):
-        found = read_icc(matrix_profile(OWN, version=4, states_adaptation=False)).primaries
-        assert found.white == pytest.approx(D50, abs=2e-4)
+        unnamed = read_icc(matrix_profile(OWN, version=4, states_adaptation=False)).primaries
+        assert unnamed.white == pytest.approx(D50, abs=2e-4)
 
     @pytest.mark.parametrize(
         "icc",
@@ -170,7 +170,7 @@ class TestIccProfiles:
 
 
 class TestFiles:
-    """What is read of whole files."""
+    """The tags of whole files."""
 
     @staticmethod
     def tags(path):
@@ -191,8 +191,8 @@ class TestFiles:
 
     @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
     def test_exif_is_read(self, tmp_path, space, primaries):
-        found = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
-        assert (found.primaries, found.source) == (primaries, "EXIF" if primaries else "")
+        tags = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
+        assert (tags.primaries, tags.source) == (primaries, "EXIF" if primaries else "")
 
     @pytest.mark.parametrize("order", ["<", ">"])
     @pytest.mark.parametrize(("index", "primaries"), [(b"R03", ADOBE_RGB), (b"R98", REC709), (b"THM", None)])
@@ -237,9 +237,9 @@ class TestOpenExr:
         assert self.tags(chromaticities=primaries.corners.ravel().tolist()).primaries is primaries
 
     def test_others_are_taken_as_they_are(self):
-        found = self.tags(chromaticities=OWN.corners.ravel().tolist())
-        np.testing.assert_allclose(found.primaries.corners, OWN.corners, atol=1e-6)
-        assert found.source == "chromaticities"
+        tags = self.tags(chromaticities=OWN.corners.ravel().tolist())
+        np.testing.assert_allclose(tags.primaries.corners, OWN.corners, atol=1e-6)
+        assert tags.source == "chromaticities"
 
     @pytest.mark.parametrize("numbers", [[0.0] * 8, [0.3] * 8, [np.nan] * 8, [0.6, 0.3, 0.6, 0.3, 0.6, 0.3, 0.3, 0.3]])
     def test_no_triangle_says_nothing(self, numbers):

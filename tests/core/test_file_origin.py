@@ -1,4 +1,4 @@
-"""What follows from file metadata: the file's origin, in words too."""
+"""The origin of a file by its metadata, in words too."""
 
 from dataclasses import asdict
 
@@ -41,7 +41,7 @@ def test_shape_of_the_picture(width, height, shape):
     [
         (3504, 2336, OWN_CAMERA | {"exif_size": (3504, 2336)}, False),
         (2336, 3504, OWN_CAMERA | {"exif_size": (3504, 2336)}, False),  # turned
-        (1024, 768, OWN_CAMERA | {"exif_size": (1024, 768)}, False),  # the camera's own small size
+        (1024, 768, OWN_CAMERA | {"exif_size": (1024, 768)}, False),  # the camera's before small size
         (1280, 853, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),
         (324, 324, OWN_CAMERA | {"exif_size": (2160, 2160)}, True),
         (7008, 4672, OWN_CAMERA | {"exif_size": (3504, 2336)}, True),  # made larger
@@ -160,12 +160,17 @@ def test_words(fields, words):
 
 
 def test_a_stated_device_takes_the_place_of_the_files():
-    own = origin(**OWN_CAMERA, software="GIMP 2.8")
-    told = with_stated_device(own, Device.PHONE)
-    assert (told.device, told.camera, told.editor, told.is_told) == (Device.PHONE, own.camera, own.editor, True)
-    assert told.words == ("taken with a phone", *own.words[1:])
-    assert FileOrigin.from_dict(asdict(told)) == told
-    assert with_stated_device(own, Device.UNKNOWN).words == ("taken with a camera", *own.words[1:])
+    before = origin(**OWN_CAMERA, software="GIMP 2.8")
+    stated = with_stated_device(before, Device.PHONE)
+    assert (stated.device, stated.camera, stated.editor, stated.is_told) == (
+        Device.PHONE,
+        before.camera,
+        before.editor,
+        True,
+    )
+    assert stated.words == ("taken with a phone", *before.words[1:])
+    assert FileOrigin.from_dict(asdict(stated)) == stated
+    assert with_stated_device(before, Device.UNKNOWN).words == ("taken with a camera", *before.words[1:])
 
 
 def test_a_rendering_stays_one_whatever_is_stated():
@@ -185,8 +190,8 @@ def test_what_is_no_device_is_refused():
 
 
 def test_dng_converter_keeps_the_cameras_picture():
-    found = origin(**OWN_CAMERA, software="Adobe DNG Converter 15.0 (Macintosh)", raw_file="DSC_0001.NEF")
-    assert (found.is_developed, found.editor) == (False, ADOBE)
+    converted = origin(**OWN_CAMERA, software="Adobe DNG Converter 15.0 (Macintosh)", raw_file="DSC_0001.NEF")
+    assert (converted.is_developed, converted.editor) == (False, ADOBE)
 
 
 @pytest.mark.parametrize(("size", "is_scaled"), [((493, 328), True), ((640, 480), False), ((4000, 3001), False)])

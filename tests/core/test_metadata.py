@@ -1,4 +1,4 @@
-"""File metadata: what is read of a file; what follows from it is in test_file_origin.py."""
+"""The metadata of files; the conclusions are in test_file_origin.py."""
 
 import struct
 
@@ -69,9 +69,9 @@ def test_a_jpeg_as_a_camera_writes_it(tmp_path):
     metadata = read(tmp_path / "a.jpg")
     assert not metadata.has_jfif
     assert (metadata.luma_table, metadata.iso) == (OWN_TABLE, 200)
-    found = file_origin(metadata)
-    assert (found.is_resaved, found.is_scaled, found.jpeg_quality) == (False, False, None)
-    assert found.words == (
+    origin = file_origin(metadata)
+    assert (origin.is_resaved, origin.is_scaled, origin.jpeg_quality) == (False, False, None)
+    assert origin.words == (
         "taken by Canon EOS 20D, a camera with interchangeable lenses",
         "the file is as the camera wrote it",
     )

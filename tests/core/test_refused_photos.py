@@ -1,4 +1,4 @@
-"""What read_photo refuses, each in one clear line and with little memory."""
+"""read_photo refuses files in one line and with little memory."""
 
 import os
 import struct

@@ -53,7 +53,7 @@ class _Picture:
 
     samples: NDArray[Any]
     bit_depth: int
-    segments: Mapping[str, bytes]
+    info: Mapping[Any, Any]
     is_associated: bool = False
 
 
@@ -66,7 +66,7 @@ def read_heif(path: Path, kind: str) -> CodeValues:
     """
     boxes = _boxes(path)
     if not _has_named_items(boxes):
-        raise problems.damaged(path, kind, "the type of an item is no text")
+        raise problems.damaged(path, kind, "the type of an item is not text")
     try:
         import pi_heif
 
@@ -112,7 +112,7 @@ def _heic(main: Any) -> _Picture:
     bit_depth = 8 if samples.dtype == np.uint8 else info["bit_depth"]
     if bit_depth > 8:
         samples = samples >> (16 - bit_depth)  # pi-heif shifts the codes up to 16 bits
-    return _Picture(np.atleast_3d(samples), bit_depth, _segments(info), is_associated=main.premultiplied_alpha)
+    return _Picture(np.atleast_3d(samples), bit_depth, info, is_associated=main.premultiplied_alpha)
 
 
 def _avif(path: Path, bit_depth: int) -> _Picture:
@@ -123,18 +123,13 @@ def _avif(path: Path, bit_depth: int) -> _Picture:
         exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
         samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
     turn = EXIF_TURNS.get(exif.get(_ORIENTATION, 1), UPRIGHT)
-    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), _segments(info))
-
-
-def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
-    """Return the metadata that pi-heif or Pillow found, as `_MOST_BYTES` names it."""
-    return {name: info[name] for name in _MOST_BYTES if info.get(name)}
+    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), info)
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
     """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
 
-    Matrix and range are those of the file's box, which FFmpeg puts into the stream; a frame has those of its header.
+    Matrix and range come from the file's box, which FFmpeg puts into the stream; a frame has them from its header.
     """
     try:
         import av
@@ -174,7 +169,7 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    for attribute in _segment_attributes(picture.segments):
+    for attribute in _segment_attributes(picture.info):
         if not attribute.name.startswith(("jpeg:", "oiio:")):
             header.attribute(attribute.name, attribute.type, attribute.value)
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
@@ -184,12 +179,12 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     return header
 
 
-def _segment_attributes(segments: Mapping[str, bytes]) -> list[Any]:
+def _segment_attributes(info: Mapping[Any, Any]) -> list[Any]:
     """Return the attributes that OpenImageIO reads in EXIF, XMP and ICC profile of a JPEG of one pixel with them.
 
     So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
     """
-    fitting = {name: content for name, content in segments.items() if len(content) < _MOST_BYTES[name]}
+    fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return []
     with tempfile.TemporaryDirectory() as folder:

@@ -180,7 +180,7 @@ def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
     with pytest.raises(PhotoError) as caught:
         read_photo(tmp_path / "a.heic")
-    assert (caught.value.code, caught.value.facts["problem"]) == ("damaged", "the type of an item is no text")
+    assert (caught.value.code, caught.value.facts["problem"]) == ("damaged", "the type of an item is not text")
 
 
 def test_a_film_without_pictures_is_refused(heif, monkeypatch):
