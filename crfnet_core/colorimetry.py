@@ -28,25 +28,13 @@ def chromaticity_of(xyz: Sequence[float] | Float64Array) -> Chromaticity:
     return float(xyz[0]) / total, float(xyz[1]) / total
 
 
-def rgb_to_xyz(red: Chromaticity, green: Chromaticity, blue: Chromaticity, white: Chromaticity) -> Float64Array:
-    """Return the matrix from linear RGB to XYZ, by which RGB (1, 1, 1) is the white at Y = 1; shape (3, 3).
-
-    Source: SMPTE RP 177-1993, Derivation of Basic Television Color Equations.
-
-    Raise numpy.linalg.LinAlgError if the three primaries lie on a line.
-    """
-    columns = np.array([(x, y, 1 - x - y) for x, y in (red, green, blue)]).T
-    scales: Float64Array = np.linalg.solve(columns, xyz_of(white))
-    return np.asarray(columns * scales)
-
-
 def adaptation(source: Chromaticity, target: Chromaticity) -> Float64Array:
     """Return the Bradford matrix from XYZ under one white to the corresponding XYZ under another, shape (3, 3)."""
     before, after = BRADFORD @ xyz_of(source), BRADFORD @ xyz_of(target)
     return np.asarray(np.linalg.inv(BRADFORD) @ np.diag(after / before) @ BRADFORD)
 
 
-#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and ACES's ("D60", SMPTE ST 2065-1).
+#: White points: CIE D65 as video and sRGB round it, ISO 22028's D50, and the white of ACES ("D60", SMPTE ST 2065-1).
 D65: Chromaticity = (0.3127, 0.3290)
 D50: Chromaticity = (0.3457, 0.3585)
 D60: Chromaticity = (0.32168, 0.33767)
@@ -69,8 +57,13 @@ class Primaries:
         return np.array([self.red, self.green, self.blue, self.white])
 
     def to_xyz(self) -> Float64Array:
-        """Return the matrix from linear RGB to CIE XYZ under its own white, shape (3, 3) (Eq. 35 of docs/METHOD.md)."""
-        return rgb_to_xyz(self.red, self.green, self.blue, self.white)
+        """Return the matrix from linear RGB to CIE XYZ, by which (1, 1, 1) is the white at Y = 1; shape (3, 3).
+
+        It is Eq. 35 of docs/METHOD.md (SMPTE RP 177-1993). Raise LinAlgError if the primaries lie on a line.
+        """
+        columns = np.array([(x, y, 1 - x - y) for x, y in (self.red, self.green, self.blue)]).T
+        scales: Float64Array = np.linalg.solve(columns, xyz_of(self.white))
+        return np.asarray(columns * scales)
 
 
 #: ITU-R BT.709-6 and IEC 61966-2-1 (sRGB).

@@ -1,4 +1,4 @@
-"""Primaries and matrices, judged by colour-science; what ICC profiles, CICP and EXIF say of them."""
+"""Primaries and matrices, judged by colour-science, and the tags of ICC profiles, CICP and EXIF."""
 
 import itertools
 import struct
@@ -19,9 +19,7 @@ from crfnet_core.colorimetry import (
     REC2020,
     Primaries,
     adaptation,
-    chromaticity_of,
     conversion_matrix,
-    rgb_to_xyz,
     xyz_of,
 )
 from crfnet_core.photograph.image_io import read_photo
@@ -64,7 +62,7 @@ class TestMatrices:
         np.testing.assert_allclose(corners(NAMES[name]), expected, atol=1e-4)
 
     @pytest.mark.parametrize("name", NAMES)
-    def test_rgb_to_xyz_is_the_normalised_primary_matrix(self, name):
+    def test_the_matrix_to_xyz_is_the_normalized_primary_matrix(self, name):
         primaries = NAMES[name]
         expected = colour.models.normalised_primary_matrix(corners(primaries)[:6], primaries.white)
         np.testing.assert_allclose(primaries.to_xyz(), expected, atol=1e-12)
@@ -79,22 +77,11 @@ class TestMatrices:
         expected = colour.matrix_RGB_to_RGB(*spaces, chromatic_adaptation_transform="Bradford")
         np.testing.assert_allclose(conversion_matrix(NAMES[source], NAMES[target]), expected, atol=1e-9)
 
-    @pytest.mark.parametrize(("source", "target"), [*itertools.permutations(NAMES.values(), 2)])
-    def test_white_stays_white(self, source, target):
-        np.testing.assert_allclose(conversion_matrix(source, target) @ np.ones(3), 1, atol=1e-12)
-
     def test_a_conversion_to_itself_is_exact(self):
         np.testing.assert_array_equal(conversion_matrix(PROPHOTO, PROPHOTO), np.eye(3))
 
     def test_adaptation_moves_the_white(self):
         np.testing.assert_allclose(adaptation(D65, D50) @ xyz_of(D65), xyz_of(D50), atol=1e-12)
-
-    def test_a_chromaticity_comes_back(self):
-        assert chromaticity_of(3 * xyz_of((0.3, 0.6))) == pytest.approx((0.3, 0.6))
-
-    def test_primaries_on_a_line_are_refused(self):
-        with pytest.raises(np.linalg.LinAlgError):
-            rgb_to_xyz((0.1, 0.1), (0.2, 0.2), (0.3, 0.3), D65)
 
 
 class TestIccProfiles:
@@ -110,20 +97,20 @@ class TestIccProfiles:
         assert nearest > 30 * SAME_COLORANTS
 
     def test_rounding_does_not_hide_them(self):
-        # The colourants of the sRGB profile of 1998, rounded to four digits.
+        # The colorants of the sRGB profile of 1998, rounded to four digits.
         columns = ((0.4361, 0.2225, 0.0139), (0.3851, 0.7169, 0.0971), (0.1431, 0.0606, 0.7141))
         tags = {f"{name}XYZ": numbers(b"XYZ ", xyz) for name, xyz in zip("rgb", columns, strict=True)}
         assert read_icc(matrix_profile(REC709, version=2, **tags)).primaries is REC709
 
     @pytest.mark.parametrize(("version", "chad"), [(2, False), (2, True), (4, True)])
     def test_others_are_found_under_their_own_white(self, version, chad):
-        found = read_icc(matrix_profile(OWN, version=version, states_adaptation=chad)).primaries
-        np.testing.assert_allclose(corners(found), corners(OWN), atol=2e-4)
-        assert (found.name, found.interop_id) == ("primaries of its own", "")
+        unnamed = read_icc(matrix_profile(OWN, version=version, states_adaptation=chad)).primaries
+        np.testing.assert_allclose(corners(unnamed), corners(OWN), atol=2e-4)
+        assert (unnamed.name, unnamed.interop_id) == ("primaries of its own", "")
 
     def test_without_a_word_on_adaptation_the_white_is_d50(self):
-        found = read_icc(matrix_profile(OWN, version=4, states_adaptation=False)).primaries
-        assert found.white == pytest.approx(D50, abs=2e-4)
+        unnamed = read_icc(matrix_profile(OWN, version=4, states_adaptation=False)).primaries
+        assert unnamed.white == pytest.approx(D50, abs=2e-4)
 
     @pytest.mark.parametrize(
         "icc",
@@ -142,17 +129,9 @@ class TestIccProfiles:
     def test_what_gives_no_primaries_is_unknown(self, icc):
         assert read_icc(icc).primaries is None
 
-    def test_a_gray_profile_says_nothing_of_primaries(self):
-        assert read_icc(profile({}, color=b"GRAY")) == ColorTags()
-
-    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp"])
-    def test_other_bytes_are_no_profile(self, icc):
+    @pytest.mark.parametrize("icc", [b"", bytes(200), b"acsp", profile({}, color=b"GRAY")])
+    def test_gray_profiles_and_other_bytes_say_nothing(self, icc):
         assert read_icc(icc) == ColorTags()
-
-    def test_any_part_of_a_profile_is_read_without_an_error(self):
-        whole = matrix_profile(DISPLAY_P3)
-        for length in range(len(whole)):
-            read_icc(whole[:length])
 
     def test_damage_anywhere_in_a_profile_is_no_error(self):
         rng = np.random.default_rng(0)
@@ -161,6 +140,7 @@ class TestIccProfiles:
             damaged = whole.copy()
             damaged[rng.integers(0, len(whole), 4)] = rng.integers(0, 256, 4)
             read_icc(damaged.tobytes())
+            read_icc(damaged.tobytes()[: rng.integers(0, len(whole))])
 
     @pytest.mark.parametrize("version", [2, 4])
     @pytest.mark.parametrize(
@@ -190,7 +170,7 @@ class TestIccProfiles:
 
 
 class TestFiles:
-    """What is read of whole files."""
+    """The tags of whole files."""
 
     @staticmethod
     def tags(path):
@@ -211,8 +191,8 @@ class TestFiles:
 
     @pytest.mark.parametrize(("space", "primaries"), [(1, REC709), (2, ADOBE_RGB), (65535, None)])
     def test_exif_is_read(self, tmp_path, space, primaries):
-        found = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
-        assert (found.primaries, found.source) == (primaries, "EXIF" if primaries else "")
+        tags = self.tags(write_image(tmp_path / "a.jpg", GRAY, Exif__ColorSpace=space))
+        assert (tags.primaries, tags.source) == (primaries, "EXIF" if primaries else "")
 
     @pytest.mark.parametrize("order", ["<", ">"])
     @pytest.mark.parametrize(("index", "primaries"), [(b"R03", ADOBE_RGB), (b"R98", REC709), (b"THM", None)])
@@ -227,9 +207,6 @@ class TestFiles:
         for length in range(0, len(whole) - 8, 3):
             header = read_jpeg_header(with_jpeg_segment(content, 0xE1, whole[:length]))
             assert (header.interop_index, header.has_jfif) == ("", True)
-
-    def test_a_file_without_tags_says_nothing(self, tmp_path):
-        assert self.tags(write_image(tmp_path / "a.jpg", GRAY)) == ColorTags()
 
     def test_a_profile_may_hold_cicp(self, tmp_path):
         icc = matrix_profile(REC2020, cicp=b"cicp" + bytes(4) + bytes([9, 16, 0, 1]))
@@ -260,9 +237,9 @@ class TestOpenExr:
         assert self.tags(chromaticities=primaries.corners.ravel().tolist()).primaries is primaries
 
     def test_others_are_taken_as_they_are(self):
-        found = self.tags(chromaticities=OWN.corners.ravel().tolist())
-        np.testing.assert_allclose(found.primaries.corners, OWN.corners, atol=1e-6)
-        assert found.source == "chromaticities"
+        tags = self.tags(chromaticities=OWN.corners.ravel().tolist())
+        np.testing.assert_allclose(tags.primaries.corners, OWN.corners, atol=1e-6)
+        assert tags.source == "chromaticities"
 
     @pytest.mark.parametrize("numbers", [[0.0] * 8, [0.3] * 8, [np.nan] * 8, [0.6, 0.3, 0.6, 0.3, 0.6, 0.3, 0.3, 0.3]])
     def test_no_triangle_says_nothing(self, numbers):

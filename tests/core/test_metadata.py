@@ -1,6 +1,5 @@
-"""File metadata: what is read of a file; what follows from it is in test_file_origin.py."""
+"""The metadata of files; the conclusions are in test_file_origin.py."""
 
-import mmap
 import struct
 
 import numpy as np
@@ -8,7 +7,7 @@ import pytest
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_metadata, read_photo
-from crfnet_core.photograph.metadata import FileMetadata, file_origin
+from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.photograph.metadata.jpeg import (
     ANNEX_K_CHROMA,
     ANNEX_K_LUMA,
@@ -46,23 +45,7 @@ def test_exif_is_read(tmp_path, name):
     assert metadata.file_format == {"a.jpg": "JPEG", "a.png": "PNG", "a.tif": "TIFF"}[name]
 
 
-def test_sensitivity_is_read(tmp_path):
-    jpeg(tmp_path / "a.jpg", **EXIF)
-    assert read(tmp_path / "a.jpg").iso == 200
-
-
-@pytest.mark.parametrize(
-    ("name", "file_format"), [("a.jpg", "JPEG"), ("a.png", "PNG"), ("a.tif", "TIFF"), ("a.webp", "WebP")]
-)
-def test_a_file_without_metadata_is_empty(tmp_path, name, file_format):
-    metadata = read(write_image(tmp_path / name, np.zeros((16, 24, 3), np.uint8)))
-    assert not metadata.has_camera
-    assert (metadata.software, metadata.iso, metadata.exif_size) == ("", None, None)
-    assert metadata.file_format == file_format
-
-
-@pytest.mark.parametrize("subsampling", ["4:4:4", "4:2:2", "4:2:0"])
-@pytest.mark.parametrize("quality", [50, 75, 92])
+@pytest.mark.parametrize(("quality", "subsampling"), [(50, "4:4:4"), (75, "4:2:2"), (92, "4:2:0")])
 def test_tables_and_subsampling_of_the_ijg_library(tmp_path, quality, subsampling):
     path = tmp_path / "a.jpg"
     jpeg(path, Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)
@@ -85,10 +68,10 @@ def test_a_jpeg_as_a_camera_writes_it(tmp_path):
     camera_jpeg(tmp_path / "a.jpg", **EXIF | size | {"Software": "Ver.1.00"})
     metadata = read(tmp_path / "a.jpg")
     assert not metadata.has_jfif
-    assert metadata.luma_table == OWN_TABLE
-    found = file_origin(metadata)
-    assert (found.is_resaved, found.is_scaled, found.jpeg_quality) == (False, False, None)
-    assert found.words == (
+    assert (metadata.luma_table, metadata.iso) == (OWN_TABLE, 200)
+    origin = file_origin(metadata)
+    assert (origin.is_resaved, origin.is_scaled, origin.jpeg_quality) == (False, False, None)
+    assert origin.words == (
         "taken by Canon EOS 20D, a camera with interchangeable lenses",
         "the file is as the camera wrote it",
     )
@@ -187,12 +170,6 @@ def test_tables_of_16_bits():
     assert sorted(read_jpeg_header(content).luma_table) == list(table)
 
 
-def test_the_header_is_read_from_a_mapped_file(tmp_path):
-    content = jpeg(tmp_path / "a.jpg")
-    with (tmp_path / "a.jpg").open("rb") as file, mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ) as mapped:
-        assert read_jpeg_header(mapped) == read_jpeg_header(content) != FileMetadata()
-
-
 @pytest.mark.parametrize("quality", [1, 25, 50, 75, 95, 100])
 def test_quality_of_the_ijg_library(quality):
     luma, chroma = scaled_table(ANNEX_K_LUMA, quality), scaled_table(ANNEX_K_CHROMA, quality)
@@ -230,16 +207,6 @@ def test_metadata_alone_is_read_without_the_pixels(tmp_path):
     path = write_image(tmp_path / "a.png", noise, Make="Canon")
     path.write_bytes(path.read_bytes()[:-4000])
     assert read_metadata(path).make == "Canon"
-    with pytest.raises(PhotoError, match="damaged or cut short"):
+    with pytest.raises(PhotoError) as caught:
         read_photo(path)
-
-
-@pytest.mark.parametrize("content", [b"", b"no picture", b"II*\0"])
-def test_metadata_alone_is_refused_as_the_photograph_is(tmp_path, content):
-    path = tmp_path / "a.png"
-    path.write_bytes(content)
-    with pytest.raises(PhotoError) as photo:
-        read_photo(path)
-    with pytest.raises(PhotoError) as metadata:
-        read_metadata(path)
-    assert str(metadata.value) == str(photo.value)
+    assert caught.value.code == "damaged"

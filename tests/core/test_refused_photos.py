@@ -1,8 +1,7 @@
-"""What read_photo refuses, each in one clear line and with little memory."""
+"""read_photo refuses files in one line and with little memory."""
 
 import os
 import struct
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,8 +13,7 @@ from crfnet_core.errors import PhotoError, one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS, read_photo
 from tests.helpers.crafted_files import jpeg, png, tiff, with_jpeg_size
 from tests.helpers.images import write_image
-
-ROOT = Path(__file__).parents[2]
+from tests.helpers.memory import memory_of_reading
 
 
 def refusal(path):
@@ -29,118 +27,12 @@ def refusal(path):
     return caught.value.code
 
 
-def absent(path):
-    pass
+def with_compression(content, scheme):
+    """Return a TIFF that claims a compression."""
+    return content.replace(struct.pack("<HHII", 259, 3, 1, 1), struct.pack("<HHII", 259, 3, 1, scheme))
 
 
-def folder(path):
-    path.mkdir()
-
-
-def empty(path):
-    path.touch()
-
-
-def text(path):
-    path.write_text("hello\n" * 20)
-
-
-def heic(path):
-    path.write_bytes(b"\0\0\0\x18ftypheic" + bytes(100))
-
-
-def wave(path):
-    path.write_bytes(b"RIFF\0\0\0\0WAVEfmt ")
-
-
-def float_tiff(path):
-    path.write_bytes(tiff(2, 2, bits=32, kind=3, content=bytes(48)))
-
-
-def half_tiff(path):
-    path.write_bytes(tiff(2, 2, bits=16, kind=3, content=bytes(24)))
-
-
-def exr(path):
-    write_image(path, np.ones((2, 2, 3), np.float16))
-
-
-def radiance(path):
-    write_image(path, np.ones((2, 2, 3), np.float32))
-
-
-def raw(path):
-    path.write_bytes(tiff(2, 2, content=bytes(12)))
-
-
-def mosaic(path):
-    path.write_bytes(tiff(2, 2, samples=1, photometric=32803, content=bytes(4)))
-
-
-def cmyk_tiff(path):
-    path.write_bytes(tiff(2, 2, samples=4, photometric=5, content=bytes(16)))
-
-
-def lab_tiff(path):
-    path.write_bytes(tiff(2, 2, photometric=8, content=bytes(12)))
-
-
-def log_luv_tiff(path):
-    coding = struct.pack("<HHII", 259, 3, 1, 1), struct.pack("<HHII", 259, 3, 1, 34676)
-    path.write_bytes(tiff(2, 2, photometric=32845, content=bytes(12)).replace(*coding))
-
-
-def deep_jpeg(path):
-    whole = jpeg(path)
-    path.write_bytes(whole.replace(b"\xff\xc0\0\x11\x08", b"\xff\xc0\0\x11\x0c"))
-
-
-def signed_tiff(path):
-    path.write_bytes(tiff(2, 2, kind=2, content=bytes(12)))
-
-
-def exotic_tiff(path):
-    scheme = struct.pack("<HHII", 259, 3, 1, 1)
-    path.write_bytes(tiff(2, 2, content=bytes(12)).replace(scheme, struct.pack("<HHII", 259, 3, 1, 34926)))
-
-
-def long_tiff(path):
-    path.write_bytes(tiff(2, 2, bits=32, content=bytes(48)))
-
-
-def bilevel_tiff(path):
-    path.write_bytes(tiff(8, 2, samples=1, photometric=1, bits=1, content=bytes(2)))
-
-
-def cmyk_jpeg(path):
-    path.write_bytes(FOUR_INKS)
-
-
-def huge_jpeg(path):
-    path.write_bytes(with_jpeg_size(jpeg(path), 50000, 50000))
-
-
-def huge_progressive_jpeg(path):
-    path.write_bytes(with_jpeg_size(jpeg(path, jpeg__progressive=1), 50000, 50000))
-
-
-def huge_png(path):
-    path.write_bytes(png(50000, 50000))
-
-
-def huge_tiff(path):
-    path.write_bytes(tiff(50000, 50000, content=bytes(100)))
-
-
-def zero_png(path):
-    path.write_bytes(png(0, 0))
-
-
-def lying_png(path):
-    path.write_bytes(png(2000, 2000))
-
-
-def _four_inks():
+def four_inks():
     """Return an 8 x 8 CMYK JPEG: one DC symbol (no difference) and one end of block for each of four components."""
     table = b"\x01" + bytes(15) + b"\0"
     segments = [
@@ -154,44 +46,65 @@ def _four_inks():
     return b"\xff\xd8" + b"".join(parts) + b"\0" + b"\xff\xd9"
 
 
-FOUR_INKS = _four_inks()
+HUGE = {"huge.png": png(50000, 50000), "huge.tif": tiff(50000, 50000, content=bytes(100))}
+
+#: Files by content: name, content, and the code of the refusal.
+FILES = [
+    ("empty.jpg", b"", "photograph_is_empty"),
+    ("text.jpg", b"hello\n" * 20, "not_an_image_file"),
+    ("wave.webp", b"RIFF\0\0\0\0WAVEfmt ", "not_an_image_file"),
+    ("cut.heic", b"\0\0\0\x18ftypheic" + bytes(100), "damaged"),
+    ("float.tif", tiff(2, 2, bits=32, kind=3, content=bytes(48)), "scene_linear_file"),
+    ("half.tif", tiff(2, 2, bits=16, kind=3, content=bytes(24)), "scene_linear_file"),
+    ("logluv.tif", with_compression(tiff(2, 2, photometric=32845, content=bytes(12)), 34676), "scene_linear_file"),
+    ("named.NEF", tiff(2, 2, content=bytes(12)), "camera_raw"),
+    ("mosaic.tif", tiff(2, 2, samples=1, photometric=32803, content=bytes(4)), "camera_raw"),
+    ("cr2.tif", b"II*\0" + struct.pack("<I", 20) + b"CR\2\0" + bytes(40), "camera_raw"),
+    ("dng.tif", tiff(2, 2, extra=((50706, 1, 0x0401),), content=bytes(12)), "camera_raw"),
+    ("preview.tif", tiff(2, 2, extra=((254, 4, 1), (330, 4, 8)), content=bytes(12)), "camera_raw"),
+    ("raf.tif", b"FUJIFILMCCD-RAW 0201" + bytes(80), "camera_raw"),
+    ("cr3.tif", b"\0\0\0\x18ftypcrx \0\0\0\x01crx isom" + bytes(80), "camera_raw"),
+    ("cmyk.tif", tiff(2, 2, samples=4, photometric=5, content=bytes(16)), "other_colors"),
+    ("cmyk.jpg", four_inks(), "other_colors"),
+    ("lab.tif", tiff(2, 2, photometric=8, content=bytes(12)), "other_colors"),
+    ("signed.tif", tiff(2, 2, kind=2, content=bytes(12)), "sample_type"),
+    ("long.tif", tiff(2, 2, bits=32, content=bytes(48)), "sample_type"),
+    ("bilevel.tif", tiff(8, 2, samples=1, photometric=1, bits=1, content=bytes(2)), "sample_type"),
+    ("exotic.tif", with_compression(tiff(2, 2, content=bytes(12)), 34926), "coding_not_read"),
+    ("directory.tif", b"II*\0" + struct.pack("<I", 10**9) + bytes(8), "damaged"),
+    ("zero.png", png(0, 0), "damaged"),
+    ("lying.png", png(2000, 2000), "damaged"),
+    *((name, content, "damaged") for name, content in HUGE.items()),
+]
 
 
-@pytest.mark.parametrize(
-    ("make", "name", "code"),
-    [
-        (absent, "a.jpg", "no_such_photograph"),
-        (folder, "a.jpg", "photograph_is_folder"),
-        (empty, "a.jpg", "photograph_is_empty"),
-        (text, "a.jpg", "not_an_image_file"),
-        (heic, "a.heic", "damaged"),
-        (wave, "a.webp", "not_an_image_file"),
-        (exr, "a.exr", "scene_linear_file"),
-        (radiance, "a.hdr", "scene_linear_file"),
-        (float_tiff, "a.tif", "scene_linear_file"),
-        (half_tiff, "a.tif", "scene_linear_file"),
-        (log_luv_tiff, "a.tif", "scene_linear_file"),
-        (raw, "a.NEF", "camera_raw"),
-        (mosaic, "a.tif", "camera_raw"),
-        (cmyk_tiff, "a.tif", "other_colors"),
-        (cmyk_jpeg, "a.jpg", "other_colors"),
-        (lab_tiff, "a.tif", "other_colors"),
-        (signed_tiff, "a.tif", "sample_type"),
-        (exotic_tiff, "a.tif", "coding_not_read"),
-        (deep_jpeg, "a.jpg", "coding_not_read"),
-        (long_tiff, "a.tif", "sample_type"),
-        (bilevel_tiff, "a.tif", "sample_type"),
-        (huge_jpeg, "a.jpg", "too_many_pixels"),
-        (huge_progressive_jpeg, "a.jpg", "too_many_pixels"),
-        (huge_png, "a.png", "damaged"),
-        (huge_tiff, "a.tif", "damaged"),
-        (zero_png, "a.png", "damaged"),
-        (lying_png, "a.png", "damaged"),
-    ],
-)
-def test_other_files_are_refused(tmp_path, make, name, code):
-    make(tmp_path / name)
+@pytest.mark.parametrize(("name", "content", "code"), FILES, ids=[name for name, _, _ in FILES])
+def test_other_files_are_refused(tmp_path, name, content, code):
+    (tmp_path / name).write_bytes(content)
     assert refusal(tmp_path / name) == code
+
+
+@pytest.mark.parametrize(("name", "kind"), [("a.exr", np.float16), ("a.hdr", np.float32)])
+def test_scene_linear_formats_are_refused(tmp_path, name, kind):
+    assert refusal(write_image(tmp_path / name, np.ones((2, 2, 3), kind))) == "scene_linear_file"
+
+
+def test_folders_and_absent_files_are_refused(tmp_path):
+    assert refusal(tmp_path / "a.jpg") == "no_such_photograph"
+    (tmp_path / "a.jpg").mkdir()
+    assert refusal(tmp_path / "a.jpg") == "photograph_is_folder"
+
+
+def test_a_jpeg_of_12_bits_is_refused(tmp_path):
+    (tmp_path / "a.jpg").write_bytes(jpeg(tmp_path / "a.jpg").replace(b"\xff\xc0\0\x11\x08", b"\xff\xc0\0\x11\x0c"))
+    assert refusal(tmp_path / "a.jpg") == "coding_not_read"
+
+
+@pytest.mark.parametrize("progressive", [0, 1])
+def test_a_huge_jpeg_is_refused(tmp_path, progressive):
+    content = jpeg(tmp_path / "a.jpg", jpeg__progressive=progressive)
+    (tmp_path / "a.jpg").write_bytes(with_jpeg_size(content, 50000, 50000))
+    assert refusal(tmp_path / "a.jpg") == "too_many_pixels"
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
@@ -201,7 +114,7 @@ def test_a_pipe_does_not_block(tmp_path):
 
 
 @pytest.mark.parametrize("progressive", [0, 1])
-@pytest.mark.parametrize("fraction", [0.0005, 0.05, 0.3, 0.6, 0.99, 1.0])
+@pytest.mark.parametrize("fraction", [0.0005, 0.05, 0.6, 1.0])
 def test_cut_jpeg_is_refused_wherever_it_is_cut(tmp_path, progressive, fraction):
     path = tmp_path / "a.jpg"
     whole = jpeg(path, jpeg__progressive=progressive)
@@ -224,11 +137,12 @@ def test_what_follows_a_jpeg_is_ignored(tmp_path):
     np.testing.assert_array_equal(read_photo(path).pixels, expected)
 
 
-@pytest.mark.parametrize("fraction", [0.3, 0.8, 0.95])
-@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx"])
+@pytest.mark.parametrize("fraction", [0.3, 0.95])
+@pytest.mark.parametrize("name", ["a.png", "a.tif", "a.webp", "a.dpx", "a.jxl", "a.jp2", "a.bmp"])
 def test_other_cut_files_are_refused(tmp_path, name, fraction):
     noise = np.random.default_rng(0).integers(0, 256, (64, 64, 3), dtype=np.uint8)
-    whole = write_image(tmp_path / name, noise, Compression="lossless" if name == "a.webp" else "none").read_bytes()
+    compression = {"a.webp": "lossless", "a.jxl": "jpegxl:100"}.get(name, "none")
+    whole = write_image(tmp_path / name, noise, Compression=compression).read_bytes()
     (tmp_path / name).write_bytes(whole[: int(len(whole) * fraction)])
     assert refusal(tmp_path / name) == "damaged"
 
@@ -242,29 +156,14 @@ def test_sparse_file_above_the_limit(tmp_path):
     assert 200e6 < MAX_PIXELS < 2500e6
 
 
-BOMBS = [huge_jpeg, huge_progressive_jpeg, huge_png, huge_tiff]
-
-
 @pytest.mark.skipif(sys.platform != "linux", reason="reads the peak memory as Linux reports it")
 def test_bombs_take_little_memory(tmp_path):
-    names = [str(tmp_path / make.__name__) for make in BOMBS]
-    for make, name in zip(BOMBS, names, strict=True):
-        made = tmp_path / ("made.jpg" if "jpeg" in name else "made")
-        make(made)
-        made.rename(name)
-    code = (
-        "import resource, sys\n"
-        "from crfnet_core.photograph.image_io import read_photo\n"
-        "from crfnet_core.errors import PhotoError\n"
-        "before = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss\n"
-        "for name in sys.argv[1:]:\n"
-        "    try:\n        read_photo(name)\n        sys.exit('was read')\n"
-        "    except PhotoError:\n        pass\n"
-        "print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before)\n"
-    )
-    run = subprocess.run([sys.executable, "-c", code, *names], cwd=ROOT, capture_output=True, text=True, timeout=30)
-    assert run.returncode == 0, run.stderr
-    assert int(run.stdout) < 50_000, "kB beyond what the imports take"
+    bombs = {**HUGE, "huge.jpg": with_jpeg_size(jpeg(tmp_path / "a.jpg", jpeg__progressive=1), 50000, 50000)}
+    for name, content in bombs.items():
+        (tmp_path / name).write_bytes(content)
+    size, is_read = memory_of_reading(*(tmp_path / name for name in bombs))
+    assert not is_read
+    assert size < 50_000, "kB"
 
 
 def test_unreadable_file(tmp_path, monkeypatch):

@@ -32,7 +32,6 @@ SEEDS = {
     "8.jp2": (8, {}),
     "8.jxl": (8, {}),
     "8.bmp": (8, {}),
-    "8.tga": (8, {"compression": "rle"}),
     "half.exr": (0, {"compression": "zip", "owner": "a"}),
     "piz.exr": (0, {"compression": "piz"}),
 }

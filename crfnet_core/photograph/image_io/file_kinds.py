@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import struct
 from pathlib import Path
 from typing import BinaryIO, Literal
 
@@ -41,16 +40,12 @@ _MOST_ENTRIES = 4096
 HEIC_BRANDS = (b"heic", b"heix", b"heim", b"heis", b"hevc", b"hevx")
 AVIF_BRANDS = (b"avif", b"avis")
 
-#: Suffixes of Truevision TGA, which has no signature.
-TARGA_SUFFIXES = (".tga", ".icb", ".vda", ".vst")
-
 #: Suffixes of HEIC and AVIF.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
 
 #: How the names of photographs usually end, for a folder that is searched for them.
 PHOTOGRAPH_SUFFIXES = (
     *(".jpg", ".jpeg", *HEIF_SUFFIXES, ".png", ".tif", ".tiff", ".webp", ".jxl", ".jp2", ".j2k", ".dpx", ".bmp"),
-    ".tga",
 )
 
 _HEAD = 12
@@ -79,8 +74,6 @@ def file_kind(path: Path) -> str:
     for kind, names in (("AVIF", AVIF_BRANDS), ("HEIC", HEIC_BRANDS)):
         if any(brand in names for brand in brands):
             return kind
-    if _is_targa(path):
-        return "TGA"
     raise PhotoError("not_an_image_file", path=path)
 
 
@@ -132,16 +125,3 @@ def _brands(head: bytes, file: BinaryIO) -> tuple[bytes, ...]:
     length = min(max(int.from_bytes(head[:4], "big") - _HEAD, 0), 1024)
     brands = head[8:] + file.read(length)
     return tuple(brands[at : at + 4] for at in range(0, len(brands), 4) if at != 4)
-
-
-def _is_targa(path: Path) -> bool:
-    """Return whether a file is TGA (Truevision TGA 2.0), by suffix and header; refuse one with a palette."""
-    if path.suffix.lower() not in TARGA_SUFFIXES:
-        return False
-    with path.open("rb") as file:
-        header = file.read(18).ljust(18, b"\0")
-    has_map, kind, width, height, bits = struct.unpack("<xBB9xHHBx", header)
-    is_valid = has_map <= 1 and kind in (1, 2, 3, 9, 10, 11) and width * height > 0 and bits in (8, 15, 16, 24, 32)
-    if is_valid and kind in (1, 9):
-        raise PhotoError("palette", path=path, kind="a TGA file with a palette")
-    return is_valid

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 import tempfile
-import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -19,6 +18,7 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 from PIL import Image
+from PIL.AvifImagePlugin import AvifImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
@@ -53,7 +53,7 @@ class _Picture:
 
     samples: NDArray[Any]
     bit_depth: int
-    segments: Mapping[str, bytes]
+    info: Mapping[Any, Any]
     is_associated: bool = False
 
 
@@ -66,7 +66,7 @@ def read_heif(path: Path, kind: str) -> CodeValues:
     """
     boxes = _boxes(path)
     if not _has_named_items(boxes):
-        raise problems.damaged(path, kind, "the type of an item is no text")
+        raise problems.damaged(path, kind, "the type of an item is not text")
     try:
         import pi_heif
 
@@ -112,31 +112,24 @@ def _heic(main: Any) -> _Picture:
     bit_depth = 8 if samples.dtype == np.uint8 else info["bit_depth"]
     if bit_depth > 8:
         samples = samples >> (16 - bit_depth)  # pi-heif shifts the codes up to 16 bits
-    return _Picture(np.atleast_3d(samples), bit_depth, _segments(info), is_associated=main.premultiplied_alpha)
+    return _Picture(np.atleast_3d(samples), bit_depth, info, is_associated=main.premultiplied_alpha)
 
 
 def _avif(path: Path, bit_depth: int) -> _Picture:
     """Return the picture of an AVIF file, turned upright."""
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", Image.DecompressionBombWarning)  # `check_size` has its own limit
-        with Image.open(path, formats=["AVIF"]) as image:
-            check_size(path, *image.size)
-            exif, info = Image.Exif(), dict(image.info)
-            exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
-            samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
+    with AvifImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+        check_size(path, *image.size)
+        exif, info = Image.Exif(), dict(image.info)
+        exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
+        samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
     turn = EXIF_TURNS.get(exif.get(_ORIENTATION, 1), UPRIGHT)
-    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), _segments(info))
-
-
-def _segments(info: Mapping[Any, Any]) -> dict[str, bytes]:
-    """Return the metadata that pi-heif or Pillow found, as `_MOST_BYTES` names it."""
-    return {name: info[name] for name in _MOST_BYTES if info.get(name)}
+    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), info)
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
     """Return the RGB codes of an AVIF file of 10 or 12 bits as stored, shape (H, W, 3), decoded by PyAV.
 
-    Matrix and range are those of the file's box, which FFmpeg puts into the stream; a frame has those of its header.
+    Matrix and range come from the file's box, which FFmpeg puts into the stream; a frame has them from its header.
     """
     try:
         import av
@@ -176,7 +169,7 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
     height, width, channels = picture.samples.shape
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    carried = _segment_header(picture.segments)
+    carried = _segment_header(picture.info)
     for attribute in carried.extra_attribs:
         if not attribute.name.startswith(("jpeg:", "oiio:")):
             header.attribute(attribute.name, attribute.type, attribute_value(carried, attribute))
@@ -187,12 +180,12 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     return header
 
 
-def _segment_header(segments: Mapping[str, bytes]) -> Any:
+def _segment_header(info: Mapping[Any, Any]) -> Any:
     """Return the header that OpenImageIO reads of a JPEG of one pixel with EXIF, XMP and ICC profile.
 
     So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
     """
-    fitting = {name: content for name, content in segments.items() if len(content) < _MOST_BYTES[name]}
+    fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
     if not fitting:
         return oiio.ImageSpec()
     with tempfile.TemporaryDirectory() as folder:

@@ -13,7 +13,7 @@ from typing import Any, BinaryIO
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from PIL import Image
+from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
@@ -39,7 +39,7 @@ HEIF_KINDS = ("HEIC", "AVIF")
 def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     """Return the photograph in an image file of 8 to 16 bits per sample.
 
-    The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX, BMP and TGA. The values are divided by
+    The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX and BMP. The values are divided by
     the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
     Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
     or layers the first is read, of a TIFF file the first that is not a thumbnail; of an HDR photograph with a gain map
@@ -49,7 +49,7 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     ----------
     source : str, path-like, bytes or binary file
         The file, its content, or an open file that is read to its end. Its beginning decides on the format, not its
-        name (except for camera raw and TGA).
+        name (except for camera raw).
 
     Raises
     ------
@@ -212,9 +212,9 @@ def _seek_picture(source: Any) -> None:
 def _bmp_samples(path: Path) -> NDArray[np.uint8]:
     """Return the samples of a BMP file, by Pillow, as OpenImageIO ignores the masks of channels."""
     try:
-        with Image.open(path, formats=["BMP"]) as image:
+        with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
             return np.atleast_3d(np.asarray(image))
-    except (OSError, ValueError) as problem:
+    except (OSError, SyntaxError, ValueError) as problem:
         raise problems.damaged(path, "BMP", str(problem)) from None
 
 

@@ -39,9 +39,9 @@ def header_color_tags(header: Any, file_format: str, interop_index: str = "") ->
     first = [codes, icc, *_png_tags(header)] if file_format == "PNG" else [icc, codes]
     others = [_exif_tags(header, interop_index), _interop_tags(header), _chromaticity_tags(header, "chromaticities")]
     tags = [each for each in (*first, *others) if each.source]
-    telling = next((each for each in tags if each.primaries or each.source == TABLES), (*tags, ColorTags())[0])
+    best = next((each for each in tags if each.primaries or each.source == TABLES), (*tags, ColorTags())[0])
     transfer = next((each.transfer for each in tags if each.transfer), "")
-    return ColorTags(telling.primaries, transfer, telling.source)
+    return ColorTags(best.primaries, transfer, best.source)
 
 
 def header_attribute(header: Any, name: str) -> Any:

@@ -59,11 +59,7 @@ class Recognition:
 
 
 def recognize(
-    levels: Levels,
-    *,
-    log_probability: float,
-    makes: tuple[str, ...] = (),
-    origins: Sequence[FileOrigin] = (),
+    levels: Levels, *, log_probability: float, makes: tuple[str, ...] = (), origins: Sequence[FileOrigin] = ()
 ) -> Recognition | None:
     """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
@@ -71,9 +67,9 @@ def recognize(
     `makes` are the makers that the files name.
     """
     if levels.is_flat:
-        return _recognition(Kind.FLAT, Notice("flat_frame"), Notice("flat_frame_advice"))
+        return Recognition(Kind.FLAT, str(Notice("flat_frame")), str(Notice("flat_frame_advice")))
     if is_limited_range(levels):
-        return _recognition(Kind.LIMITED_RANGE, Notice("limited_range"), Notice("limited_range_advice"))
+        return Recognition(Kind.LIMITED_RANGE, str(Notice("limited_range")), str(Notice("limited_range_advice")))
     if log_probability > RECOGNIZED:
         return _log_footage(levels, makes)
     return next(filter(None, map(_by_origin, origins)), None)
@@ -96,19 +92,14 @@ def refuse_linear(color: ColorTags, path: Path) -> None:
         raise PhotoError("tagged_linear", path=path, source=color.source)
 
 
-def _recognition(kind: Kind, reason: Notice, advice: Notice) -> Recognition:
-    """Return a recognition without curves."""
-    return Recognition(kind, str(reason), str(advice))
-
-
 def _by_origin(origin: FileOrigin) -> Recognition | None:
     """Return the recognition of a rendering or a sent copy by its metadata."""
     if origin.renderer:
         reason = Notice("rendering", {"renderer": origin.renderer})
-        return _recognition(Kind.RENDERING, reason, Notice("rendering_advice"))
+        return Recognition(Kind.RENDERING, str(reason), str(Notice("rendering_advice")))
     if origin.is_sent_copy:
         reason = Notice("sent_copy", {"quality": origin.jpeg_quality})
-        return _recognition(Kind.SENT_COPY, reason, Notice("sent_copy_advice"))
+        return Recognition(Kind.SENT_COPY, str(reason), str(Notice("sent_copy_advice")))
     return None
 
 

@@ -5,7 +5,7 @@ import struct
 import numpy as np
 import OpenImageIO as oiio
 import pytest
-from PIL import ImageCms
+from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
@@ -14,12 +14,11 @@ from tests.helpers.colored_ramp import colored_ramp
 
 def test_xmp_does_not_turn_avif(tmp_path):
     """In AVIF only its own boxes turn the picture (MIAF), and Pillow writes them from EXIF."""
-    image = pytest.importorskip("PIL.Image")
     xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
     xmp += b'<rdf:Description xmlns:tiff="http://ns.adobe.com/tiff/1.0/" tiff:Orientation="3"/></rdf:RDF></x:xmpmeta>'
     codes = colored_ramp(8)
-    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", xmp=xmp)
-    with image.open(tmp_path / "a.avif") as file:
+    Image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", xmp=xmp)
+    with Image.open(tmp_path / "a.avif") as file:
         assert file.getexif()[0x0112] == 3, "Pillow by itself would turn it"
     assert np.abs(read_codes(tmp_path / "a.avif").codes.astype(int) - codes).max() <= 3
 

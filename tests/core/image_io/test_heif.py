@@ -5,6 +5,7 @@ import sys
 
 import numpy as np
 import pytest
+from PIL import Image
 
 from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
@@ -29,12 +30,6 @@ def test_heic_keeps_its_codes(heif, name):
     assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
     difference = np.abs(values.codes.astype(int) - colored_ramp(bits))
     assert difference.max() <= FILES[name]
-
-
-def test_ten_bits_reach_the_photograph(heif):
-    photo = read_photo(heif / "rgb10.heic")
-    assert (photo.bit_depth, photo.is_gray) == (10, False)
-    np.testing.assert_array_equal(photo.pixels, (colored_ramp(10) / 1023).astype(np.float32))
 
 
 @pytest.mark.parametrize(("name", "cicp"), [("rgb8", (12, 13, 0, 1)), ("limited10", (12, 13, 9, 0))])
@@ -71,29 +66,12 @@ def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
 
 
 def with_gain_map(content, mark):
-    """Return a HEIC with one more box in front of its first, which says that there is a gain map."""
-    if mark == b"tmap":
-        size = struct.unpack(">I", content[:4])[0]
-        moved = size + 4
-        return _shifted(struct.pack(">I", moved) + content[4:size] + mark + content[size:], 4)
-    at = content.index(b"ipco") - 4
-    box = struct.pack(">I", 12 + len(mark) + 1) + b"auxC" + bytes(4) + mark + b"\0"
-    content = content[:at] + _grown(content[at:], b"ipco", len(box), box)
-    for name in (b"iprp", b"meta"):
-        at = content.index(name) - 4
-        content = (
-            content[:at]
-            + struct.pack(">I", struct.unpack(">I", content[at : at + 4])[0] + len(box))
-            + content[at + 4 :]
-        )
-    return _shifted(content, len(box))
-
-
-def _grown(content, name, by, box):
-    """Return a file's end that begins with a box, with another box at the end of this one."""
-    size = struct.unpack(">I", content[:4])[0]
-    assert content[4:8] == name
-    return struct.pack(">I", size + by) + content[4:size] + box + content[size:]
+    """Return a HEIC with one more box, which holds a mark, at the end of `meta`."""
+    at = content.index(b"meta") - 4
+    size = int.from_bytes(content[at : at + 4])
+    box = struct.pack(">I", 8 + len(mark)) + b"free" + mark
+    grown = struct.pack(">I", size + len(box)) + content[at + 4 : at + size] + box
+    return _shifted(content[:at] + grown + content[at + size :], len(box))
 
 
 def _shifted(content, by):
@@ -124,9 +102,8 @@ def test_a_gain_map_is_said_and_the_base_picture_read(heif, tmp_path, mark):
 
 @pytest.mark.parametrize("limits", ["full", "limited"])
 def test_avif_of_8_bits_is_read_by_pillow(tmp_path, limits):
-    image = pytest.importorskip("PIL.Image")
     codes = colored_ramp(8)
-    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", range=limits)
+    Image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", range=limits)
     values = read_codes(tmp_path / "a.avif")
     assert (values.bit_depth, values.metadata.file_format) == (8, "AVIF")
     assert np.abs(values.codes.astype(int) - codes).max() <= 3
@@ -134,18 +111,16 @@ def test_avif_of_8_bits_is_read_by_pillow(tmp_path, limits):
 
 
 def test_alpha_of_avif_is_told_from_none(tmp_path):
-    image = pytest.importorskip("PIL.Image")
     codes = colored_ramp(8)
     for name, samples in (("a.avif", codes), ("b.avif", np.dstack([codes, codes[..., :1]]))):
-        image.fromarray(samples).save(tmp_path / name, quality=100, subsampling="4:4:4")
+        Image.fromarray(samples).save(tmp_path / name, quality=100, subsampling="4:4:4")
     assert [read_codes(tmp_path / name).metadata.alpha for name in ("a.avif", "b.avif")] == ["", "straight"]
 
 
 def test_avif_is_turned_upright(tmp_path):
-    image = pytest.importorskip("PIL.Image")
-    codes, tags = colored_ramp(8), image.Exif()
+    codes, tags = colored_ramp(8), Image.Exif()
     tags[0x0112], tags[0x010F] = 6, "Maker"
-    image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", exif=tags.tobytes())
+    Image.fromarray(codes).save(tmp_path / "a.avif", quality=100, subsampling="4:4:4", exif=tags.tobytes())
     values = read_codes(tmp_path / "a.avif")
     assert np.abs(values.codes.astype(int) - np.rot90(codes, -1)).max() <= 3
     assert (values.metadata.make, values.header.get_int_attribute("Orientation")) == ("Maker", 1)
@@ -160,18 +135,15 @@ def test_avif_of_10_bits_keeps_them(heif):
     assert abs(difference.mean()) <= 2
 
 
-def test_avif_of_10_bits_says_what_to_install(heif, monkeypatch):
-    monkeypatch.setitem(sys.modules, "av", None)
+@pytest.mark.parametrize(
+    ("name", "package", "code"),
+    [("limited10.avif", "av", "deep_avif_package_missing"), ("rgb8.heic", "pi_heif", "heif_package_missing")],
+)
+def test_a_missing_package_is_named(heif, monkeypatch, name, package, code):
+    monkeypatch.setitem(sys.modules, package, None)
     with pytest.raises(PhotoError) as caught:
-        read_photo(heif / "limited10.avif")
-    assert caught.value.code == "deep_avif_package_missing"
-
-
-def test_heic_says_what_to_install(heif, monkeypatch):
-    monkeypatch.setitem(sys.modules, "pi_heif", None)
-    with pytest.raises(PhotoError) as caught:
-        read_photo(heif / "rgb8.heic")
-    assert caught.value.code == "heif_package_missing"
+        read_photo(heif / name)
+    assert caught.value.code == code
 
 
 @pytest.mark.parametrize("name", ["rgb8.heic", "limited10.avif"])
@@ -182,9 +154,9 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
     content = (heif / name).read_bytes()
     path = tmp_path / name
     path.write_bytes(content[: int(len(content) * fraction)])
-    with pytest.raises(PhotoError, match="damaged or cut short") as caught:
+    with pytest.raises(PhotoError) as caught:
         read_photo(path)
-    assert "\n" not in str(caught.value)
+    assert caught.value.code == "damaged"
 
 
 def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_path):
@@ -197,9 +169,8 @@ def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_pat
         try:
             read_codes(path)
         except PhotoError as problem:
-            refusals.append(str(problem))
+            refusals.append(problem)
     assert 0 < len(refusals) < 60
-    assert not any("\n" in message for message in refusals)
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
@@ -207,22 +178,25 @@ def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):
     content = (heif / "phone.heic").read_bytes()
     assert content.count(b"Exif\0\0\0\0\x0epitm") == 1
     (tmp_path / "a.heic").write_bytes(content.replace(b"Exif\0\0\0\0\x0epitm", b"\xffxif\0\0\0\0\x0epitm"))
-    with pytest.raises(PhotoError, match="the type of an item is no text"):
+    with pytest.raises(PhotoError) as caught:
         read_photo(tmp_path / "a.heic")
+    assert (caught.value.code, caught.value.facts["problem"]) == ("damaged", "the type of an item is not text")
 
 
 def test_a_film_without_pictures_is_refused(heif, monkeypatch):
     av = pytest.importorskip("av", reason="AVIF of more than 8 bits needs PyAV")
     monkeypatch.setattr(av.container.InputContainer, "decode", lambda *_, **__: iter(()), raising=False)
-    with pytest.raises(PhotoError, match="damaged or cut short"):
+    with pytest.raises(PhotoError) as caught:
         read_photo(heif / "limited10.avif")
+    assert caught.value.code == "damaged"
 
 
 def test_a_huge_size_is_refused_before_decoding(heif, monkeypatch):
     monkeypatch.setattr("crfnet_core.photograph.image_io.header_checks.MAX_PIXELS", 64 * 48 - 1)
     monkeypatch.setattr("crfnet_core.photograph.image_io.heif._heic", None)
-    with pytest.raises(PhotoError, match="64 x 48 pixels"):
+    with pytest.raises(PhotoError) as caught:
         read_photo(heif / "rgb8.heic")
+    assert caught.value.code == "too_many_pixels"
 
 
 def test_exif_that_is_not_utf8_is_read(heif, tmp_path):

@@ -1,4 +1,4 @@
-"""What the chunks of PNG files say of colours, by their order in the specification's third edition."""
+"""The color tags in the chunks of PNG files, by their order in the specification's third edition."""
 
 import struct
 import zlib
@@ -38,8 +38,8 @@ def test_named_chromaticities_are_known(tmp_path, primaries):
 
 
 def test_others_are_taken_as_they_are(tmp_path):
-    found = tags(tmp_path / "a.png", cHRM=chrm(OWN)).primaries
-    np.testing.assert_allclose(found.corners, OWN.corners, atol=1e-5)
+    primaries = tags(tmp_path / "a.png", cHRM=chrm(OWN)).primaries
+    np.testing.assert_allclose(primaries.corners, OWN.corners, atol=1e-5)
 
 
 @pytest.mark.parametrize(
@@ -60,8 +60,8 @@ def test_chunks_are_believed_by_their_order(tmp_path):
     chunks = {"cICP": bytes([12, 13, 0, 1]), "iCCP": ICC_CHUNK, "sRGB": b"\0", "cHRM": chrm(PROPHOTO)}
     expected = [(DISPLAY_P3, "CICP"), (ADOBE_RGB, "ICC profile"), (REC709, "sRGB chunk"), (PROPHOTO, "cHRM chunk")]
     for index, (primaries, source) in enumerate(expected):
-        left = dict([*chunks.items()][index:])
-        assert tags(tmp_path / "a.png", **left) == ColorTags(primaries, "", source)
+        remaining = dict([*chunks.items()][index:])
+        assert tags(tmp_path / "a.png", **remaining) == ColorTags(primaries, "", source)
 
 
 def test_a_gamma_of_one_is_linear_unless_another_chunk_knows_better(tmp_path):
@@ -81,5 +81,5 @@ def test_damaged_chunks_say_nothing(tmp_path, chunks):
 def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))[:70])
-    found = with_color_chunks(oiio.ImageSpec(), path)
-    assert [each.name for each in found.extra_attribs] == ["png:gamma"]
+    header = with_color_chunks(oiio.ImageSpec(), path)
+    assert [each.name for each in header.extra_attribs] == ["png:gamma"]

@@ -1,4 +1,4 @@
-"""What is no photograph gets no answer that looks like one: each of these was "usable" before."""
+"""Inputs that are not photographs are not to be trusted: each of these was "usable" before."""
 
 from pathlib import Path
 
@@ -27,25 +27,25 @@ def estimated(pixels, network, name="picture.png"):
 
 @pytest.mark.parametrize("name", ["ARRI LogC3", "Canon Log", "Panasonic V-Log", "Sony S-Log3"])
 def test_log_footage_is_not_to_be_trusted(network, name):
-    found = estimated(log_picture(name), network)
-    assert found.verdict is Verdict.DO_NOT_TRUST
-    assert found.recognition.kind is Kind.LOG_FOOTAGE
-    assert found.families[Family.LOG] > 0.5
-    assert found.warnings[0].code == "recognized"
+    estimate = estimated(log_picture(name), network)
+    assert estimate.verdict is Verdict.DO_NOT_TRUST
+    assert estimate.recognition.kind is Kind.LOG_FOOTAGE
+    assert estimate.families[Family.LOG] > 0.5
+    assert estimate.warnings[0].code == "recognized"
 
 
 def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
     pixels = read_photo(plate).pixels
     limited = quantized((16 + 219 * np.clip(pixels.astype(float) * 1.05 - 0.02, 0, 1)) / 255)
-    found = estimated(limited, network)
-    assert (found.verdict, found.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.LIMITED_RANGE)
+    estimate = estimated(limited, network)
+    assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.LIMITED_RANGE)
 
 
 def test_ordinary_pictures_are_left_alone(network, plate):
     for pixels in (read_photo(plate).pixels, ordinary_picture()):
-        found = estimated(pixels, network)
-        assert found.recognition is None
-        assert found.families[Family.LOG] < 0.5
+        estimate = estimated(pixels, network)
+        assert estimate.recognition is None
+        assert estimate.families[Family.LOG] < 0.5
 
 
 @pytest.mark.parametrize(

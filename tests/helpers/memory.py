@@ -1,0 +1,30 @@
+"""The memory that reading takes, in a process of its own."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+from pathlib import Path
+
+READ = """
+import resource, sys
+from crfnet_core.errors import PhotoError
+from crfnet_core.photograph.image_io import read_photo
+before, is_read = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss, []
+for name in sys.argv[1:]:
+    try:
+        is_read.append(bool(read_photo(name)))
+    except PhotoError:
+        is_read.append(False)
+print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, any(is_read))
+"""
+
+
+def memory_of_reading(*paths: Path) -> tuple[int, bool]:
+    """Return the kB beyond what the imports take, as Linux reports them, and whether any of the files was read."""
+    root = Path(__file__).parents[2]
+    run = subprocess.run(
+        [sys.executable, "-c", READ, *map(str, paths)], cwd=root, capture_output=True, text=True, timeout=30, check=True
+    )
+    size, is_read = run.stdout.split()
+    return int(size), is_read == "True"
