@@ -252,12 +252,6 @@ class TestRules:
         assert rule_names(loaded(done.path))[:1] == [NAME]
         assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"
 
-    def test_the_portable_config_of_an_estimate_is_a_base_too(self, small_look, tmp_path):
-        night = write_look(tmp_path / "night", ["night.jpg"])
-        found = loaded(add(small_look, tmp_path / "show", night).path)
-        assert_same(conversions(found), conversions(loaded(small_look / "config.ocio")))
-        assert rule_names(found)[:2] == ["CRF night", NAME]
-
 
 def test_hosts_find_plates_and_files_by_their_category():
     config = portable_config([])

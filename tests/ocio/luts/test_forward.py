@@ -11,7 +11,6 @@ from crfnet.errors import LutError
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.forward import LENGTHS, forward_lut, round_trip_error
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
-from crfnet.luts.response import is_forward
 from crfnet.luts.rgb_lut import RgbLut1D, lut_of_columns
 from crfnet_core.posterior.responses import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -84,11 +83,6 @@ class TestForward:
         direction, _, photographs = forward_lut(lut).comments
         assert direction.startswith("Camera response: relative scene-linear irradiance in")
         assert photographs == "Photographs: a.jpg"
-
-    def test_directions_are_distinguished(self, true_response, rgb_lut):
-        for lut in (inverse_response_lut(true_response), rgb_lut):
-            assert not is_forward(lut)
-            assert is_forward(forward_lut(lut))
 
 
 class TestRgbLut:

@@ -9,12 +9,6 @@ from crfnet.errors import PlateError
 from crfnet.plates.parallel import finished
 
 
-def test_every_job_ends_once():
-    done = []
-    jobs = ((number, lambda number=number: done.append(number)) for number in range(50))
-    assert sorted(name for name, _ in finished(jobs, 3)) == sorted(done) == list(range(50))
-
-
 @pytest.mark.parametrize("workers", [1, 3])
 def test_jobs_are_taken_only_when_there_is_room(workers):
     taken, ended, most = [], [], []
