@@ -83,14 +83,6 @@ class TestWriting:
         assert caught.value.code == "config_invalid"
         assert list(tmp_path.iterdir()) == []
 
-    def test_a_config_that_is_not_valid_is_not_written(self, folder):
-        config = portable_config([SPACE])
-        config.setRole("color_picking", "no such space")
-        with pytest.raises(ConfigError) as caught:
-            write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
-        assert caught.value.code == "config_invalid"
-        assert listed(folder) == ["plate01.spi1d"]
-
 
 class TestLoading:
     def test_a_role_has_a_name_or_is_refused(self, folder):
@@ -100,11 +92,6 @@ class TestLoading:
         with pytest.raises(ConfigError) as caught:
             role_name(folder / "config.ocio", "nonsense")
         assert caught.value.code == "role_absent"
-
-    def test_a_config_that_is_not_there_is_named(self, tmp_path):
-        with pytest.raises(ConfigError) as caught:
-            load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_absent"
 
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_what_is_no_config_is_refused(self, tmp_path, text):

@@ -84,14 +84,6 @@ class TestAdding:
             added(small_config(), SPACE)
         assert caught.value.code == "config_without_rec709"
 
-    def test_a_config_of_profile_1_gets_no_aliases_and_no_rules(self):
-        plate = PlateColorSpace("CRF plate01", "a.spi1d", aliases=("crf_plate01",), file_patterns=("a.*",))
-        found = added(small_config(version="1", roles="aces_interchange: working"), plate)
-        found.validate()
-        assert found.getMajorVersion() == 1
-        assert found.getColorSpace("CRF plate01") is not None
-        assert found.getColorSpace("crf_plate01") is None
-
 
 class TestPrimaries:
     PLATE = PlateColorSpace("CRF plate01", "plate01.spi1d", primaries=DISPLAY_P3, exposure=0.5)

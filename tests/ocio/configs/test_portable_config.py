@@ -7,7 +7,7 @@ import pytest
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
-from tests.helpers.configs import REC709_TO_AP1, SPACE, converted, rule_names
+from tests.helpers.configs import REC709_TO_AP1, SPACE, converted
 
 
 def test_it_is_valid_and_of_profile_2_0():
@@ -67,28 +67,14 @@ def test_files_find_their_space_by_rules(path, space):
     assert portable_config([plate]).getColorSpaceFromFilepath(path)[0] == space
 
 
-def test_several_plates():
-    plates = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", file_patterns=(f"{name}.*",)) for name in "abc"]
-    config = portable_config(plates)
-    config.validate()
-    assert rule_names(config)[:3] == ["CRF c", "CRF b", "CRF a"]
-    assert config.getColorSpaceFromFilepath("/x/b.tif")[0] == "CRF b"
-
-
-def test_two_plates_of_one_name_are_refused():
-    with pytest.raises(ConfigError) as caught:
-        portable_config([SPACE, PlateColorSpace("crf PLATE01", "other.spi1d")])
-    assert caught.value.code == "color_space_exists"
-
-
 def test_an_alias_that_is_taken_is_left_out():
     spaces = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", aliases=("same",)) for name in "ab"]
     config = portable_config([*spaces, PlateColorSpace("CRF c", "c.spi1d", aliases=("lin_rec709", "crf_c"))])
     assert [list(config.getColorSpace(f"CRF {name}").getAliases()) for name in "abc"] == [["same"], [], ["crf_c"]]
 
 
-@pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear"])
-def test_names_of_the_config_are_refused(name):
+@pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear", "crf PLATE01"])
+def test_names_that_are_taken_are_refused(name):
     with pytest.raises(ConfigError) as caught:
-        portable_config([PlateColorSpace(name, "a.spi1d")])
+        portable_config([SPACE, PlateColorSpace(name, "a.spi1d")])
     assert caught.value.code == "color_space_exists"

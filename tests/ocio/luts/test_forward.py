@@ -135,13 +135,6 @@ class TestFfmpeg:
             < tolerance.lut
         )
 
-    def test_in_float_for_each_channel(self, tmp_path, rgb_lut, tolerance):
-        write_lut(tmp_path / "a.cube", rgb_lut)
-        pixels = np.random.default_rng(3).random((4096, 3), dtype=np.float32)
-        planes = np.ascontiguousarray(pixels.T[[1, 2, 0]])  # G, B, R
-        found = self.through_ffmpeg(tmp_path / "a.cube", planes, "gbrpf32le")[[2, 0, 1]].T
-        assert np.abs(found - rgb_lut.apply(pixels)).max() < tolerance.lut
-
     @pytest.mark.parametrize(("bits", "pixel_format", "kind"), [(8, "rgb24", "u1"), (16, "rgb48le", "<u2")])
     def test_in_integers(self, tmp_path, true_response, bits, pixel_format, kind):
         lut, most = inverse_response_lut(true_response), 2**bits - 1

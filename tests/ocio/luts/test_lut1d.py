@@ -98,12 +98,6 @@ def test_tables_that_are_none_are_refused(values, domain, code):
     assert caught.value.code == code
 
 
-def test_the_widest_lut_has_room_in_single_precision():
-    widest = Lut1D([-4e34, 4e34], (-4e34, 4e34))
-    with np.errstate(all="raise"):
-        assert widest.apply(np.float32([-4e34, 0, 4e34])).tolist() == np.float32([-4e34, 0, 4e34]).tolist()
-
-
 def test_a_table_is_its_own_and_single_precision():
     values = np.array([0, 0.1, 1])
     lut = Lut1D(values)
@@ -214,14 +208,6 @@ def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(c
     back = ocio_applied(lut, ocio_applied(lut, codes(8)), OCIO.TRANSFORM_DIR_INVERSE)
     assert np.rint(back * 255).tolist() == list(range(256))
     assert np.rint(lut.apply_inverse(lut.apply(codes(8))) * 255).tolist() == list(range(256))
-
-
-def test_curve_and_longest_lut_agree_on_every_number(true_response, tolerance):
-    pixels = np.random.default_rng(0).random((300, 300, 3), dtype=np.float32)
-    found = inverse_response_lut(true_response, length=65536).apply(pixels)
-    np.testing.assert_allclose(found, true_response.inverse(pixels), rtol=0, atol=tolerance.lut)
-    usual = inverse_response_lut(true_response).apply(pixels)
-    np.testing.assert_allclose(usual, true_response.inverse(pixels), rtol=0, atol=5e-5)
 
 
 @pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])

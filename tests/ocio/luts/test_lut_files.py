@@ -41,12 +41,6 @@ def ocio_applied(path, values, direction=OCIO.TRANSFORM_DIR_FORWARD, optimizatio
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 class TestRoundTrip:
-    @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (4093, (0, 1)), (5101, EXTENDED)])
-    def test_what_is_written_is_read_back_bit_for_bit(self, tmp_path, suffix, name, length, domain):
-        lut = inverse_response_lut(CURVES[name], length=length, domain=domain, comments=("photo: a <b> & c.jpg",))
-        write_lut(tmp_path / f"a{suffix}", lut)
-        assert read_lut(tmp_path / f"a{suffix}") == lut
-
     @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (5101, EXTENDED)])
     def test_opencolorio_agrees_with_numpy_in_both_directions(self, tmp_path, suffix, name, length, domain, tolerance):
         path = tmp_path / f"a{suffix}"
@@ -105,10 +99,6 @@ class TestFiles:
         assert path.read_text() == "mine"
         write_lut(path, Lut1D([0, 1]), overwrite=True)
         assert read_lut(path) == Lut1D([0, 1])
-
-    def test_a_folder_that_is_absent_is_named(self, tmp_path, suffix):
-        with pytest.raises(LutError):
-            write_lut(tmp_path / "none" / f"a{suffix}", Lut1D([0, 1]))
 
     def test_capital_suffixes_are_known(self, tmp_path, suffix):
         path = tmp_path / f"A{suffix.upper()}"

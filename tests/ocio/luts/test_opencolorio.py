@@ -80,13 +80,6 @@ def test_what_opencolorio_reads_is_read_alike(tmp_path, name, text, expected):
     np.testing.assert_allclose(lut.apply(pixels), through_opencolorio(tmp_path / name, pixels), atol=3e-5)
 
 
-def test_a_shaper_of_another_domain_is_sampled_over_it(tmp_path):
-    (tmp_path / "a.csp").write_text(csp(shaper="2\n0 4\n0 1\n"))
-    lut = read_lut(tmp_path / "a.csp")
-    assert lut.domain == (0, 4)
-    assert lut.apply([0.0, 2.0, 4.0]) == pytest.approx([0, 0.3, 1], abs=1e-5)
-
-
 TWICE = value_range(0, 2).replace("</Range>", "<minInValue>-1</minInValue></Range>")
 MATRIX = '<Matrix inBitDepth="32f" outBitDepth="32f"><Array dim="3 3">1 0 0 0 2 0 0 0 1</Array></Matrix>'
 

@@ -78,21 +78,11 @@ def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     assert sequence.missing == (11, 13, 14)
 
 
-def test_numbers_outgrow_their_padding(tmp_path):
-    touch(tmp_path, "p.98.png", "p.99.png", "p.100.png")
-    assert find_frames(tmp_path / "p.##.png").numbers == (98, 99, 100)
-
-
 def test_other_files_are_left_alone(tmp_path):
     touch(tmp_path, "p.0001.png", "p.001.png", "p.00002.png", "p.0003.jpg", "q.0004.png", ".p.0005.png", "p.0006.png~")
     touch(tmp_path, ".p.0007.abcdefgh.png", "p.٠٠٠٨.png", "pX0009.png")
     (tmp_path / "p.0010.png").mkdir()
     assert find_frames(tmp_path / "p.%04d.png").numbers == (1,)
-
-
-def test_frame_numbers_may_be_negative(tmp_path):
-    touch(tmp_path, "p.-002.png", "p.-001.png", "p.0000.png", "p.-000.png")
-    assert find_frames(tmp_path / "p.####.png").numbers == (-2, -1, 0)
 
 
 def test_only_the_chosen_frames_are_found(tmp_path):

@@ -24,12 +24,6 @@ def refusal(*arguments, **options):
     return caught.value.code
 
 
-def test_our_own_output_is_refused_as_a_plate(tmp_path, out):
-    linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
-    assert refusal(out / "a.exr", out / "b.exr", LUT) == "plate_is_linear"
-    assert not (out / "b.exr").exists()
-
-
 def test_a_bad_single_plate_gives_its_own_error(tmp_path, out):
     (tmp_path / "a.png").touch()
     write_image(tmp_path / "a.tif", SMALL[..., :3].astype(np.float32))
@@ -50,8 +44,7 @@ def test_output_names_that_cannot_be_are_refused(tmp_path, out, numbers, target,
 
 
 def test_an_absent_folder_is_refused(tmp_path):
-    with pytest.raises(PlateError, match="does not exist"):
-        linearize(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT)
+    assert refusal(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT) == "folder_absent"
 
 
 def test_a_finished_plate_of_another_size_is_that_of_another_plate(tmp_path, out):
@@ -110,11 +103,10 @@ def test_alpha_that_does_not_fit_into_half_floats_is_refused(tmp_path, out):
 def test_a_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
     def fail(path, header, pixels, *, name):
         path.write_bytes(b"half an EXR")
-        raise PlateError(f"{name}: cannot be written (disk full); check the disk")
+        raise PlateError("exr_not_written", path=name, reason="disk full")
 
     monkeypatch.setattr(linear, "write_exr", fail)
-    with pytest.raises(PlateError, match=r"out/a\.exr: cannot be written"):
-        linearize(write_image(tmp_path / "a.png", SMALL), out / "a.exr", LUT)
+    assert refusal(write_image(tmp_path / "a.png", SMALL), out / "a.exr", LUT) == "exr_not_written"
     assert tree(out) == {}
 
 
