@@ -19,8 +19,7 @@ from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
 from crfnet.plates.linear import linear_targets, linearize_plates
-from crfnet.plates.linear_space import linear_space
-from crfnet.plates.primaries import PlatePrimaries
+from crfnet.plates.primaries import PlatePrimaries, linear_space
 from crfnet_core.colorimetry import REC709, Primaries
 from crfnet_core.types import Progress
 

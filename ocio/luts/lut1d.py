@@ -100,11 +100,6 @@ class Lut1D(EqualByFields):
         pixels : array_like, any shape
             Inputs in the units of `domain`.
 
-        Returns
-        -------
-        ndarray, float32 or float64, of the shape of `pixels`
-            Outputs between the first and the last value.
-
         Raises
         ------
         LutError
@@ -142,17 +137,7 @@ class Lut1D(EqualByFields):
         Parameters
         ----------
         pixels : array_like, any shape
-            Outputs, in the units of `values`.
-
-        Returns
-        -------
-        ndarray, float32 or float64, of the shape of `pixels`
-            Inputs within `domain`; float32 for half and single precision, else float64.
-
-        Raises
-        ------
-        LutError
-            If integers above the last value, and above 1, are given.
+            Outputs, in the units of `values`; integers as in `apply`.
         """
         outputs = _floating(pixels, last=float(self.values[-1]))
         known = np.where(np.isnan(outputs), -np.inf, outputs).astype(np.float64)

@@ -138,11 +138,6 @@ def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
     return frames[0] if frames and not frames[0].is_corrupt else None
 
 
-def frame_name(path: Path, number: int) -> str:
-    """Return the name of a frame in reports."""
-    return f"{path.name} frame {number}"
-
-
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
     """Refuse a frame of another size, coding, turn or interlacing than the first."""
     picture = Picture.from_frame(movie.path, frame, movie.codec)
@@ -184,6 +179,6 @@ def _photo(movie: MovieStream, number: int, frame: VideoFrame) -> Photo:
         pixels=np.divide(codes, np.float32(largest), dtype=np.float32),
         bit_depth=movie.bit_depth,
         is_gray=bool((codes == codes[..., :1]).all()),
-        path=movie.path.with_name(frame_name(movie.path, number)),
+        path=movie.path.with_name(f"{movie.path.name} frame {number}"),
         metadata=movie.file_metadata,
     )

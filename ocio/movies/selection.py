@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 
 import numpy as np
 
@@ -40,16 +40,12 @@ def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator
     seen: dict[int, Float32Array] = {}
     for number, photo in frames.photos(candidates):
         glimpse, part = _glimpse(photo), candidates[number]
-        if part not in seen and _shows_something(glimpse) and _is_new(glimpse, seen.values()):
+        is_new = all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in seen.values())
+        if part not in seen and is_new and ((glimpse > DARK) & (glimpse < LIGHT)).mean() >= FRACTION:
             seen[part] = glimpse
             yield number, photo
     if not seen:
         yield from _middle_photos(frames, parts)
-
-
-def _is_new(glimpse: Float32Array, others: Iterable[Float32Array]) -> bool:
-    """Return whether a frame differs from all others."""
-    return all(np.abs(glimpse - other).mean() >= DIFFERENCE for other in others)
 
 
 def _middle_photos(frames: MovieFrames, parts: Sequence[Sequence[int]]) -> Iterator[tuple[int, Photo]]:
@@ -67,8 +63,3 @@ def _glimpse(photo: Photo) -> Float32Array:
     step = max(1, max(photo.shape[:2]) // SAMPLES)
     glimpse: Float32Array = photo[::step, ::step].mean(axis=2)
     return glimpse
-
-
-def _shows_something(glimpse: Float32Array) -> bool:
-    """Return whether enough of a frame is neither black nor white."""
-    return bool(((glimpse > DARK) & (glimpse < LIGHT)).mean() >= FRACTION)

@@ -12,14 +12,14 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 import numpy as np
 
 from crfnet_core.photograph.image_io import MAX_PIXELS
-from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
 from crfnet_core.photograph.orientation import UPRIGHT, Turn
 from crfnet_core.photograph.yuv import Coding, bit_depth
 
 from ..errors import PlateError
+from .dolby_vision import IPT_PROFILE, dolby_vision_profile
 from .library import ffmpeg_line, opened, undecodable
-from .tags import IPT_PROFILE, color_tags, dolby_vision_profile
 
 if TYPE_CHECKING:
     from av import VideoFrame
@@ -39,6 +39,12 @@ CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9"
 MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
 MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
 FIRMWARE = ("com.apple.quicktime.software",)
+
+#: Metadata by FFmpeg's names, in lower case -> a text in it -> the log curve that it names.
+LOG_TAGS = {
+    "com.arri.camera.colorgammasxs": {"log-c": "ARRI LogC3"},
+    "com.panasonic.semi-pro.metadata.xml": {"<capturegamma>v-log</capturegamma>": "Panasonic V-Log"},
+}
 
 
 @dataclass(frozen=True)
@@ -212,11 +218,21 @@ def _described(
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
         rate=Fraction(stream.average_rate or 0),
-        color=color_tags(frame, metadata),
+        color=_color_tags(frame, metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
     )
+
+
+def _color_tags(frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
+    """Return primaries and transfer function as the stream tags them, or else the log curve that metadata names."""
+    tags = cicp_tags((frame.color_primaries, frame.color_trc))
+    texts = {name: "".join(metadata.get(name, "").lower().split()) for name in LOG_TAGS}
+    curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
+    if tags.transfer or not curves:
+        return tags
+    return ColorTags(tags.primaries, curves[0], " and ".join(filter(None, (tags.source, "the maker's entry"))))
 
 
 def _turn(frame: VideoFrame) -> Turn:

@@ -27,8 +27,7 @@ from ..output_files import OutputFiles, check_config_folder, check_folder, outpu
 from ..plates.frame_files import FrameSource
 from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
-from ..plates.linear_space import LinearSpace
-from ..plates.primaries import PlatePrimaries, common_primaries
+from ..plates.primaries import LinearSpace, PlatePrimaries, common_primaries
 from ..report import estimate_document
 from ..staging import staged_files
 from .estimates import FileEstimate, response_lut

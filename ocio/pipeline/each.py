@@ -18,7 +18,7 @@ from ..luts.files import read_lut
 from ..movies.source import file_source
 from ..options import OutputOptions
 from ..output_files import OutputFiles
-from ..plates.linear_space import linear_space
+from ..plates.primaries import linear_space
 from .batch import Batch, Task, plan_tasks
 from .delivery import deliver_estimate, estimated_light, with_light
 from .estimates import estimate_files

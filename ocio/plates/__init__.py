@@ -4,8 +4,7 @@ frames        the frames that a name stands for: find the files, choose some of 
 frame_pattern names with a placeholder for the frame number
 frame_numbers ranges of frame numbers, read and written
 frame_files   read one frame: its encoded samples, its alpha and its header; the protocol of frame sources
-primaries     the primaries of an encoded plate: by its tags, as chosen, or by convention
-linear_space  the space of the linear values, and the matrix that leads there
+primaries     the primaries of an encoded plate, and the space of its linear values
 light         the meaning of a linear plate's numbers, and whether finished frames have the same
 linear        linearize frames through a LUT, several at a time
 parallel      jobs in several threads, with bounded memory

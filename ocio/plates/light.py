@@ -16,8 +16,7 @@ from ..errors import PlateError
 from ..luts.exposure import anchored_exposure
 from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
-from .linear_space import LinearSpace, linear_space
-from .primaries import PlatePrimaries, plate_primaries
+from .primaries import LinearSpace, PlatePrimaries, linear_space, plate_primaries
 
 #: Our attributes of OpenEXR files: the LUT's provenance, the LUT itself, stops, primaries and who says so.
 RESPONSE, LUT, EXPOSURE = "crfnet:response", "crfnet:lut", "crfnet:exposure"

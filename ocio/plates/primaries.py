@@ -1,4 +1,4 @@
-"""The primaries of an encoded plate: as its file tags them, as the user states, or by convention."""
+"""The primaries of an encoded plate, by its tags, as stated or by convention; and the space of its linear values."""
 
 from __future__ import annotations
 
@@ -6,14 +6,21 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.colorimetry import PHOTOGRAPHIC, REC709, Primaries
+from crfnet_core.colorimetry import AP0, AP1, PHOTOGRAPHIC, REC709, Primaries, conversion_matrix
 from crfnet_core.photograph.metadata.color_tags import ColorTags
+from crfnet_core.types import Float64Array
 
-from ..defaults import PRIMARIES
+from ..defaults import OUTPUT_SPACES, PRIMARIES
 from ..errors import PlateError
 
 #: The source of primaries that the user gave, and of those of a file without tags, which is taken for sRGB.
 CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
+
+#: The Color Interop Forum's name of a space that has none, or is not known.
+UNKNOWN = "unknown"
+
+#: The primaries of the output spaces; "plate" has those of the plate.
+TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": AP0}
 
 
 @dataclass(frozen=True)
@@ -61,3 +68,52 @@ def check_same_primaries(path: Path, plate: PlatePrimaries, first: Path, expecte
     """Raise a PlateError if a plate has other primaries than the first one that it goes together with."""
     if plate.primaries != expected.primaries:
         raise PlateError("primaries_differ", path=path, primaries=plate, first=first.name, expected=expected)
+
+
+@dataclass(frozen=True)
+class LinearSpace:
+    """The space of linear values: the primaries of the encoded plate, and of the values; None if they are not known."""
+
+    source: Primaries | None
+    target: Primaries | None
+
+    @property
+    def matrix(self) -> Float64Array | None:
+        """From the plate's linear RGB to that of the space, shape (3, 3); None where nothing is to be done."""
+        if self.source is None or self.target is None or self.source == self.target:
+            return None
+        return conversion_matrix(self.source, self.target)
+
+    @property
+    def interop_id(self) -> str:
+        """The Color Interop Forum's name, for OpenEXR's attribute `colorInteropID`."""
+        return (self.target and self.target.interop_id) or UNKNOWN
+
+    @property
+    def chromaticities(self) -> tuple[float, ...]:
+        """OpenEXR's attribute of this name, 8 numbers, where the primaries are known but have no interop name."""
+        if self.target is None or self.target.interop_id:
+            return ()
+        return tuple(map(float, self.target.corners.ravel()))
+
+    def __str__(self) -> str:
+        """Return the space in words."""
+        if self.target is None:
+            return "linear light of unknown primaries"
+        return {AP1: "ACEScg", AP0: "ACES2065-1"}.get(self.target, f"linear {self.target.name}")
+
+
+def linear_space(plate: PlatePrimaries, output: str = OUTPUT_SPACES[0]) -> LinearSpace:
+    """Return the space of a plate's linear values; `output` is one of `TARGETS`.
+
+    The matrix does not clip: colors outside the target's gamut get negative values, by which they can be converted
+    back. A plate of unknown primaries is left as it is, and its space is unknown. Raise a PlateError if there is no
+    such space, or unknown primaries are to be converted to ACES.
+    """
+    if output not in TARGETS:
+        raise PlateError("unknown_output_space", space=output, spaces=", ".join(OUTPUT_SPACES))
+    if plate.primaries is not None:
+        return LinearSpace(plate.primaries, TARGETS[output] or plate.primaries)
+    if output.startswith("ACES"):
+        raise PlateError("primaries_unknown", primaries=plate, space=output)
+    return LinearSpace(None, None)

@@ -8,7 +8,6 @@ import shutil
 
 import numpy as np
 import pytest
-from crfnet_core.photograph.metadata.encodings import Encoding
 
 from crfnet.defaults import ESTIMATES
 from crfnet.luts.files import WRITERS
@@ -19,7 +18,7 @@ from crfnet_core.files import json_text
 from crfnet_core.library import CameraLibrary
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.devices import Device
-from crfnet_core.photograph.metadata.origin import SHAPES
+from crfnet_core.photograph.metadata.origin import SHAPES, Encoding
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.cameras import camera, photograph
 from tests.helpers.looks import write_look

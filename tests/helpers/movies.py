@@ -56,28 +56,11 @@ def write_movie(
     muxer: Mapping[str, str] | None = None,
     **stream_attributes: Any,
 ) -> Path:
-    """Write a movie of 24 frames per second and return its path.
+    """Write a movie of 24 frames per second and return its path, whose suffix names the container.
 
-    Parameters
-    ----------
-    path : Path
-        Its suffix names the container.
-    count : int
-        How many frames it has.
-    codec, form, size, options
-        The encoder with its options, the pixel format and the size.
-    tags : mapping
-        Attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
-    metadata : mapping
-        Of the file.
-    images : iterable of ndarray, uint8, shape (H, W, 3)
-        The pictures; `pictures` by default.
-    times : iterable of int
-        The times of the frames in 1/24 second; consecutive by default.
-    is_interlaced : bool
-        Whether the frames are encoded as two fields.
-    muxer, stream_attributes
-        Options of the container; attributes of the stream.
+    `tags` are attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
+    `images` are uint8, shape (H, W, 3), by default `pictures`; `times` are in 1/24 second, by default consecutive.
+    `options` and `muxer` are those of the encoder and of the container; an interlaced movie has frames of two fields.
     """
     av = pytest.importorskip("av", reason="needs PyAV: the extra video")
     if codec not in av.codecs_available:

@@ -98,8 +98,9 @@ def read_splits(data: Path) -> dict[str, TrainingScenes]:
     scenes = {split: read_scenes(data / "linear", split) for split in ("train", "validation")}
     curves, luminance = read_dorf(data / DORF_FILE), reference_luminance(scenes["train"])
     exposures = np.array([automatic_exposure(curve, luminance) for curve in curves], dtype=np.float32)
+    curves = curves.astype(np.float32)
     return {
-        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), curves.astype(np.float32), exposures)
+        split: TrainingScenes(tuple(map(scene_pixels, members, range(len(members)))), curves, exposures)
         for split, members in scenes.items()
     }
 

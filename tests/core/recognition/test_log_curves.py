@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from crfnet.movies.tags import LOG_TAGS
+from crfnet.movies.stream import LOG_TAGS
 from crfnet_core.photograph.metadata.color_tags import TRANSFERS
 from crfnet_core.photograph.recognition import COLOR_SPACES, LOG_CURVES
 from crfnet_core.photograph.recognition.recognition import TAGGED_SPACES

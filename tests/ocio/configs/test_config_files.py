@@ -1,6 +1,5 @@
 """A config is written only if OpenColorIO converts as its LUTs do; the real tools read it."""
 
-import os
 import shutil
 import subprocess
 import sys
@@ -19,7 +18,6 @@ from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import LUT, SPACE, converted, loaded
 from tests.helpers.folders import listed
-from tests.helpers.images import read_image, write_image
 
 
 @pytest.fixture
@@ -49,16 +47,12 @@ class TestWriting:
         found = converted(loaded(moved / "config.ocio"), "CRF plate01", "scene_linear", [[0.5, 1, 1.125]])
         np.testing.assert_allclose(found[0], LUT.apply(np.float32([0.5, 1, 1.125])), atol=1e-6)
 
-    def test_the_same_config_gives_the_same_bytes(self, folder):
-        for name in ("a.ocio", "b.ocio"):
-            write_config(folder / name, portable_config([SPACE]), check={"CRF plate01": LUT})
-        assert (folder / "a.ocio").read_bytes() == (folder / "b.ocio").read_bytes()
-
     def test_it_is_replaced_only_when_asked(self, folder):
         path = folder / "config.ocio"
         path.write_text("mine")
-        with pytest.raises(ConfigError, match="exists already"):
+        with pytest.raises(ConfigError) as caught:
             write_config(path, portable_config([SPACE]), check={"CRF plate01": LUT})
+        assert caught.value.code == "exists"
         assert path.read_text() == "mine"
         write_config(path, portable_config([SPACE]), check={"CRF plate01": LUT}, overwrite=True)
         assert loaded(path).getColorSpace("CRF plate01") is not None
@@ -84,37 +78,20 @@ class TestWriting:
         assert listed(folder) == ["plate01.spi1d"]
 
     def test_a_config_without_its_lut_is_not_written(self, tmp_path):
-        with pytest.raises(ConfigError, match=r"plate01\.spi1d") as caught:
+        with pytest.raises(ConfigError) as caught:
             write_config(tmp_path / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
         assert caught.value.code == "config_invalid"
-        assert "\n" not in str(caught.value)
         assert list(tmp_path.iterdir()) == []
-
-    def test_a_config_that_is_not_valid_is_not_written(self, folder):
-        config = portable_config([SPACE])
-        config.setRole("color_picking", "no such space")
-        with pytest.raises(ConfigError) as caught:
-            write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
-        assert caught.value.code == "config_invalid"
-        assert listed(folder) == ["plate01.spi1d"]
 
 
 class TestLoading:
-    def test_a_role_has_a_name(self, folder):
+    def test_a_role_has_a_name_or_is_refused(self, folder):
         write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
         assert load_config(folder / "config.ocio").getColorSpace("CRF plate01") is not None
         assert role_name(folder / "config.ocio", OCIO.ROLE_SCENE_LINEAR) == "Linear Rec.709"
-
-    def test_a_role_that_is_not_there_is_refused(self, folder):
-        write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
         with pytest.raises(ConfigError) as caught:
             role_name(folder / "config.ocio", "nonsense")
         assert caught.value.code == "role_absent"
-
-    def test_a_config_that_is_not_there_is_named(self, tmp_path):
-        with pytest.raises(ConfigError) as caught:
-            load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_absent"
 
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_what_is_no_config_is_refused(self, tmp_path, text):
@@ -148,58 +125,11 @@ class TestLoading:
         assert caught.value.code == "config_unreadable"
 
 
-def tool(name):
-    """The path of a command that comes with our dependencies."""
-    found = shutil.which(name, path=str(Path(sys.executable).parent)) or shutil.which(name)
-    if found is None:
-        pytest.skip(f"needs {name}")
-    return found
-
-
-def run(*command):
-    environment = {key: value for key, value in os.environ.items() if key != "OCIO"}
-    finished = subprocess.run(list(map(str, command)), env=environment, capture_output=True, text=True, check=False)
-    assert finished.returncode == 0, finished.stdout + finished.stderr
-    return finished.stdout
-
-
-class TestTools:
-    @pytest.fixture(scope="class")
-    @classmethod
-    def shot(cls, tmp_path_factory):
-        """A folder with a float plate, its LUTs and its config; and the plate's pixels."""
-        folder = tmp_path_factory.mktemp("shot")
-        for suffix in (".spi1d", ".cube", ".clf"):
-            write_lut(folder / f"plate01{suffix}", LUT)
-        plate = PlateColorSpace("CRF plate01", "plate01.spi1d", file_patterns=("shot_plate01.*.exr",))
-        write_config(folder / "config.ocio", portable_config([plate]), check={"CRF plate01": LUT})
-        pixels = np.random.default_rng(0).uniform(-0.1, 1.1, (32, 48, 3)).astype(np.float32)
-        write_image(folder / "shot_plate01.0001.exr", pixels)
-        return folder, pixels
-
-    @pytest.mark.parametrize("suffix", [".spi1d", ".cube", ".clf"])
-    def test_oiiotool_applies_the_lut_and_its_inverse(self, shot, tmp_path, suffix, tolerance):
-        folder, pixels = shot
-        plate, linear, back = folder / "shot_plate01.0001.exr", tmp_path / "linear.exr", tmp_path / "back.exr"
-        lut = folder / f"plate01{suffix}"
-        run(tool("oiiotool"), plate, "--ociofiletransform", lut, "-d", "float", "-o", linear)
-        assert np.abs(read_image(linear) - LUT.apply(pixels)).max() < tolerance.plate
-        run(tool("oiiotool"), linear, "--ociofiletransform:inverse=1", lut, "-d", "float", "-o", back)
-        assert np.abs(LUT.apply(read_image(back)) - LUT.apply(pixels)).max() < tolerance.plate
-
-    def test_oiiotool_converts_with_the_config(self, shot, tmp_path, tolerance):
-        folder, pixels = shot
-        start = (tool("oiiotool"), "--colorconfig", folder / "config.ocio", folder / "shot_plate01.0001.exr")
-        run(*start, "--colorconvert", "CRF plate01", "scene_linear", "-d", "float", "-o", tmp_path / "linear.exr")
-        assert np.abs(read_image(tmp_path / "linear.exr") - LUT.apply(pixels)).max() < tolerance.plate
-
-    def test_oiiotool_converts_by_the_file_rule(self, shot, tmp_path, tolerance):
-        folder, pixels = shot
-        start = (tool("oiiotool"), "--colorconfig", folder / "config.ocio", "--autocc")
-        run(*start, folder / "shot_plate01.0001.exr", "-d", "float", "-o", tmp_path / "linear.exr")
-        assert np.abs(read_image(tmp_path / "linear.exr") - LUT.apply(pixels)).max() < tolerance.plate
-
-    def test_ociocheck_passes(self, shot):
-        report = run(tool("ociocheck"), "--iconfig", shot[0] / "config.ocio")
-        assert "Validation: passed" in report
-        assert "Warnings encountered" not in report
+def test_ociocheck_passes(folder):
+    command = shutil.which("ociocheck", path=str(Path(sys.executable).parent)) or shutil.which("ociocheck")
+    if command is None:
+        pytest.skip("needs ociocheck")
+    write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
+    done = subprocess.run([command, "--iconfig", folder / "config.ocio"], capture_output=True, text=True, check=True)
+    assert "Validation: passed" in done.stdout
+    assert "Warnings encountered" not in done.stdout

@@ -49,17 +49,6 @@ def test_a_link_leads_to_the_file_whose_luts_lie_beside_it(config, tmp_path):
     assert find_config(str(link)).path == config
 
 
-def test_a_config_may_be_marked_as_executable(config):
-    config.chmod(0o755)
-    assert find_config(str(config)).path == config
-
-
-def test_the_home_folder_is_known(config, monkeypatch):
-    monkeypatch.setenv("HOME", str(config.parent))
-    monkeypatch.setenv("USERPROFILE", str(config.parent))
-    assert find_config("~/show.ocio").path == config
-
-
 @pytest.mark.parametrize("name", ["studio-config-v2.1.0_aces-v1.3_ocio-v2.3", "cg-config-latest", "default"])
 @pytest.mark.parametrize("start", ["", "ocio://"])
 def test_built_in_configs_have_names(name, start):

@@ -11,7 +11,6 @@ from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError, PlateError
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet_core.colorimetry import ADOBE_RGB, AP0, DISPLAY_P3, PROPHOTO, conversion_matrix
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
@@ -61,15 +60,6 @@ class TestBuiltIn:
             assert found.getColorSpace(space_of(found, path)).getName().startswith("Linear Rec.709")
         for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
             assert space_of(found, path) == space_of(base, path)
-
-
-@pytest.mark.parametrize("primaries", [DISPLAY_P3, ADOBE_RGB, PROPHOTO])
-def test_other_primaries_are_right_in_aces(primaries, tmp_path):
-    folder = write_look(tmp_path / "look", primaries=primaries, exposure=1.5)
-    found = loaded(add(STUDIO, tmp_path / "show", folder).path)
-    pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
-    expected = 2**1.5 * LUT.apply(pixels) @ conversion_matrix(primaries, AP0).T
-    np.testing.assert_allclose(converted(found, NAME, "aces_interchange", pixels), expected, atol=3e-5)
 
 
 class TestBase:
@@ -251,12 +241,6 @@ class TestRules:
         done = add(STUDIO, tmp_path / "show", write_look(tmp_path / "look", interop_id=interop_id))
         assert rule_names(loaded(done.path))[:1] == [NAME]
         assert space_of(loaded(done.path), "plate01_linear.exr") == "ACES2065-1"
-
-    def test_the_portable_config_of_an_estimate_is_a_base_too(self, small_look, tmp_path):
-        night = write_look(tmp_path / "night", ["night.jpg"])
-        found = loaded(add(small_look, tmp_path / "show", night).path)
-        assert_same(conversions(found), conversions(loaded(small_look / "config.ocio")))
-        assert rule_names(found)[:2] == ["CRF night", NAME]
 
 
 def test_hosts_find_plates_and_files_by_their_category():

@@ -107,10 +107,6 @@ class TestOtherPrimaries:
         found = curve(shown(config, "sRGB", CLIPPED, linear(config, codes)))
         np.testing.assert_allclose(found, curve(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
 
-    def test_gray_is_as_that_of_any_plate(self, shown):
-        found = shown(with_plate(**self.OPTIONS), "sRGB", CLIPPED, [[0.36] * 3])
-        np.testing.assert_allclose(found, LUT.apply_inverse([[0.18] * 3]), atol=1e-4)
-
 
 class TestRollOff:
     def rolled_off(self, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
@@ -124,19 +120,10 @@ class TestRollOff:
             expected = np.where(x <= KNEE, x, KNEE + SOFTNESS * np.log(1 + (x - KNEE) / SOFTNESS))
         np.testing.assert_allclose(self.rolled_off(x), expected, atol=2e-6)
 
-    def test_nothing_below_the_knee_moves(self):
-        x = np.linspace(-1, KNEE, 1000, dtype=np.float32)
-        np.testing.assert_allclose(self.rolled_off(x), x, atol=1e-7)
-
     def test_white_and_the_end_are_as_stated(self):
         end = KNEE + SOFTNESS * (math.exp((1 - KNEE) / SOFTNESS) - 1)
         assert (round(end, 1), round(math.log2(end), 1)) == (14.2, 3.8)
         np.testing.assert_allclose(self.rolled_off([1, end]), [0.865, 1], atol=5e-4)
-
-    def test_it_can_be_undone(self):
-        x = np.linspace(0, 14, 500)
-        back = self.rolled_off(self.rolled_off(x), OCIO.TRANSFORM_DIR_INVERSE)
-        np.testing.assert_allclose(back, x, rtol=1e-4, atol=1e-6)
 
 
 def test_many_plates_do_not_bury_the_other_views():

@@ -4,11 +4,10 @@ import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
 
-from crfnet.configs.file_rules import FAMILY
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
-from tests.helpers.configs import REC709_TO_AP1, SPACE, converted, rule_names
+from tests.helpers.configs import REC709_TO_AP1, SPACE, converted
 
 
 def test_it_is_valid_and_of_profile_2_0():
@@ -18,37 +17,9 @@ def test_it_is_valid_and_of_profile_2_0():
     assert list(config.getSearchPaths()) == ["."]
 
 
-def test_the_roles_are_complete():
-    assert dict(portable_config([]).getRoles()) == {
-        "aces_interchange": "ACES2065-1",
-        "cie_xyz_d65_interchange": "CIE-XYZ-D65",
-        "color_picking": "sRGB",
-        "color_timing": "ACEScct",
-        "compositing_log": "ACEScct",
-        "data": "Non-Color",
-        "default_byte": "sRGB",
-        "default_float": "Linear Rec.709",
-        "default_sequencer": "sRGB",
-        "matte_paint": "sRGB",
-        "reference": "Linear Rec.709",
-        "rendering": "Linear Rec.709",
-        "scene_linear": "Linear Rec.709",
-        "texture_paint": "sRGB",
-    }
-
-
 @pytest.mark.parametrize("name", ["lin_rec709", "lin_rec709_scene", "Linear Rec.709 (sRGB)", "linear", "lin_srgb"])
 def test_every_host_finds_its_name_of_scene_linear(name):
     assert portable_config([]).getColorSpace(name).getName() == "Linear Rec.709"
-
-
-def test_the_plates_space_says_what_it_is():
-    space = portable_config([SPACE]).getColorSpace("crf_plate01")
-    assert space.getName() == "CRF plate01"
-    assert space.getFamily() == FAMILY == "Camera Response"
-    assert space.getEncoding() == "sdr-video"
-    assert space.getDescription() == "from a.jpg"
-    assert not space.isData()
 
 
 @pytest.mark.parametrize(
@@ -83,11 +54,6 @@ def test_its_displays_show_white_as_white(display):
     ("path", "space"),
     [
         ("shot_plate01.0001.png", "CRF plate01"),
-        ("/a b/shot_plate01.0001.png", "CRF plate01"),
-        ("C:\\a\\shot_plate01.0001.png", "CRF plate01"),
-        ("/a/xshot_plate01.0001.png", "sRGB"),
-        ("/a/shot_plate01.0001.jpg", "sRGB"),
-        ("/shot_plate01.1/beauty.png", "sRGB"),
         ("/a/shot_plate01x0001xpng", "Non-Color"),
         ("a.PNG", "sRGB"),
         ("a.jpeg", "sRGB"),
@@ -101,39 +67,14 @@ def test_files_find_their_space_by_rules(path, space):
     assert portable_config([plate]).getColorSpaceFromFilepath(path)[0] == space
 
 
-def test_patterns_are_no_regular_expressions():
-    plate = PlateColorSpace("CRF", "a.spi1d", file_patterns=("a+(b)[1]*.png",))
-    config = portable_config([plate])
-    assert config.getColorSpaceFromFilepath("a+(b)[1]_2.png")[0] == "CRF"
-    assert config.getColorSpaceFromFilepath("aab1.png")[0] == "sRGB"
-
-
-def test_several_plates():
-    plates = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", file_patterns=(f"{name}.*",)) for name in "abc"]
-    config = portable_config(plates)
-    config.validate()
-    assert rule_names(config)[:3] == ["CRF c", "CRF b", "CRF a"]
-    assert config.getColorSpaceFromFilepath("/x/b.tif")[0] == "CRF b"
-
-
-def test_two_plates_of_one_name_are_refused():
-    with pytest.raises(ConfigError) as caught:
-        portable_config([SPACE, PlateColorSpace("crf PLATE01", "other.spi1d")])
-    assert caught.value.code == "color_space_exists"
-
-
 def test_an_alias_that_is_taken_is_left_out():
     spaces = [PlateColorSpace(f"CRF {name}", f"{name}.spi1d", aliases=("same",)) for name in "ab"]
     config = portable_config([*spaces, PlateColorSpace("CRF c", "c.spi1d", aliases=("lin_rec709", "crf_c"))])
     assert [list(config.getColorSpace(f"CRF {name}").getAliases()) for name in "abc"] == [["same"], [], ["crf_c"]]
 
 
-@pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear"])
-def test_names_of_the_config_are_refused(name):
+@pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear", "crf PLATE01"])
+def test_names_that_are_taken_are_refused(name):
     with pytest.raises(ConfigError) as caught:
-        portable_config([PlateColorSpace(name, "a.spi1d")])
+        portable_config([SPACE, PlateColorSpace(name, "a.spi1d")])
     assert caught.value.code == "color_space_exists"
-
-
-def test_the_text_is_reproducible():
-    assert portable_config([SPACE]).serialize() == portable_config([SPACE]).serialize()

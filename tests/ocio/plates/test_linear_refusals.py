@@ -1,6 +1,6 @@
 """linearize_plates refuses what it cannot write, before it writes anything; a failed write leaves nothing."""
 
-import mmap
+import os
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -24,12 +24,6 @@ def refusal(*arguments, **options):
     return caught.value.code
 
 
-def test_our_own_output_is_refused_as_a_plate(tmp_path, out):
-    linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
-    assert refusal(out / "a.exr", out / "b.exr", LUT) == "plate_is_linear"
-    assert not (out / "b.exr").exists()
-
-
 def test_a_bad_single_plate_gives_its_own_error(tmp_path, out):
     (tmp_path / "a.png").touch()
     write_image(tmp_path / "a.tif", SMALL[..., :3].astype(np.float32))
@@ -50,8 +44,7 @@ def test_output_names_that_cannot_be_are_refused(tmp_path, out, numbers, target,
 
 
 def test_an_absent_folder_is_refused(tmp_path):
-    with pytest.raises(PlateError, match="does not exist"):
-        linearize(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT)
+    assert refusal(write_sequence(tmp_path, (1,)), tmp_path / "absent" / "a.#.exr", LUT) == "folder_absent"
 
 
 def test_a_finished_plate_of_another_size_is_that_of_another_plate(tmp_path, out):
@@ -110,11 +103,10 @@ def test_alpha_that_does_not_fit_into_half_floats_is_refused(tmp_path, out):
 def test_a_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
     def fail(path, header, pixels, *, name):
         path.write_bytes(b"half an EXR")
-        raise PlateError(f"{name}: cannot be written (disk full); check the disk")
+        raise PlateError("exr_not_written", path=name, reason="disk full")
 
     monkeypatch.setattr(linear, "write_exr", fail)
-    with pytest.raises(PlateError, match=r"out/a\.exr: cannot be written"):
-        linearize(write_image(tmp_path / "a.png", SMALL), out / "a.exr", LUT)
+    assert refusal(write_image(tmp_path / "a.png", SMALL), out / "a.exr", LUT) == "exr_not_written"
     assert tree(out) == {}
 
 
@@ -127,43 +119,19 @@ def test_a_full_disk_is_named(tmp_path):
     assert caught.value.code == "exr_not_written"
 
 
-WIDE = np.random.default_rng(0).integers(0, 256, (9, 8000, 3)) / 256  # rows of more than a page
-
-
-@pytest.mark.parametrize("pixels", [SMALL.astype(np.float16), WIDE.astype(np.float16)])
-@pytest.mark.parametrize("damage", ["none", "half", "a byte", "table", "page", "gap", "header", "all"])
-def test_a_file_of_which_a_part_is_lost_is_refused(tmp_path, monkeypatch, pixels, damage):
+def test_a_file_whose_end_is_lost_is_refused(tmp_path, monkeypatch):
     """As on a full disk: OpenEXR reports no error of its last writes."""
-    path, spec = tmp_path / "a.exr", oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "half")
-    spec.attribute("compression", "zips")
-    spec.y = -3
+    is_whole = exr._is_whole
 
-    def lose(_path, header):
-        content, page = path.read_bytes(), bytes(4096)
-        with path.open("rb") as file:
-            table = exr._header_end(mmap.mmap(file.fileno(), 0, access=mmap.ACCESS_READ))
-        middle = len(content) // 2
-        damaged = {
-            "none": content,
-            "half": content[:middle],
-            "a byte": content[:-1],
-            "table": content[:table] + bytes(8 * header.height) + content[table + 8 * header.height :],
-            "page": content[:-4096] + page,
-            "gap": content[:middle] + content[middle + 4096 :],
-            "header": content[: table - 20],
-            "all": b"",
-        }
-        path.write_bytes(damaged[damage])
+    def lose(path, header):
+        os.truncate(path, path.stat().st_size - 1)
         return is_whole(path, header)
 
-    is_whole = exr._is_whole
     monkeypatch.setattr(exr, "_is_whole", lose)
-    if damage == "none":
-        exr.write_exr(path, spec, pixels, name=path)
-        np.testing.assert_array_equal(read_image(path), pixels)
-        return
+    spec = oiio.ImageSpec(90, 70, 4, "half")
+    spec.attribute("compression", "zips")
     with pytest.raises(PlateError) as caught:
-        exr.write_exr(path, spec, pixels, name=path)
+        exr.write_exr(tmp_path / "a.exr", spec, SMALL.astype(np.float16), name=Path("a.exr"))
     assert caught.value.code == "exr_not_written"
 
 

@@ -5,14 +5,7 @@ from contextlib import closing
 
 import pytest
 
-from crfnet.errors import PlateError
 from crfnet.plates.parallel import finished
-
-
-def test_every_job_ends_once():
-    done = []
-    jobs = ((number, lambda number=number: done.append(number)) for number in range(50))
-    assert sorted(name for name, _ in finished(jobs, 3)) == sorted(done) == list(range(50))
 
 
 @pytest.mark.parametrize("workers", [1, 3])
@@ -27,15 +20,6 @@ def test_jobs_are_taken_only_when_there_is_room(workers):
 
     list(finished(jobs(), workers, waiting=2))
     assert max(most) <= workers + 2
-
-
-def test_a_job_that_fails_does_not_stop_the_others():
-    def fail():
-        raise PlateError("damaged")
-
-    problems = {name: future.exception() for name, future in finished([(1, fail), (2, lambda: None)], 2)}
-    assert isinstance(problems[1], PlateError)
-    assert problems[2] is None
 
 
 def test_closing_finishes_what_has_begun_and_drops_the_rest():
