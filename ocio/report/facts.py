@@ -36,7 +36,7 @@ class PhotoFacts:
     has_gain_map: bool = False
 
     @classmethod
-    def of(cls, photo: Photo) -> PhotoFacts:
+    def from_photo(cls, photo: Photo) -> PhotoFacts:
         """Return the facts of a photograph."""
         height, width = photo.shape[:2]
         has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map

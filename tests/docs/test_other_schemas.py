@@ -7,7 +7,6 @@ import shutil
 import pytest
 
 from crfnet.defaults import ESTIMATES
-from crfnet.luts.files import WRITERS
 from crfnet.pipeline import PhotographRecord
 from crfnet_core.posterior import Verdict
 from tests.helpers.looks import write_look
@@ -17,14 +16,13 @@ from tests.helpers.stacks import StackOptions, light_of, make_stack
 
 @pytest.fixture(scope="module")
 def calibration(crfnet, root, true_response, tmp_path_factory):
-    """What `crfnet calibrate` prints and writes: a LUT is compared; a sheet and a plate of an earlier run are there."""
+    """What `crfnet calibrate` prints and writes: a LUT is compared; a plate of an earlier run is there."""
     folder = tmp_path_factory.mktemp("calibration")
     light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::4, ::4]
     frames = make_stack(folder, light, true_response, StackOptions(frames=6, quality=0))
     lut = root / "docs" / "sample" / "plate.spi1d"
     write_look(folder / "camera", ["b.jpg"])
     (folder / "camera" / "a.json").write_text("{}")
-    (folder / "camera" / "a_sheet.png").touch()
     given = ("--out", folder / "camera", "--name", "a", "--compare", lut, "--no-sheet", "--overwrite", "--json")
     done = crfnet("calibrate", *frames, *given)
     assert (done.code, done.err) == (0, "")
@@ -40,7 +38,6 @@ def each(crfnet, plate, fixed_model, tmp_path_factory):
     again = ("--each", "--json", "--workers", "1", "--model", fixed_model, "--out", folder / "out", "--overwrite")
     photos = (folder / "good.jpg", folder / "bad.jpg")
     files = ("--no-sheet", "--no-linear")
-    crfnet("estimate", *photos, *again, *files, "--forward")
     printed = json.loads(crfnet("estimate", *photos, *again, *files).out)
     linear = json.loads(crfnet("linearize", *photos, *again).out)
     lines = (folder / "out" / ESTIMATES).read_text(encoding="utf-8").splitlines()
@@ -52,7 +49,7 @@ def test_what_calibrate_prints_and_writes(calibration):
     printed, written = calibration
     assert problems(printed) == []
     assert problems(written) == []
-    assert printed == written | {"left": ["a_sheet.png"], "dropped": ["CRF b"]}
+    assert printed == written | {"dropped": ["CRF b"]}
     assert printed["comparison"] is not None
 
 
@@ -76,7 +73,6 @@ def test_what_each_prints(each):
     assert problems(printed) == []
     assert problems(linear) == []
     assert [bool(record["error"]) for record in printed["estimates"]] == [False, True]
-    assert printed["left"] == [f"good_forward{suffix}" for suffix in WRITERS]
 
 
 def test_the_lines_of_a_manifest_are_records(each):

@@ -10,27 +10,27 @@ from crfnet_core.calibration import calibrate_stack, parse_times, read_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
-from .printing import prepare_matplotlib, print_earlier, print_json, print_lines, progress_bar
+from .printing import prepare_matplotlib, print_json, print_lines, print_lost, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Measure a response; write every file; say what was found, and how far another response is from it."""
+    """Measure a response, write every file, and print the result and how far another response is from it."""
     frames: list[Path] = arguments.photos
     outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
     seconds = _seconds(arguments.times, frames) if arguments.times else None
     with progress_bar("frames") as progress:
-        found = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
-    comparison = found.compare(other) if other else None
-    document = pipeline.write_calibration(plan, found, comparison)
+        calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
+    comparison = calibration.compare(other) if other else None
+    document = pipeline.write_calibration(plan, calibration, comparison)
     if arguments.json:
-        print_json(document | plan.earlier.document)
+        print_json(document | ({"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}))
         return
-    print_lines([*report.calibration_lines(found), *(report.comparison_lines(comparison) if comparison else [])])
+    print_lines([*report.calibration_lines(calibration), *(report.comparison_lines(comparison) if comparison else [])])
     lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
     print_lines(["", f"Written to {arguments.out}:", *lines])
-    print_earlier(plan.earlier, plan.files.config, "this calibration")
+    print_lost(plan)
 
 
 def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:

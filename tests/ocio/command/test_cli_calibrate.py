@@ -173,21 +173,6 @@ def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
 
 
-def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tmp_path):
-    again = ("calibrate", *frames, "--out", tmp_path, "--name", "eos20d", "--no-sheet", "--overwrite")
-    (tmp_path / "eos20d.json").write_text("{}")
-    (tmp_path / "eos20d_sheet.png").write_text("of an earlier run")
-    (tmp_path / "eos20d_linear.exr").write_text("of another command, which stays unnamed")
-    done = crfnet(*again)
-    assert (
-        "Warning: left from an earlier run, and not part of this calibration: eos20d_sheet.png; remove them."
-        in done.out
-    )
-    assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]
-    (tmp_path / "eos20d_sheet.png").unlink()
-    assert "from an earlier run" not in crfnet(*again).out
-
-
 def test_a_response_from_a_lut_is_gamma(tmp_path):
     """`response_to_compare` on a LUT of gamma 2.2."""
     from crfnet.luts.files import write_lut
