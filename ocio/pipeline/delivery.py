@@ -68,23 +68,11 @@ def deliver(
 ) -> tuple[Path, ...]:
     """Write the LUTs, the config and the linear plates of a plan; return the files.
 
-    If one of them fails, or the progress callback raises, the folder is as it was: CRFNetError if a file exists and may
-    not be replaced or cannot be written, or OpenColorIO refuses the config.
-
-    Parameters
-    ----------
-    plan : OutputPlan
-        The files.
-    light : PlateLight
-        The response as a LUT, the exposure and the primaries.
-    sources : sequence of FrameSource
-        The plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames.
-    more : mapping of Path to callable
-        Further files; each callable writes one under the path that it is called with.
-    linearize : callable
-        Writes linear frames, as `linearize_plates` does.
-    progress : callable, optional
-        Called with (done, total) after every linear frame, perhaps in another thread.
+    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames.
+    `more` are further files, each with a callable that writes it under the path that it is called with. `linearize`
+    writes linear frames, as `linearize_plates` does. The progress callback is called after every frame of a sequence,
+    perhaps in another thread. Raise CRFNetError if a file exists and may not be replaced or cannot be written, or
+    OpenColorIO refuses the config; then, and if the callback raises, the folder is as it was.
     """
     more = more or {}
     written = (*plan.targets, *more)

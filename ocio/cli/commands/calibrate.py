@@ -10,7 +10,7 @@ from crfnet_core.calibration import calibrate_stack, parse_times, read_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
-from .printing import prepare_matplotlib, print_json, print_lines, print_lost, progress_bar
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -24,13 +24,15 @@ def run(arguments: argparse.Namespace) -> None:
         calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
     comparison = calibration.compare(other) if other else None
     document = pipeline.write_calibration(plan, calibration, comparison)
-    if arguments.json:
-        print_json(document | ({"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}))
-        return
-    print_lines([*report.calibration_lines(calibration), *(report.comparison_lines(comparison) if comparison else [])])
-    lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
-    print_lines(["", f"Written to {arguments.out}:", *lines])
-    print_lost(plan)
+    lines = [
+        *report.calibration_lines(calibration),
+        *(report.comparison_lines(comparison) if comparison else []),
+        "",
+        f"Written to {arguments.out}:",
+        *report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals"),
+        *lost_lines(plan),
+    ]
+    print_result(document | lost_document(plan), lines, as_json=arguments.json)
 
 
 def _seconds(times: str, frames: Sequence[Path]) -> tuple[float, ...]:

@@ -11,7 +11,7 @@ from ... import pipeline
 from ...errors import PlateError
 from ...pipeline.batch import Batch
 from ..remedies import CommandError
-from .printing import print_json, print_lines, progress_bar
+from .printing import print_result, progress_bar
 
 
 def check_each(arguments: argparse.Namespace) -> None:
@@ -30,11 +30,10 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
         records = pipeline.run_batch(
             batch, photographs, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
         )
-    if arguments.json:
-        print_json({"folder": str(batch.out), key: [asdict(record) for record in records]})
-    else:
-        print_lines(record.error or record.summary for record in records)
-        print_lines(["", f"Written to {batch.out}. All results, one JSON line each: {batch.records.path}"])
+    document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
+    lines = [record.error or record.summary for record in records]
+    more = ["", f"Written to {batch.out}. All results, one JSON line each: {batch.records.path}"]
+    print_result(document, [*lines, *more], as_json=arguments.json)
     if failed := [record for record in records if record.error]:
         code = "photographs_failed_of_many" if len(failed) < len(records) else "photographs_failed"
         raise PlateError(code, failed=len(failed), count=len(records), problem=failed[0].error)

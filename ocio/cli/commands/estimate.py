@@ -19,7 +19,7 @@ from ...output_files import OutputFiles, plain_stem
 from ..arguments.parts import NOT_TRUSTED
 from .each import check_each, run_each
 from .options import estimate_options, plate_arguments, plate_options
-from .printing import prepare_matplotlib, print_json, print_lines, print_lost, progress_bar
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -50,35 +50,38 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
         estimated = pipeline.estimate_files(sources, options, progress=progress)
     light = pipeline.estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
     document = pipeline.deliver_estimate(plan, estimated, light)
-    if arguments.json:
-        lost = {"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}
-        print_json({"folder": str(arguments.out), "estimates": [document], **lost})
-    else:
-        _print_estimate(estimated, document, plan)
+    printed = {"folder": str(arguments.out), "estimates": [document], **lost_document(plan)}
+    print_result(printed, _lines(estimated, document, plan), as_json=arguments.json)
     return estimated.estimate.verdict
 
 
-def _print_estimate(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> None:
-    """Print what was read, estimated and written, and how to use it."""
-    files = plan.files
-    lines = [
+def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
+    """Return what was read, estimated and written, and how to use it, for people."""
+    return [
         *estimated.movies,
         *(str(photograph.report) for photograph in estimated.photographs),
         *report.verdict_lines(estimated.estimate),
         *report.light_lines(document),
         *report.offer_lines(estimated.offers),
+        "",
+        f"Written to {plan.files.report.parent}:",
+        *report.file_lines(plan.files),
+        *lost_lines(plan),
+        "",
+        *_usage_lines(estimated, document, plan),
     ]
-    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
-    print_lost(plan)
-    print_lines([""])
-    first = estimated.firsts[0]
+
+
+def _usage_lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
+    """Return the command lines that make linear plates of the first photograph, or of all frames of a movie."""
+    path, first = estimated.paths[0], estimated.firsts[0]
     if movie_of(first.plate):
-        print_lines([f"The linear plate is frame {first.plate.numbers[0]}; the whole movie, with the LUT:"])
-        print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
-        return
-    print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
-    lines = report.oiiotool_lines(estimated.paths[0], files, document, alpha=first.alpha)
-    print_lines(f"  {line}" for line in lines)
+        title = f"The linear plate is frame {first.plate.numbers[0]}; the whole movie, with the LUT:"
+        lines = [_linearize_line(path, plan.files, plan.plates)]
+    else:
+        title = "The linear plate in oiiotool, with the LUT or the config:"
+        lines = report.oiiotool_lines(path, plan.files, document, alpha=first.alpha)
+    return [title, *(f"  {line}" for line in lines)]
 
 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:

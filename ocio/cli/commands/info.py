@@ -11,7 +11,7 @@ from ... import report
 from ...luts.opencolorio import READABLE
 from ...luts.response import read_response
 from ..remedies import CommandError
-from .printing import print_json, print_lines
+from .printing import print_result
 
 #: Names of the files of a model; either of them stands for its folder.
 MODEL_FILES = ("model.json", "model.onnx")
@@ -28,7 +28,4 @@ def run(arguments: argparse.Namespace) -> None:
         lines = report.model_lines(document)
     else:
         raise CommandError("neither_lut_nor_model", path=subject, suffixes=", ".join(READABLE))
-    if arguments.json:
-        print_json(document)
-    else:
-        print_lines(lines)
+    print_result(document, lines, as_json=arguments.json)

@@ -20,7 +20,7 @@ from ..arguments.parts import NOT_TRUSTED
 from ..remedies import CommandError
 from .each import check_each, run_each
 from .options import estimate_options, plate_options
-from .printing import print_json, print_lines, progress_bar
+from .printing import print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -52,11 +52,9 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
     with output_folder(folder), progress_bar("frames") as progress:
         done = linearize_plates(sequence, targets, lut, plate_options(arguments), progress=progress)
     document = report.plate_document(done, estimate)
-    if arguments.json:
-        print_json(document | ({"movie": str(movie)} if movie else {}))
-    else:
-        read = [str(movie)] if movie else []
-        print_lines([*read, *lines, *report.light_lines(document), *report.plate_lines(done)])
+    read = {"movie": str(movie)} if movie else {}
+    lines = [*read.values(), *lines, *report.light_lines(document), *report.plate_lines(done)]
+    print_result(document | read, lines, as_json=arguments.json)
     return [estimate.verdict] if estimate else []
 
 

@@ -34,27 +34,34 @@ def prepare_matplotlib() -> bool:
     return False
 
 
-def print_json(document: Mapping[str, Any]) -> None:
-    """Print a JSON document."""
-    sys.stdout.write(json_text(document))
-
-
 def print_lines(lines: Iterable[str]) -> None:
     """Print lines."""
     sys.stdout.writelines(f"{line}\n" for line in lines)
 
 
-def print_lost(plan: OutputPlan) -> None:
-    """Warn of plates that a replaced config has no more; name the command that brings them back."""
-    if names := plan.lost_color_spaces:
-        which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
-        config = plan.files.config
-        print_lines(
-            [
-                f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
-                f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
-            ]
-        )
+def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:
+    """Print a JSON document, or the same in lines."""
+    if as_json:
+        sys.stdout.write(json_text(document))
+    else:
+        print_lines(lines)
+
+
+def lost_document(plan: OutputPlan) -> dict[str, Any]:
+    """Return the names of plates that a replaced config has no more, for JSON; empty without any."""
+    return {"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}
+
+
+def lost_lines(plan: OutputPlan) -> list[str]:
+    """Return a warning of these plates, with the command that brings them back."""
+    if not (names := plan.lost_color_spaces):
+        return []
+    which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
+    config = plan.files.config
+    return [
+        f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
+        f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
+    ]
 
 
 @contextmanager
