@@ -100,8 +100,7 @@ SENTENCES: Mapping[str, str] = {
     "output_exists": "{path}: exists already; choose another folder or ask to overwrite it",
     "role_absent": "{path}: has no role {role}; use another config",
     # pipeline: which files there are, and whether they may be written
-    "all_in_output": "{path}: all photographs lie in the output folder; choose another one",
-    "empty_folder": "{path}: the folder holds no photograph ({suffixes}); check the name",
+    "empty_folder": "{path}: the folder holds no photograph ({suffixes}) outside the output folder; check the name",
     "file_exists": "{path}: exists already; choose another folder",
     "file_not_written": "{path}: cannot be written ({reason}); check the file",
     "files_exist": "{path}: {name} and {more} more exist already; choose another folder",
@@ -115,8 +114,6 @@ SENTENCES: Mapping[str, str] = {
     "not_opened": "{path}: cannot be opened ({reason}); check its name",
     "not_writable": "{path}: is not writable; choose another folder for the output",
     "one_name": "{first} and {second} would both be written as {name}; rename one",
-    "one_name_elsewhere": "{first} and {second} would be written as {name} and {other}, one name on macOS and Windows;"
-    " rename one",
     "replaces_photograph": "{path}: is one of the photographs and would be replaced; choose another folder",
     "variables_in_path": "{path}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"
     " folder",

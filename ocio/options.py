@@ -13,26 +13,12 @@ from .defaults import DEPTHS, LUT_LENGTH, OUTPUT_SPACES, PRIMARIES, PRIORS
 
 @dataclass(frozen=True, kw_only=True)
 class EstimateOptions:
-    """How responses are estimated.
+    """How responses are estimated."""
 
-    Parameters
-    ----------
-    model : Path or None
-        The folder or the name of the model; None for the default model.
-    threads : int
-        Threads of the network; 0 for as many as there are cores.
-    prior : str or Path
-        Which kinds of responses to expect: the name of a packaged prior, or a JSON file.
-    camera : str or None
-        The stored camera whose response is the answer; None to estimate it from the photographs.
-    analysis : AnalysisOptions
-        How the photographs are analyzed.
-    """
-
-    model: Path | None = None
-    threads: int = 0
-    prior: str | Path = PRIORS[0]
-    camera: str | None = None
+    model: Path | None = None  # the folder or the name of the model; None for the default model
+    threads: int = 0  # of the network; 0 for as many as there are cores
+    prior: str | Path = PRIORS[0]  # which responses to expect: the name of a packaged prior, or a JSON file
+    camera: str | None = None  # the stored camera whose response is the answer; None to estimate it
     analysis: AnalysisOptions = field(default_factory=AnalysisOptions)
 
 
@@ -52,51 +38,25 @@ def device_name(device: Device | None) -> str | None:
 class PlateOptions:
     """How linear plates are written.
 
-    Parameters
-    ----------
-    depth : {"half", "float"}
-        Sample type of the EXR files.
-    exposure : float
-        Stops by which the linear values are raised, after the anchor.
-    gray : float or None
-        The anchor: the encoded brightness of a surface that reflects 18 % of the light, which becomes a linear 0.18.
-        By default white is the anchor: brightness 1 becomes a linear 1.
-    primaries : {"auto", "rec709", "p3", "adobe", "prophoto", "rec2020"}
-        The primaries of the encoded plate; "auto" goes by its tags.
-    output_space : {"scene_linear", "plate", "ACEScg", "ACES2065-1"}
-        The space of the linear values: "scene_linear" is linear Rec.709, "plate" leaves the plate's own primaries.
-    overwrite : bool
-        Whether existing files may be replaced.
-    is_encoded : bool
-        Whether OpenEXR plates that do not say how their values are encoded hold encoded values.
+    `gray` is the encoded brightness of a surface that reflects 18 % of the light, which becomes a linear 0.18. By
+    default white is the anchor: brightness 1 becomes a linear 1. `output_space` is linear Rec.709 ("scene_linear"), the
+    plate's own primaries ("plate"), or a space of ACES.
     """
 
-    depth: str = DEPTHS[0]
-    exposure: float = 0.0
+    depth: str = DEPTHS[0]  # sample type of the EXR files
+    exposure: float = 0.0  # stops by which the linear values are raised, after the anchor
     gray: float | None = None
-    primaries: str = PRIMARIES[0]
+    primaries: str = PRIMARIES[0]  # of the encoded plate; "auto" goes by its tags
     output_space: str = OUTPUT_SPACES[0]
-    overwrite: bool = False
-    is_encoded: bool = False
+    overwrite: bool = False  # whether existing files may be replaced
+    is_encoded: bool = False  # whether OpenEXR plates that do not state their encoding hold encoded values
 
 
 @dataclass(frozen=True, kw_only=True)
 class OutputOptions:
-    """Which files are written of an estimate, beside its LUTs, config and document.
+    """Which files an estimate has beside its LUTs, config and document."""
 
-    Parameters
-    ----------
-    lut_length : int
-        Entries of the LUTs.
-    has_sheet : bool
-        Whether the sheet is drawn, which needs matplotlib.
-    has_linear : bool
-        Whether the photographs are written as linear EXR.
-    has_forward : bool
-        Whether the response itself is written, too, from light to code values.
-    """
-
-    lut_length: int = LUT_LENGTH
-    has_sheet: bool = True
-    has_linear: bool = True
-    has_forward: bool = False
+    lut_length: int = LUT_LENGTH  # entries of the LUTs
+    has_sheet: bool = True  # the picture, which needs matplotlib
+    has_linear: bool = True  # the photographs as linear EXR
+    has_forward: bool = False  # the response itself, from light to code values

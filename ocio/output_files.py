@@ -26,47 +26,19 @@ SHEET_ENDING = "_sheet.png"
 
 @dataclass(frozen=True)
 class OutputFiles:
-    """The files of one estimate, all in one folder and named after its first photograph.
+    """The files of one estimate, all in one folder and named after its first photograph."""
 
-    Parameters
-    ----------
-    luts : tuple of Path
-        The inverse response in each format of `WRITERS`.
-    config : Path
-        The OpenColorIO config; several estimates may share it.
-    linear : tuple of Path
-        One linear EXR per photograph; none if they are not written.
-    sheet : Path or None
-        The picture of the estimate; None if it is not drawn.
-    report : Path
-        The JSON document.
-    color_space : str
-        The name of the photograph's color space in the config.
-    forward : tuple of Path
-        The response itself in each format; empty if it is not written.
-    """
-
-    luts: tuple[Path, ...]
-    config: Path
-    linear: tuple[Path, ...]
-    sheet: Path | None
-    report: Path
-    color_space: str
-    forward: tuple[Path, ...] = ()
+    luts: tuple[Path, ...]  # the inverse response in each format of `WRITERS`
+    config: Path  # the OpenColorIO config; several estimates may share it
+    linear: tuple[Path, ...]  # one linear EXR per photograph; none if they are not written
+    sheet: Path | None  # the picture of the estimate; None if it is not drawn
+    report: Path  # the JSON document
+    color_space: str  # the name of the photograph's color space in the config
+    forward: tuple[Path, ...] = ()  # the response itself in each format; none if it is not written
 
     @classmethod
     def named(cls, folder: Path, photos: Sequence[Path], outputs: OutputOptions | None = None) -> OutputFiles:
-        """Return the files that the options ask for; by default the usual ones.
-
-        Parameters
-        ----------
-        folder : Path
-            The folder for them.
-        photos : sequence of Path
-            The photographs, which have one response in common.
-        outputs : OutputOptions, optional
-            Which files are written.
-        """
+        """Return the files that the options (by default the usual ones) ask for of photographs with one response."""
         stem, outputs = plain_stem(photos[0]), outputs or OutputOptions()
         return cls(
             luts=tuple(folder / f"{stem}{suffix}" for suffix in WRITERS),
@@ -118,12 +90,7 @@ def _plain(name: str) -> str:
 def distinct_names(name: str, hint: str = "") -> Iterator[str]:
     """Yield names for something that is to be called `name`, unless that is taken: the first is `name` itself.
 
-    Parameters
-    ----------
-    name : str
-        The name.
-    hint : str
-        What tells it from others of the name, such as its folder. Without a hint, numbers from 2 do.
+    The others have `hint`, such as the folder, in parentheses, and then numbers from 2.
     """
     yield name
     hint = _plain(hint)
@@ -133,66 +100,24 @@ def distinct_names(name: str, hint: str = "") -> Iterator[str]:
         yield f"{name} ({hint} {number})" if hint else f"{name} ({number})"
 
 
-def check_outputs(
-    folder: Path, outputs: Iterable[OutputFiles], *, photos: Iterable[Path] = (), overwrite: bool = False
-) -> None:
-    """Check that everything can be written before anything is; create nothing.
-
-    Parameters
-    ----------
-    folder : Path
-        The folder to write to; it need not exist yet.
-    outputs : iterable of OutputFiles
-        The files to be written there.
-    photos : iterable of Path
-        The photographs, none of which may be replaced.
-    overwrite : bool
-        Whether existing files may be replaced.
-
-    Raises
-    ------
-    PlateError
-        If the folder cannot be made or written to, a file exists and may not be replaced, or a photograph itself would
-        be replaced.
-    """
-    outputs = tuple(outputs)
-    targets = [path for files in outputs for path in files.unshared]
-    check_targets(folder, targets, photos=photos, shared=[files.config for files in outputs[:1]], overwrite=overwrite)
-
-
 def check_targets(
     folder: Path,
     targets: Sequence[Path],
     *,
     photos: Iterable[Path] = (),
-    shared: Sequence[Path] = (),
+    configs: Sequence[Path] = (),
     overwrite: bool = False,
 ) -> None:
-    """Check that files can be written; create nothing.
+    """Check that files in `folder`, which need not exist yet, can be written; create nothing.
 
-    Parameters
-    ----------
-    folder : Path
-        The folder to write to; it need not exist yet.
-    targets : sequence of Path
-        The files, each of one photograph or estimate.
-    photos : iterable of Path
-        The photographs, none of which may be replaced.
-    shared : sequence of Path
-        The configs, of several estimates.
-    overwrite : bool
-        Whether existing files may be replaced.
-
-    Raises
-    ------
-    PlateError
-        See `check_outputs`.
+    `configs` are files, too, which several estimates may share. Raise PlateError if the folder cannot be made or
+    written to, a file exists and may not be replaced, or one of `photos` would be replaced.
     """
     check_folder(folder)
-    for config in shared:
+    for config in configs:
         check_config_folder(config.parent)
     originals = {os.path.realpath(photo) for photo in photos}
-    every = [*targets, *shared]
+    every = [*targets, *configs]
     for path in every:
         if os.path.realpath(path) in originals:
             raise PlateError("replaces_photograph", path=path)
@@ -205,13 +130,7 @@ def check_targets(
 
 
 def check_folder(folder: Path) -> None:
-    """Check that `folder` can be written to, or can be made.
-
-    Raises
-    ------
-    PlateError
-        Otherwise.
-    """
+    """Check that `folder` can be written to, or can be made; else raise PlateError."""
     existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     if not existing.is_dir():
         raise PlateError("not_a_folder", path=existing)
@@ -220,7 +139,7 @@ def check_folder(folder: Path) -> None:
 
 
 def check_config_folder(folder: Path) -> None:
-    """Refuse as `check_folder` does, and a folder in which OpenColorIO would find no LUTs: PlateError."""
+    """Raise PlateError as `check_folder` does, and for a folder in which OpenColorIO would find no LUTs."""
     check_folder(folder)
     path = str(folder.absolute())
     if "$" in path or path.count("%") > 1:

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from functools import cache
-from pathlib import Path
-from typing import Any
+from typing import Any, BinaryIO
 
 import numpy as np
 from numpy.typing import NDArray
@@ -19,7 +19,7 @@ from crfnet_core.posterior import Prior
 from crfnet_core.types import Progress
 
 #: Whatever `read_photo` takes; an array of RGB, shape (H, W, 3), or gray, shape (H, W); or a `Photo`.
-Photograph = str | Path | NDArray[Any] | Photo
+Photograph = str | os.PathLike[str] | bytes | BinaryIO | NDArray[Any] | Photo
 
 
 def estimate(
@@ -34,9 +34,9 @@ def estimate(
 
     Parameters
     ----------
-    *photographs : str, Path, ndarray or Photo
-        Photographs of one camera with the same settings: files, or arrays of RGB, shape (H, W, 3), or gray, shape
-        (H, W), which have no metadata. `Photo.from_array` makes a photograph from any other array.
+    *photographs : str, path-like, bytes, binary file, ndarray or Photo
+        Photographs of one camera with the same settings: files as `read_photo` takes them, or arrays of RGB, shape
+        (H, W, 3), or gray, shape (H, W), which have no metadata. `Photo.from_array` takes any other array.
     prior, options, progress
         See `estimate_response`.
 

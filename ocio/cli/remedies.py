@@ -36,7 +36,6 @@ REMEDIES: Mapping[str, str] = {
     "folder_for_photograph": "or add --each for every photograph in it",
     "movie_in_batch": "leave --each out",
     "one_name": "or add --no-linear",
-    "one_name_elsewhere": "or add --no-linear",
     "other_options": "or add --overwrite",
     "process_died": "photographs that are done are not done again, and --workers makes fewer processes",
 }
@@ -45,6 +44,7 @@ REMEDIES: Mapping[str, str] = {
 SENTENCES: Mapping[str, str] = {
     "each_option_alone": "--{name} is for --each, one response for each photograph; add it, or drop --{name}",
     "frames_of_each": "--frames chooses the frames of one response, --each takes photographs; drop one",
+    "neither_lut_nor_model": "{path}: is neither a LUT ({suffixes}) nor a model folder; give one of these",
     "pattern_for_file": "{path}: stands for the frames of a sequence, but {plate} is a single file; give its sequence,"
     " such as shot.%04d.png, or a name without a placeholder",
     "several_plates": "{count} plates are given, one is needed; write a sequence as shot.%04d.png, or add --each",

@@ -4,10 +4,9 @@ estimates    photographs, frames and movies to the response estimated from them,
 plan         the files of one estimate, checked before any work is done
 delivery     the same, written together
 loading      the network, the prior and the stored camera that the options name
-each         many photographs, one response each, with its files
-each_linear  many photographs as linear EXR
-batch        what both have in common, and which files belong to each photograph
-run          the work: recorded as it ends, continued when interrupted
+batch        many photographs: what they have in common, and the files of each
+each         the two kinds of batches: estimates with their files, and linear EXR
+run          the work of a batch: recorded as it ends, continued when interrupted
 records      the file of these records
 photographs  the photographs of a batch
 workers      processes of this machine, or a Dask cluster
@@ -18,19 +17,17 @@ called with (done, total); whatever it raises ends the step, which first removes
 """
 
 from ..luts.exposure import anchored_exposure
-from .calibrations import CalibrationPlan, plan_calibration, response_to_compare, write_calibration
+from .calibrations import plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
-from .each import EachReport, EstimateBatch, estimate_each
-from .each_linear import LinearBatch, linearize_each
+from .each import EstimateBatch, LinearBatch
 from .estimates import FileEstimate, estimate_files, photograph_sources, response_lut
 from .loading import load_camera_response, load_network, load_prior
 from .photographs import find_photographs
 from .plan import OutputPlan, plan_outputs
 from .records import PhotographRecord
+from .run import run_batch
 
 __all__ = [
-    "CalibrationPlan",
-    "EachReport",
     "EstimateBatch",
     "FileEstimate",
     "LinearBatch",
@@ -39,11 +36,9 @@ __all__ = [
     "anchored_exposure",
     "deliver",
     "deliver_estimate",
-    "estimate_each",
     "estimate_files",
     "estimated_light",
     "find_photographs",
-    "linearize_each",
     "load_camera_response",
     "load_network",
     "load_prior",
@@ -52,5 +47,6 @@ __all__ = [
     "plan_outputs",
     "response_lut",
     "response_to_compare",
+    "run_batch",
     "write_calibration",
 ]

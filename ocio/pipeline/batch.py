@@ -1,4 +1,4 @@
-"""Many photographs, one task each: what they have in common, and which files belong to each."""
+"""Many photographs: what they have in common, and which files belong to each."""
 
 from __future__ import annotations
 
@@ -6,22 +6,24 @@ import hashlib
 import itertools
 import os
 from abc import ABC, abstractmethod
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import ClassVar
 
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes
 
+from ..defaults import CONFIG_NAME
 from ..errors import PlateError
+from ..luts.rgb_lut import AnyLut
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, plain_stem
 from ..plates.light import PlateLight
 from ..report import result_line
 from .estimates import response_lut
-from .loading import load_camera_response
-from .photographs import unreadable_reason, without_outputs
+from .loading import load_camera_response, load_network, load_prior
+from .photographs import unreadable_reason
 from .records import PhotographRecord, RecordFile
 
 #: Bytes that a number behind a stem may need.
@@ -36,33 +38,45 @@ class Batch(ABC):
     options: EstimateOptions
     plates: PlateOptions
 
+    #: The name of the file of records in `out`, and whether each folder gets a config.
+    records_name: ClassVar[str]
+    has_config: ClassVar[bool] = False
+
     @property
-    @abstractmethod
     def records(self) -> RecordFile:
         """The file of records."""
+        return RecordFile(self.out / self.records_name)
 
     @abstractmethod
     def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
-        """Return the files of one photograph alone."""
+        """Return the files of one photograph alone; `folder` is relative to `out`."""
 
     @abstractmethod
     def done(self, task: Task) -> PhotographRecord:
         """Write the files of one photograph and return its record."""
 
-    def shared_response(self) -> str | None:
-        """Return which response all photographs have now: the stored camera's; None if each has its own."""
-        stored = load_camera_response(self.options)
-        return response_lut(stored).identity if stored else None
+    def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:
+        """Write what all photographs have in common, and return their records."""
+        return records
 
-    @property
-    def choices(self) -> dict[str, Any]:
-        """The options that make two results differ."""
-        chosen = {**asdict(self.options), **asdict(self.plates)}
-        return {name: value for name, value in chosen.items() if name not in ("threads", "overwrite")}
+    def response(self) -> tuple[AnyLut, ResponseEstimate | None] | None:
+        """Return the response that all photographs have, with its estimate; None if each has its own.
+
+        It is read anew each time, in 15 ms: the workers of a cluster outlive a run, and files change between runs.
+        """
+        stored = load_camera_response(self.options)
+        return (response_lut(stored), stored) if stored else None
+
+    def check(self) -> None:
+        """Raise a CRFNetError if the response, the prior or the network cannot be read."""
+        if not self.response():
+            load_prior(self.options), load_network(self.options)
 
     def digest(self) -> str:
-        """Return a digest of the options and of the shared response."""
-        text = repr(sorted((self.choices | {"response": self.shared_response()}).items()))
+        """Return a digest of the common response and of the options that make two results differ."""
+        choices, response = asdict(self), self.response()
+        del choices["out"], choices["options"]["threads"], choices["plates"]["overwrite"]
+        text = repr([choices, response and response[0].identity])
         return hashlib.sha256(text.encode(errors="backslashreplace")).hexdigest()[:16]
 
 
@@ -70,8 +84,8 @@ class Batch(ABC):
 class Task:
     """One photograph of a batch, and all that its worker gets.
 
-    Its files lie in `folder`, relative to the batch's, and their names begin with `stem`, as those of no other
-    photograph do. `options` is the batch's digest.
+    Its files lie in `folder`, relative to the batch's, and their names begin with `stem`, which no other photograph
+    has there. `options` is the batch's digest.
     """
 
     batch: Batch
@@ -86,20 +100,15 @@ class Task:
         return self.batch.targets(self.folder, self.stem)
 
     def record(
-        self,
-        light: PlateLight,
-        estimate: ResponseEstimate | None,
-        *,
-        lut: Path | None = None,
-        linear: Sequence[Path] = (),
+        self, light: PlateLight, estimate: ResponseEstimate | None, *, lut: Path | None = None, linear: Sequence[Path]
     ) -> PhotographRecord:
         """Return the record of this photograph, whose files are whole, and of its estimate if there is one."""
         record = PhotographRecord(
             photograph=str(self.photo),
             options=self.options,
             folder=self.folder.as_posix(),
-            lut="".join(path.relative_to(self.batch.out).as_posix() for path in (lut,) if path),
-            linear="".join(path.relative_to(self.batch.out).as_posix() for path in linear),
+            lut=lut.relative_to(self.batch.out).as_posix() if lut else "",
+            linear=linear[0].relative_to(self.batch.out).as_posix() if linear else "",
             exposure=light.stops,
             primaries=asdict(light.plate.primaries) if light.plate.primaries else None,
             primaries_source=light.plate.source,
@@ -126,75 +135,70 @@ class Task:
         return record.options == self.options and all(path.exists() for path in self.targets)
 
 
-def plan_tasks(batch: Batch, photographs: Mapping[Path, Path], *, shared: Sequence[Path] = ()) -> tuple[Task, ...]:
-    """Return what is to be done for each photograph, after checking that it can be; create nothing.
+def plan_tasks(batch: Batch, photographs: Mapping[Path, Path]) -> list[Task]:
+    """Return a task for each photograph of `find_photographs`, after checking that it can be done; create nothing.
 
     Two photographs of one name in one folder get files of different names: a.jpg and a.png those of `a` and `a_2`.
-    A photograph keeps the name that an earlier run has given it.
-
-    Parameters
-    ----------
-    batch : Batch
-        What they have in common.
-    photographs : mapping of Path to Path
-        As `find_photographs` returns them.
-    shared : sequence of Path
-        Files of several photographs, which must not replace a photograph.
-
-    Raises
-    ------
-    CRFNetError
-        If a photograph would be replaced, there are results of other options, or the folder cannot be used.
+    A photograph keeps the name that an earlier run has given it. Raise PlateError if a photograph or a config of
+    another program would be replaced, there are results of other options, or the folder cannot be used.
     """
-    chosen, records = without_outputs(photographs, batch.out), batch.records.read()
-    stems, digest = _distinct_stems(batch, chosen, records), batch.digest()
-    tasks = tuple(Task(batch, photo, folder, stems[photo], digest) for photo, folder in chosen.items())
-    for task in () if batch.plates.overwrite else tasks:
-        record = records.get(str(task.photo))
-        if record and not record.error and record.options != digest and any(map(os.path.lexists, task.targets)):
-            raise PlateError("other_options", path=batch.records.path, photo=task.photo)
+    records, digest = batch.records.read(), batch.digest()
+    folders = dict.fromkeys(photographs.values()) if batch.has_config else {}
+    configs = [batch.out / folder / CONFIG_NAME for folder in folders]
+    stems = _distinct_stems(batch, photographs, records)
+    tasks = [Task(batch, photo, folder, stems[photo], digest) for photo, folder in photographs.items()]
+    if not batch.plates.overwrite:
+        _check_earlier(batch, tasks, records, configs)
     targets = [path for task in tasks if not unreadable_reason(task.photo) for path in task.targets]
-    check_targets(batch.out, targets, photos=list(chosen), shared=shared, overwrite=True)
+    check_targets(batch.out, targets, photos=photographs, configs=configs, overwrite=True)
     return tasks
+
+
+def _check_earlier(
+    batch: Batch, tasks: Iterable[Task], records: Mapping[str, PhotographRecord], configs: Iterable[Path]
+) -> None:
+    """Refuse results of other options, and configs without any record, which are not ours."""
+    for task in tasks:
+        record = records.get(str(task.photo))
+        if record and not record.error and record.options != task.options and any(map(os.path.lexists, task.targets)):
+            raise PlateError("other_options", path=batch.records.path, photo=task.photo)
+    for config in configs:
+        if config.exists() and not batch.records.path.exists():
+            raise PlateError("file_exists", path=config)
 
 
 def _distinct_stems(
     batch: Batch, photographs: Mapping[Path, Path], records: Mapping[str, PhotographRecord]
 ) -> dict[Path, str]:
-    """Return a stem for each photograph whose files are nobody else's, on systems that take A for a, too."""
-    owners: dict[str, str] = {}
+    """Return a stem for each photograph whose files belong to no other one, even on systems that take A for a."""
+
+    def keys(folder: Path, stem: str) -> list[str]:
+        return [str(path).casefold() for path in batch.targets(folder, stem)]
+
+    owners: dict[str, Path] = {}
     for record in records.values():
-        owners |= dict.fromkeys(
-            _keys(batch, Path(record.folder), record.stem) if record.stem else (), record.photograph
-        )
+        if record.stem:
+            owners |= dict.fromkeys(keys(Path(record.folder), record.stem), _absolute(Path(record.photograph)))
     stems = {}
     for photo, folder in photographs.items():
-        earlier = records.get(str(photo))
-        stem = earlier.stem if earlier and earlier.folder == folder.as_posix() else ""
-        for candidate in itertools.chain([stem] if stem else [], _stems(photo)):
-            keys = _keys(batch, folder, candidate)
-            if all(_same_file(owners.get(key, str(photo)), photo) for key in keys):
-                owners |= dict.fromkeys(keys, str(photo))
-                stems[photo] = candidate
+        earlier, owner = records.get(str(photo)), _absolute(photo)
+        first = [earlier.stem] if earlier and earlier.stem and earlier.folder == folder.as_posix() else []
+        for stem in itertools.chain(first, _stems(photo)):
+            if all(owners.get(key, owner) == owner for key in keys(folder, stem)):
                 break
+        owners |= dict.fromkeys(keys(folder, stem), owner)
+        stems[photo] = stem
     return stems
 
 
-def _keys(batch: Batch, folder: Path, stem: str) -> list[str]:
-    """Return the names of a photograph's files, equal for those that some systems take for one."""
-    return [str(path).casefold() for path in batch.targets(folder, stem)]
-
-
 def _stems(photo: Path) -> Iterator[str]:
-    """Yield names for the files of a photograph: its own, then with a number."""
+    """Yield names for the files of a photograph: its own, then with numbers from 2."""
     stem = plain_stem(photo)
     yield stem
-    number = 2
-    while True:
+    for number in itertools.count(2):
         yield f"{cut_to_bytes(stem, LONGEST_STEM - NUMBER_BYTES)}_{number}"
-        number += 1
 
 
-def _same_file(name: str, photo: Path) -> bool:
-    """Return whether a name, perhaps by another way to its folder, is that of a photograph."""
-    return os.path.normpath(Path(name).absolute()) == os.path.normpath(photo.absolute())
+def _absolute(photo: Path) -> Path:
+    """Return the absolute path of a photograph, which may be named by another way to its folder."""
+    return Path(os.path.normpath(photo.absolute()))

@@ -3,11 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
-
-import PyOpenColorIO as OCIO
 
 from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CurveError
@@ -21,70 +19,55 @@ from ..errors import PlateError
 from ..luts.files import write_lut
 from ..luts.lut1d import inverse_response_lut
 from ..luts.response import read_response, response_of_lut
-from ..options import OutputOptions
-from ..output_files import OutputFiles, check_outputs, output_folder
+from ..options import OutputOptions, PlateOptions
+from ..output_files import OutputFiles
 from ..report import calibration_document, calibration_provenance
-from ..staging import staged_files
-from .plan import EarlierRun
-
-
-@dataclass(frozen=True, eq=False)
-class CalibrationPlan:
-    """The files of a calibration, checked before any work is done; see `plan_calibration`."""
-
-    files: OutputFiles  # the files, all in one folder, which need not exist yet; no linear plates are among them
-    config: OCIO.Config  # the config of the folder, with the camera's color space
-    lut_length: int  # entries of the LUTs
-    overwrite: bool = False
-    earlier: EarlierRun = field(default_factory=EarlierRun)  # files of an earlier run in the folder
+from .delivery import all_or_none
+from .plan import OutputPlan, plan_files
 
 
 def plan_calibration(
     folder: Path, frames: Sequence[Path], outputs: OutputOptions, *, name: str | None = None, overwrite: bool = False
-) -> CalibrationPlan:
+) -> OutputPlan:
     """Return which files are written of a stack, after checking that they can be; create nothing.
 
-    `name` is the name of the files and of the color space, by default the first frame's. Raise PlateError if the name
-    cannot be a file's, or a file cannot be written or would replace another, or a frame (see `check_outputs`); raise
-    ConfigError if the color space cannot be in a config.
+    `name` is the name of the files and of the color space, by default that of the first frame. Raise PlateError if it
+    cannot be the name of a file, or as `plan_files`; ConfigError if the color space cannot be in a config.
     """
     if name is not None and (not name.strip(" .") or Path(name).name != name):
         raise PlateError("not_a_file_name", name=repr(name))
     stem = frames[0] if name is None else Path(f"{name}.stack")
     files = OutputFiles.named(folder, [stem], replace(outputs, has_linear=False, has_forward=False))
-    check_outputs(folder, [files], photos=frames, overwrite=overwrite)
     description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
     space = replace(PlateColorSpace.from_outputs(files, frames[0]), description=description, file_patterns=())
-    earlier = EarlierRun.in_folder(files, [stem], is_measured=True)
-    return CalibrationPlan(files, portable_config([space]), outputs.lut_length, overwrite, earlier)
+    return plan_files(files, frames, PlateOptions(overwrite=overwrite), space, outputs.lut_length)
 
 
 def write_calibration(
-    plan: CalibrationPlan, calibration: Calibration, comparison: Comparison | None = None
+    plan: OutputPlan, calibration: Calibration, comparison: Comparison | None = None
 ) -> dict[str, Any]:
-    """Write every file of a plan and return the document that its JSON file holds.
+    """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
 
-    Raise CRFNetError if a file cannot be written, or the LUT length is out of range. The folder is then as it was.
+    Raise CRFNetError if a file cannot be written, or the LUT length is out of range; the folder is then as it was.
     """
     lut = inverse_response_lut(calibration.curve, length=plan.lut_length, comments=calibration_provenance(calibration))
-    folder = plan.files.report.parent
     document = calibration_document(calibration, plan.files, comparison)
-    with output_folder(folder), staged_files(folder, overwrite=plan.overwrite) as staged:
-        files = plan.files.in_folder(staged)
+    with all_or_none([*plan.files.unshared, plan.files.config], overwrite=plan.plates.overwrite) as folder:
+        files = plan.files.in_folder(folder)
         for path in files.luts:
             write_lut(path, lut)
         if files.sheet:
             _write_sheet(files.sheet, calibration)
         atomic_write_text(files.report, json_text(document), error=PlateError)
-        write_config(files.config, plan.config, check={files.color_space: lut})
+        spaces = [plan.space] if plan.space else []
+        write_config(files.config, portable_config(spaces), check={files.color_space: lut})
     return document
 
 
 def response_to_compare(path: Path) -> ResponseCurve:
     """Return the response in the JSON document of an estimate or a calibration, or in a LUT file.
 
-    Raise PlateError if the document cannot be read or holds no response. Raise CRFNetError if a LUT file holds none:
-    see `crfnet.luts.response.read_response`.
+    Raise CRFNetError if the file cannot be read or holds no response.
     """
     if path.suffix.lower() != ".json":
         return response_of_lut(read_response(path).lut)

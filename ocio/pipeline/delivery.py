@@ -5,7 +5,7 @@ The command and the add-on write with `deliver`: all files of a plan appear toge
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from contextlib import ExitStack, contextmanager
 from dataclasses import asdict, replace
@@ -40,32 +40,19 @@ Linearize = Callable[..., object]
 def deliver_estimate(plan: OutputPlan, estimated: FileEstimate, light: PlateLight) -> dict[str, Any]:
     """Write every file of a plan, with the sheet and the JSON document; return the document.
 
-    Parameters
-    ----------
-    plan : OutputPlan
-        See `plan_outputs`.
-    estimated : FileEstimate
-        The estimate from the photographs of the plan; each is read again for its linear plate.
-    light : PlateLight
-        As `estimated_light` returns it.
-
-    Raises
-    ------
-    CRFNetError
-        If a file cannot be written, or a photograph has changed or gone.
+    `light` is from `estimated_light`. Each photograph is read again for its linear plate. Raise CRFNetError if a file
+    cannot be written, or a photograph has changed or gone.
     """
     files = plan.files
     document = estimate_document(estimated.estimate, [facts.report for facts in estimated.photographs], files, light)
     document |= {"known_cameras": list(map(asdict, estimated.offers))} if estimated.offers else {}
     document |= {"movies": list(estimated.movies)} if estimated.movies else {}
-
-    def write_more(folder: Path) -> None:
-        if files.sheet:
-            _write_sheet(folder / files.sheet.name, estimated)
-        atomic_write_text(folder / files.report.name, json_text(document), error=PlateError)
-
-    more = [path for path in (files.sheet, files.report) if path]
-    deliver(plan, light, [facts.plate for facts in estimated.firsts], more=more, write_more=write_more)
+    more: dict[Path, Callable[[Path], None]] = {
+        files.report: lambda path: atomic_write_text(path, json_text(document), error=PlateError)
+    }
+    if files.sheet:
+        more[files.sheet] = lambda path: _write_sheet(path, estimated)
+    deliver(plan, light, [facts.plate for facts in estimated.firsts], more=more)
     return document
 
 
@@ -74,47 +61,29 @@ def deliver(
     light: PlateLight,
     sources: Sequence[FrameSource] = (),
     *,
-    more: Sequence[Path] = (),
-    write_more: Callable[[Path], None] | None = None,
+    more: Mapping[Path, Callable[[Path], None]] | None = None,
     linearize: Linearize = linearize_plates,
     progress: Progress | None = None,
 ) -> tuple[Path, ...]:
     """Write the LUTs, the config and the linear plates of a plan; return the files.
 
-    If one of them fails, or the progress callback raises, the folder is as it was.
-
-    Parameters
-    ----------
-    plan : OutputPlan
-        The files.
-    light : PlateLight
-        The response as a LUT, the exposure and the primaries.
-    sources : sequence of FrameSource
-        The plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames.
-    more : sequence of Path
-        Further files.
-    write_more : callable, optional
-        Writes these into the folder that it is called with.
-    linearize : callable
-        Writes linear frames, as `linearize_plates` does.
-    progress : callable, optional
-        Called with (done, total) after every linear frame, perhaps in another thread.
-
-    Raises
-    ------
-    CRFNetError
-        If a file exists and may not be replaced or cannot be written, or OpenColorIO refuses the config.
+    `sources` are the plates of `plan.files.linear`: one file for each, or one sequence with all of them as its frames.
+    `more` are further files, each with a callable that writes it under the path that it is called with. `linearize`
+    writes linear frames, as `linearize_plates` does. The progress callback is called after every frame of a sequence,
+    perhaps in another thread. Raise CRFNetError if a file exists and may not be replaced or cannot be written, or
+    OpenColorIO refuses the config; then, and if the callback raises, the folder is as it was.
     """
+    more = more or {}
     written = (*plan.targets, *more)
     if plan.space:
         check_config_folder(plan.files.config.parent)
-    with _all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
+    with all_or_none(written, overwrite=plan.plates.overwrite) as folder, ThreadPoolExecutor(1) as pool:
         files = plan.files.in_folder(folder)
         # OpenEXR compresses without Python, which draws the sheet meanwhile.
         linear = pool.submit(_write_linear, files.linear, sources, light, plan.plates, linearize, progress)
         _write_luts(files, plan, light)
-        if write_more:
-            write_more(folder)
+        for path, write in more.items():
+            write(folder / path.name)
         linear.result()
     return written
 
@@ -123,10 +92,8 @@ def _write_luts(files: OutputFiles, plan: OutputPlan, light: PlateLight) -> None
     """Write the LUTs and the config that a plan has."""
     for path in files.luts if plan.lut_length else ():
         write_lut(path, light.lut)
-    if files.forward:
-        forward = forward_lut(light.lut)
-        for path in files.forward:
-            write_lut(path, forward)
+    for path in files.forward:
+        write_lut(path, forward_lut(light.lut))
     if plan.space:
         config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
         write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
@@ -140,7 +107,7 @@ def _write_linear(
     linearize: Linearize,
     progress: Progress | None,
 ) -> None:
-    """Write the linear plates: those of one sequence together, else each by itself."""
+    """Write the linear plates: one sequence together, else each by itself."""
     if not targets:
         return
     if len(sources) == 1:
@@ -159,7 +126,7 @@ def _write_sheet(path: Path, estimated: FileEstimate) -> None:
 
 
 @contextmanager
-def _all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
+def all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterator[Path]:
     """Yield the folder that a block writes files to; they take their names together or not at all."""
     folder = targets[0].parent
     check_folder(folder)
@@ -177,11 +144,8 @@ def _all_or_none(targets: Sequence[Path], *, overwrite: bool = False) -> Iterato
 def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length: int) -> PlateLight:
     """Return the meaning of the linear values of an estimate's photographs; the LUT's comments name its primaries, too.
 
-    Raises
-    ------
-    CRFNetError
-        If the LUT length is out of range, the photographs differ in their primaries, or these are unknown and have to
-        be converted.
+    Raise CRFNetError if the LUT length is out of range, the photographs differ in their primaries, or these are unknown
+    and have to be converted.
     """
     tags = {path: facts.tags for path, facts in zip(estimated.paths, estimated.firsts, strict=True)}
     plate = common_primaries(tags, plates.primaries)
@@ -191,10 +155,7 @@ def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length
 
 
 def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries, linear: LinearSpace) -> PlateColorSpace:
-    """Return a plate's color space with its exposure, its primaries, and those of its linear files.
-
-    Unknown primaries of the plate are taken for Rec.709.
-    """
+    """Return a plate's color space with its exposure, its primaries (Rec.709 if unknown), and its linear primaries."""
     treated = "" if plate.primaries else ", treated as Rec.709"
     return replace(
         space,

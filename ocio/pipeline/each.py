@@ -1,58 +1,47 @@
-"""Many photographs, one response each, with the files of each."""
+"""The two kinds of batches: photographs with the files of their estimates, and photographs as linear EXR."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import asdict, dataclass, replace
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
 
-from crfnet_core.types import Progress
+from crfnet_core.estimate.result import ResponseEstimate
 
 from ..configs.files import write_config
 from ..configs.plate_color_space import PlateColorSpace
 from ..configs.portable import portable_config
-from ..defaults import ESTIMATES
+from ..defaults import ESTIMATES, PLATES
 from ..errors import LutError, PlateError
 from ..luts.files import read_lut
+from ..luts.response import read_response
+from ..luts.rgb_lut import AnyLut
+from ..movies.library import is_movie
 from ..movies.source import file_source
 from ..options import OutputOptions
-from ..output_files import OutputFiles
+from ..output_files import OutputFiles, output_folder
+from ..plates.frames import FrameSequence
+from ..plates.linear import linearize_plates
 from ..plates.primaries import linear_space
-from .batch import Batch, Task, plan_tasks
+from .batch import Batch, Task
 from .delivery import deliver_estimate, estimated_light, with_light
-from .estimates import estimate_files
-from .loading import load_camera, load_network, load_prior
-from .plan import OutputPlan, stale_files
-from .records import PhotographRecord, RecordFile
-from .run import run_tasks
+from .estimates import estimate_files, response_lut
+from .loading import load_network, load_prior
+from .plan import OutputPlan
+from .records import PhotographRecord
 
-#: Most photographs of a folder that still get a config: nobody chooses from a longer menu, and OpenColorIO's time to
+#: Most photographs of a folder that still gets a config: nobody chooses from a longer menu, and OpenColorIO's time to
 #: build it grows with the square.
 MAX_COLOR_SPACES = 1000
 
 
 @dataclass(frozen=True, kw_only=True)
 class EstimateBatch(Batch):
-    """Photographs whose responses are estimated.
-
-    Parameters
-    ----------
-    outputs : OutputOptions
-        Which files are written of each.
-    """
+    """Photographs with the files of their estimates, which `outputs` chooses, and a config in each folder."""
 
     outputs: OutputOptions
-
-    @property
-    def records(self) -> RecordFile:
-        """The file of records."""
-        return RecordFile(self.out / ESTIMATES)
-
-    @property
-    def choices(self) -> dict[str, Any]:
-        """The options that make two results differ."""
-        return {**super().choices, **asdict(self.outputs)}
+    records_name = ESTIMATES
+    has_config = True
 
     def files(self, folder: Path, stem: str) -> OutputFiles:
         """Return the files of one photograph."""
@@ -61,6 +50,10 @@ class EstimateBatch(Batch):
     def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
         """Return the files of one photograph, except the config."""
         return self.files(folder, stem).unshared
+
+    def check(self) -> None:
+        """Raise a CRFNetError if the camera, the prior or the network cannot be read."""
+        self.response(), load_prior(self.options), load_network(self.options)
 
     def done(self, task: Task) -> PhotographRecord:
         """Estimate one photograph and write its files."""
@@ -72,109 +65,69 @@ class EstimateBatch(Batch):
         deliver_estimate(OutputPlan(files, plates, self.outputs.lut_length), estimated, light)
         return task.record(light, estimated.estimate, lut=files.lut, linear=files.linear)
 
+    def finished(self, records: list[PhotographRecord]) -> list[PhotographRecord]:
+        """Write the config of each folder; the record of a photograph whose LUT is damaged becomes an error."""
+        with self.records.locked():  # two runs at once: the last that ends knows the records of both
+            damaged = self._write_configs([record.photograph for record in records])
+        for record in damaged.values():
+            self.records.append(record)  # so that the next run estimates the photograph again
+        return [damaged.get(record.photograph, record) for record in records]
 
-@dataclass(frozen=True)
-class EachReport:
-    """What became of many photographs.
+    def _write_configs(self, order: Sequence[str]) -> dict[str, PhotographRecord]:
+        """Write the config of each folder, with all photographs whose LUT is there; return the damaged ones."""
+        damaged: dict[str, PhotographRecord] = {}
+        every = self.records.read()
+        folders: dict[str, list[PhotographRecord]] = {}
+        for photo in dict.fromkeys([*order, *sorted(every)]):  # whichever ended first
+            if not every[photo].error and (self.out / every[photo].lut).exists():
+                folders.setdefault(every[photo].folder, []).append(every[photo])
+        for records in folders.values():
+            if len(records) <= MAX_COLOR_SPACES:
+                damaged |= self._write_config(records)
+        return damaged
 
-    Parameters
-    ----------
-    records : tuple of PhotographRecord
-        The record of each, in order.
-    first : OutputFiles or None
-        The files of the first that has any.
-    stale_files : tuple of Path
-        Files of an earlier run with other options that stay there, relative to the output folder.
-    """
-
-    records: tuple[PhotographRecord, ...]
-    first: OutputFiles | None
-    stale_files: tuple[Path, ...]
-
-
-def estimate_each(
-    batch: EstimateBatch,
-    photographs: Mapping[Path, Path],
-    *,
-    workers: int | None = None,
-    scheduler: str | None = None,
-    progress: Progress | None = None,
-) -> EachReport:
-    """Estimate and write every photograph that is not done yet.
-
-    The files of a photograph appear together, and its record (in `ESTIMATES`) as soon as they do. The same call after
-    an interruption goes on; photographs that failed are tried again. At the end each folder gets a config with the
-    color spaces of its photographs, if there are no more than `MAX_COLOR_SPACES`.
-
-    Parameters
-    ----------
-    batch : EstimateBatch
-        What they have in common.
-    photographs : mapping of Path to Path
-        As `find_photographs` returns them.
-    workers, scheduler, progress
-        See `run_tasks`.
-
-    Raises
-    ------
-    CRFNetError
-        If the folder holds estimates of other options, cannot be used, or a process dies; not if a photograph is bad.
-    """
-    load_camera(batch.options), load_prior(batch.options), load_network(batch.options)  # what is bad is refused first
-    folders = dict.fromkeys(photographs.values())
-    configs = [batch.files(folder, "any").config for folder in folders]
-    tasks = plan_tasks(batch, photographs, shared=configs)
-    if not batch.records.path.exists() and not batch.plates.overwrite:
-        for config in filter(Path.exists, configs):
-            raise PlateError("file_exists", path=config)
-    stale = [path.relative_to(batch.out) for task in tasks for path in _stale_files(batch, task)]
-    records = run_tasks(batch, tasks, workers=workers, scheduler=scheduler, progress=progress)
-    with batch.records.locked():  # two runs at once: the last that ends knows the records of both
-        damaged = _write_configs(batch, tasks)
-    for record in damaged.values():
-        batch.records.append(record)
-    records = [damaged.get(record.photograph, record) for record in records]
-    written = (task for task, record in zip(tasks, records, strict=True) if not record.error)
-    first = next((batch.files(task.folder, task.stem) for task in written), None)
-    return EachReport(tuple(records), first, tuple(stale))
-
-
-def _stale_files(batch: EstimateBatch, task: Task) -> Sequence[Path]:
-    """Return the files of an earlier run with other options that stay beside those of a photograph."""
-    return stale_files(batch.files(task.folder, task.stem), [task.photo])
-
-
-def _write_configs(batch: EstimateBatch, tasks: Sequence[Task]) -> dict[str, PhotographRecord]:
-    """Write a config into each folder, with the color spaces of all its photographs whose LUT is there.
-
-    Return the photographs whose LUT is damaged: the next run estimates them again.
-    """
-    damaged: dict[str, PhotographRecord] = {}
-    folders: dict[str, list[PhotographRecord]] = {}
-    order = {str(task.photo): number for number, task in enumerate(tasks)}  # whatever ended first
-    every = batch.records.read().values()
-    for record in sorted(every, key=lambda each: (order.get(each.photograph, len(order)), each.photograph)):
-        if not record.error and (batch.out / record.lut).exists():
-            folders.setdefault(record.folder, []).append(record)
-    for folder, records in folders.items():
-        config = batch.files(Path(folder), records[0].stem).config
-        if len(records) > MAX_COLOR_SPACES:
-            config.unlink(missing_ok=True)
-            continue
-        spaces, check = [], {}
+    def _write_config(self, records: Sequence[PhotographRecord]) -> dict[str, PhotographRecord]:
+        """Write the config of one folder; return the photographs whose LUT is damaged."""
+        spaces, check, damaged = [], {}, {}
         for record in records:
-            space = _color_space(batch, record)
+            files = self.files(Path(record.folder), record.stem)
+            space = PlateColorSpace.from_outputs(files, Path(record.photograph))
+            linear = linear_space(record.plate, self.plates.output_space)
             try:
-                check[space.name] = read_lut(batch.out / record.lut).channels[0]
-                spaces.append(space)
+                check[space.name] = read_lut(self.out / record.lut).channels[0]
+                spaces.append(with_light(space, record.exposure, record.plate, linear))
             except LutError as problem:
                 damaged[record.photograph] = replace(record, error=str(problem))
-        write_config(config, portable_config(spaces), check=check, overwrite=True)
-    return damaged
+        write_config(files.config, portable_config(spaces), check=check, overwrite=True)
+        return damaged
 
 
-def _color_space(batch: EstimateBatch, record: PhotographRecord) -> PlateColorSpace:
-    """Return the color space of a photograph in the config of its folder."""
-    files = batch.files(Path(record.folder), record.stem)
-    space = PlateColorSpace.from_outputs(files, Path(record.photograph))
-    return with_light(space, record.exposure, record.plate, linear_space(record.plate, batch.plates.output_space))
+@dataclass(frozen=True, kw_only=True)
+class LinearBatch(Batch):
+    """Photographs as linear EXR, through the LUT in a file, the stored camera's response, or each through its own."""
+
+    lut: Path | None
+    records_name = PLATES
+
+    def targets(self, folder: Path, stem: str) -> tuple[Path, ...]:
+        """Return the linear EXR of one photograph."""
+        return (self.out / folder / f"{stem}.exr",)
+
+    def response(self) -> tuple[AnyLut, ResponseEstimate | None] | None:
+        """Return the response in the file if there is one, else as every batch."""
+        return (read_response(self.lut).lut, None) if self.lut else super().response()
+
+    def done(self, task: Task) -> PhotographRecord:
+        """Write the linear EXR of one photograph; one of the same light that is there already is left alone."""
+        if is_movie(task.photo):
+            raise PlateError("movie_in_batch", path=task.photo)
+        photograph, targets = FrameSequence((task.photo,)), task.targets
+        lut, estimate = self.response() or self._estimated(photograph)
+        with output_folder(targets[0].parent):
+            written = linearize_plates(photograph, targets, lut, self.plates, workers=1)
+        return task.record(written.light, estimate, linear=targets)
+
+    def _estimated(self, photograph: FrameSequence) -> tuple[AnyLut, ResponseEstimate]:
+        """Return the response estimated from a photograph."""
+        estimate = estimate_files([photograph], self.options).estimate
+        return response_lut(estimate), estimate

@@ -11,7 +11,7 @@ from crfnet_core.estimate.analysis import CutPhotograph, cut_photograph
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
-from crfnet_core.library import CameraSettings, offered_cameras, with_camera
+from crfnet_core.library import offered_cameras, with_camera
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.types import Float32Array, Progress
@@ -34,32 +34,13 @@ PREVIEW_SIDE = 960
 
 @dataclass(frozen=True, eq=False)
 class PhotographFacts:
-    """The facts about an analyzed photograph that its files need once its pixels are gone.
-
-    Parameters
-    ----------
-    report : PhotoFacts
-        Its line in the report.
-    settings : CameraSettings
-        The camera, as the file names it.
-    tags : ColorTags
-        Its primaries, as the file names them.
-    alpha : str
-        How its colors are stored beside alpha: see `FileMetadata.alpha`.
-    plate : PlateSource
-        The file, or the frame of a movie.
-    preview : ndarray, float32, shape (h, w, 3)
-        Every `stride`-th pixel, code values in [0, 1]; empty except of the first photograph.
-    stride : int
-        Distance between the pixels of `preview` in the photograph.
-    """
+    """The facts about an analyzed photograph that its files need once its pixels are gone."""
 
     report: PhotoFacts
-    settings: CameraSettings
-    tags: ColorTags
-    alpha: str
-    plate: PlateSource
-    preview: Float32Array
+    tags: ColorTags  # its primaries, as the file names them
+    alpha: str  # see `FileMetadata.alpha`
+    plate: PlateSource  # the file, or the frame of a movie
+    preview: Float32Array  # every `stride`-th pixel, (h, w, 3), in [0, 1]; empty except of the first photograph
     stride: int
 
     @classmethod
@@ -67,8 +48,7 @@ class PhotographFacts:
         """Return the facts about a photograph of a plate."""
         metadata, stride = photo.metadata, max(1, -(-max(photo.shape[:2]) // PREVIEW_SIDE))
         return cls(
-            report=PhotoFacts.of(photo),
-            settings=CameraSettings.from_metadata(metadata),
+            report=PhotoFacts.from_photo(photo),
             tags=metadata.color if metadata else ColorTags(),
             alpha=metadata.alpha if metadata else "",
             plate=plate,
@@ -79,27 +59,13 @@ class PhotographFacts:
 
 @dataclass(frozen=True, eq=False)
 class FileEstimate:
-    """The response that photographs have in common, and the facts about them.
-
-    Parameters
-    ----------
-    estimate : ResponseEstimate
-        The response.
-    sources : tuple of PlateSource
-        The photographs, sequences and movies.
-    photographs : tuple of PhotographFacts
-        Each photograph, and each frame of a sequence or movie that was analyzed.
-    firsts : tuple of PhotographFacts
-        The first of them of each source, which becomes its linear plate.
-    offers : tuple of CameraAnswer
-        Stored cameras of the first photograph's make and model, if none was asked for.
-    """
+    """The response that photographs have in common, and the facts about them."""
 
     estimate: ResponseEstimate
     sources: tuple[PlateSource, ...]
-    photographs: tuple[PhotographFacts, ...]
-    firsts: tuple[PhotographFacts, ...]
-    offers: tuple[CameraAnswer, ...] = ()
+    photographs: tuple[PhotographFacts, ...]  # of all sources; of a sequence or movie the frames that were analyzed
+    firsts: tuple[PhotographFacts, ...]  # the first of each source, which becomes its linear plate
+    offers: tuple[CameraAnswer, ...] = ()  # stored cameras of the first photograph's model, if none was asked for
 
     @property
     def paths(self) -> tuple[Path, ...]:
@@ -115,20 +81,9 @@ class FileEstimate:
 def photograph_sources(names: Sequence[Path], frames: str | None = None) -> list[PlateSource]:
     """Return the sources to estimate one response from: of a sequence some frames, spread over it.
 
-    A file that is given twice counts once.
-
-    Parameters
-    ----------
-    names : sequence of Path
-        Photographs, movies, and sequences of frames as `find_frames` knows them.
-    frames : str or None
-        The frames of a sequence or movie to choose from, as in `parse_frames`; all by default.
-
-    Raises
-    ------
-    PlateError
-        If a sequence has no such frames, `frames` is malformed or given for a single photograph, or a name is that of a
-        folder, or of nothing.
+    `names` are photographs, movies, and sequences as `find_frames` knows them; a file that is given twice counts once.
+    `frames` are the frames of a sequence or movie to choose from, as in `parse_frames`; all by default. Raise
+    PlateError if there are no such frames or a single photograph has none, or a name leads to a folder or to nothing.
     """
     paths: list[Path] = []
     for name in names:
@@ -153,8 +108,7 @@ def estimate_files(
     """Estimate the response that photographs, sequences and movies have in common.
 
     Of a sequence or movie, up to `FRAMES_ANALYZED` frames are analyzed, spread over it. Only one photograph is in
-    memory at a time, so a linear plate is made from its file, which is read again: all estimates have to succeed before
-    anything is written.
+    memory at a time: for its linear plate the file is read again.
 
     Parameters
     ----------
@@ -192,17 +146,10 @@ def _cut_photographs(
     """Yield the windows, the facts and the place in its source of each photograph; one is in memory at a time."""
     for number, source in enumerate(sources):
         for position, (plate, photo) in enumerate(photographs_of(source)):
-            has_preview = position == number == 0
-            facts = PhotographFacts.from_photo(photo, plate, has_preview=has_preview)
+            facts = PhotographFacts.from_photo(photo, plate, has_preview=position == number == 0)
             yield cut_photograph(photo, options), facts, position
 
 
 def response_lut(estimate: ResponseEstimate, *, length: int = LUT_LENGTH) -> Lut1D:
-    """Return the inverse of an estimated response as a LUT with its provenance.
-
-    Raises
-    ------
-    LutError
-        If the length is not 2 to 65536.
-    """
+    """Return the inverse of an estimated response as a LUT with its provenance: LutError unless 2 to 65536 long."""
     return inverse_response_lut(estimate.curve, length=length, comments=provenance(estimate))

@@ -1,4 +1,4 @@
-"""The network, the prior and the stored camera that the options name."""
+"""The network, the prior and the stored camera that the options name; CRFNetError if absent or damaged."""
 
 from __future__ import annotations
 
@@ -14,46 +14,22 @@ from ..options import EstimateOptions
 
 
 def load_network(options: EstimateOptions) -> ResponseNetwork:
-    """Return the network that the options name; the last one stays loaded.
-
-    Raises
-    ------
-    ModelError
-        If the model folder is absent, incomplete or altered.
-    """
+    """Return the network that the options name; the last one stays loaded."""
     return _network(options.model, options.threads)
 
 
 def load_prior(options: EstimateOptions) -> Prior:
-    """Return the prior that the options name, whose file may change while a process lives.
-
-    Raises
-    ------
-    PriorError
-        If there is no such prior, or the file holds none.
-    """
+    """Return the prior that the options name, whose file may change while a process lives."""
     return Prior.load(options.prior)
 
 
 def load_camera(options: EstimateOptions) -> Camera | None:
-    """Return the stored camera that the options name; None if they name none.
-
-    Raises
-    ------
-    CameraError
-        If there is no such camera, or its file is damaged.
-    """
+    """Return the stored camera that the options name; None if they name none."""
     return None if options.camera is None else find_camera(options.camera)
 
 
 def load_camera_response(options: EstimateOptions) -> ResponseEstimate | None:
-    """Return the response of the stored camera that the options name, for photographs that nobody looks at.
-
-    Raises
-    ------
-    CameraError
-        If there is no such camera, or its file is damaged.
-    """
+    """Return the response of that camera, for photographs that nobody looks at; None without one."""
     camera = load_camera(options)
     return None if camera is None else camera_estimate(camera)
 

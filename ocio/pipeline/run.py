@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from concurrent.futures import BrokenExecutor, as_completed
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +14,7 @@ from crfnet_core.types import Progress, cores, show_progress
 
 from ..errors import PlateError
 from ..output_files import output_folder
-from .batch import Batch, Task
+from .batch import Batch, Task, plan_tasks
 from .photographs import unreadable_reason
 from .records import PhotographRecord
 from .workers import worker_pool
@@ -23,36 +23,52 @@ from .workers import worker_pool
 RECORD_TRIALS, RECORD_SECONDS = 10, 0.1
 
 
-def run_tasks(
+def run_batch(
     batch: Batch,
-    tasks: Sequence[Task],
+    photographs: Mapping[Path, Path],
     *,
     workers: int | None = None,
     scheduler: str | None = None,
     progress: Progress | None = None,
 ) -> list[PhotographRecord]:
-    """Do the tasks that are not done yet, in processes (by default one a core) or by a Dask scheduler.
+    """Write the files of every photograph that is not done yet; return the records of all, in order.
 
-    Return the records of all, in order. A record is appended as soon as the files of its photograph are whole. What the
-    progress callback raises ends the run after the photographs that have begun.
+    The files of a photograph appear together, and its record as soon as they do. The same call after an interruption
+    goes on; photographs that failed are tried again. At the end, folders of estimates get a config with the color
+    spaces of their photographs.
+
+    Parameters
+    ----------
+    batch : Batch
+        What they have in common.
+    photographs : mapping of Path to Path
+        As `find_photographs` returns them.
+    workers : int, optional
+        Processes of this machine; by default one a core.
+    scheduler : str, optional
+        The address of a Dask scheduler, in place of processes of this machine.
+    progress : callable, optional
+        Called with (done, total) after every photograph. What it raises ends the run after those that have begun.
 
     Raises
     ------
-    PlateError
-        If a process dies, or no scheduler answers; not if a photograph is bad.
+    CRFNetError
+        If the folder holds results of other options or cannot be used, the response, the prior or the network cannot be
+        read, a process dies, or no scheduler answers; not if a photograph is bad.
     """
+    batch.check()
+    tasks = plan_tasks(batch, photographs)
     with output_folder(batch.out):
-        file = batch.records
-        records = {} if batch.plates.overwrite else file.read()
+        records = {} if batch.plates.overwrite else batch.records.read()
         todo = [task for task in tasks if not task.is_done(records.get(str(task.photo)))]
         done = len(tasks) - len(todo)
         show_progress(progress, done, len(tasks))
         for record in _ended(todo, workers or cores(), scheduler):
-            file.append(record)
+            batch.records.append(record)
             records[record.photograph] = record
             done += 1
             show_progress(progress, done, len(tasks))
-    return [records[str(task.photo)] for task in tasks]
+    return batch.finished([records[str(task.photo)] for task in tasks])
 
 
 def _ended(tasks: Sequence[Task], workers: int, scheduler: str | None) -> Iterator[PhotographRecord]:
@@ -98,10 +114,7 @@ def _done_once(task: Task) -> PhotographRecord:
 def _record_of_existing(task: Task) -> PhotographRecord | None:
     """Return the record of files that are there, as another run may have made it meanwhile; None without any record.
 
-    Raises
-    ------
-    PlateError
-        If they are those of another photograph, or of another program.
+    Raise PlateError if they belong to another photograph or program.
     """
     there = [] if task.batch.plates.overwrite else _existing(task)
     if not there:
@@ -124,9 +137,7 @@ def _existing(task: Task) -> list[Path]:
 
 def _words(problem: Exception, photo: Path) -> str:
     """Return why a photograph failed, on one line, with its name."""
-    if isinstance(problem, MemoryError):
-        return one_line(f"{photo}: not enough memory")
-    text = one_line(problem)
     if isinstance(problem, CRFNetError | OSError):
-        return text
-    return one_line(f"{photo}: {type(problem).__name__} ({text})")
+        return one_line(problem)
+    is_memory = isinstance(problem, MemoryError)
+    return one_line(f"{photo}: {'not enough memory' if is_memory else f'{type(problem).__name__} ({problem})'}")

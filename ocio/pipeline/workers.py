@@ -18,18 +18,9 @@ SCHEDULER_TIMEOUT = 10
 def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Executor]:
     """Yield an executor; at the end of the block, what has not begun is dropped and what has begun is finished.
 
-    Parameters
-    ----------
-    workers : int
-        Processes of this machine; one works in this process.
-    scheduler : str, optional
-        The address of a Dask scheduler, such as "tcp://10.0.0.1:8786", in place of processes of this machine. Its
-        workers need this package and the same files under the same names; a job whose worker dies is done again.
-
-    Raises
-    ------
-    PlateError
-        If Dask is not installed, or no scheduler answers at the address.
+    `workers` are processes of this machine; one works in this process. `scheduler` is the address of a Dask scheduler,
+    such as "tcp://10.0.0.1:8786": its workers need this package and the same files under the same names, and a job
+    whose worker dies is done again. Raise PlateError if Dask is not installed, or no scheduler answers.
     """
     if scheduler is not None:
         with _dask_pool(scheduler) as pool:

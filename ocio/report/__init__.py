@@ -5,17 +5,13 @@ words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
 cameras      stored cameras in words and as JSON
 calibration  a measured response in words, as JSON and as provenance
+sheet        the picture of an estimate; calibration_sheet that of a measured response: both need matplotlib
 """
 
-from .calibration import (
-    calibration_document,
-    calibration_lines,
-    calibration_provenance,
-    comparison_lines,
-)
+from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines
 from .cameras import camera_line, camera_summary, offer_lines
 from .documents import estimate_document, lut_document, model_document, plate_document
-from .facts import PhotoFacts, Phrases, agreeing, basis, curve_error_words, provenance, shape_error_words
+from .facts import PhotoFacts, Phrases, basis, provenance
 from .words import (
     REMEDIES,
     VERDICTS,
@@ -36,7 +32,6 @@ __all__ = [
     "VERDICTS",
     "PhotoFacts",
     "Phrases",
-    "agreeing",
     "basis",
     "calibration_document",
     "calibration_lines",
@@ -44,7 +39,6 @@ __all__ = [
     "camera_line",
     "camera_summary",
     "comparison_lines",
-    "curve_error_words",
     "estimate_document",
     "file_lines",
     "light_lines",
@@ -58,7 +52,6 @@ __all__ = [
     "plate_lines",
     "provenance",
     "result_line",
-    "shape_error_words",
     "source_line",
     "verdict_advice",
     "verdict_lines",

@@ -1,4 +1,4 @@
-"""What is said of photographs and estimates everywhere: in words, in JSON, in LUT files and on the sheet."""
+"""Facts about photographs and estimates in words, for the command, JSON, LUT files and the sheet."""
 
 from __future__ import annotations
 
@@ -15,28 +15,16 @@ from crfnet_core.response.metrics import brightness_percent
 
 @dataclass(frozen=True)
 class PhotoFacts:
-    """What the report says of a photograph once its pixels are gone.
-
-    Parameters
-    ----------
-    name : str
-        The file's.
-    width, height : int
-        In pixels.
-    bit_depth : int
-        Bits per sample.
-    has_gain_map : bool
-        Whether the file holds a gain map, so that its base picture was read.
-    """
+    """The facts in the report about a photograph, once its pixels are gone."""
 
     name: str
     width: int
     height: int
     bit_depth: int
-    has_gain_map: bool = False
+    has_gain_map: bool = False  # so that the base picture was read
 
     @classmethod
-    def of(cls, photo: Photo) -> PhotoFacts:
+    def from_photo(cls, photo: Photo) -> PhotoFacts:
         """Return the facts of a photograph."""
         height, width = photo.shape[:2]
         has_gain_map = photo.metadata is not None and photo.metadata.has_gain_map
@@ -50,21 +38,11 @@ class PhotoFacts:
 
 @dataclass(frozen=True)
 class Phrases:
-    """The phrases of a face: its remedies in its own terms, and whether it shows the figures of the literature.
-
-    Parameters
-    ----------
-    calibrate : str
-        Behind the advice about an estimate that is not to be trusted.
-    state_device : str
-        The same, if nothing names the camera.
-    has_e_est : bool
-        Whether errors are also given as E_est.
-    """
+    """The phrases of a face: remedies behind the advice about an estimate that is not to be trusted."""
 
     calibrate: str = ", or run crfnet calibrate"
     state_device: str = ", or say with --taken-with which kind of camera took it, if it is a photograph"
-    has_e_est: bool = True
+    has_e_est: bool = True  # whether errors are also given as E_est, the figure of the literature
 
 
 #: The phrases of the command.

@@ -28,7 +28,7 @@ from crfnet_core.statistics.windows import Window
 from crfnet_core.types import Float32Array
 
 from ..errors import PlateError
-from . import agreeing, basis, curve_error_words, shape_error_words
+from .facts import agreeing, basis, curve_error_words, shape_error_words
 
 #: Size of the sheet in inches at `DPI`: 1800 x 1080 pixels.
 SIZE, DPI = (12.0, 7.2), 150
@@ -58,30 +58,13 @@ STYLE: dict[Any, Any] = {
 }
 
 
-def draw_sheet(
-    path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1, overwrite: bool = False
-) -> None:
+def draw_sheet(path: Path, preview: Float32Array, estimate: ResponseEstimate, *, stride: int = 1) -> None:
     """Write the picture of an estimate as PNG; the same input gives the same bytes.
 
-    Parameters
-    ----------
-    path : Path
-        The file to write.
-    preview : ndarray, float32, shape (h, w, 3)
-        Every `stride`-th pixel of the first photograph, code values in [0, 1].
-    estimate : ResponseEstimate
-        The estimate.
-    stride : int
-        Distance in the photograph between neighbouring pixels of `preview`.
-    overwrite : bool
-        Whether an existing file may be replaced.
-
-    Raises
-    ------
-    PlateError
-        If the file cannot be written.
+    `preview`, shape (h, w, 3), is every `stride`-th pixel of the first photograph, code values in [0, 1]. Raise
+    PlateError if the file is there already or cannot be written.
     """
-    with sheet_figure(path, overwrite=overwrite) as figure:
+    with sheet_figure(path) as figure:
         _draw_heading(figure, estimate)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), estimate)
         before, after = _picture_axes(figure, side_by_side=preview.shape[0] >= preview.shape[1])
@@ -91,12 +74,9 @@ def draw_sheet(
 
 @contextmanager
 def sheet_figure(path: Path, *, overwrite: bool = False) -> Iterator[Figure]:
-    """Yield an empty figure in the style of the sheets, and write it as PNG; the same drawing gives the same bytes.
+    """Yield an empty figure in the style of the sheets, and write it as PNG, the same drawing with the same bytes.
 
-    Raises
-    ------
-    PlateError
-        If the file cannot be written.
+    Raise PlateError if the file cannot be written.
     """
     with mpl.rc_context(), warnings.catch_warnings():
         warnings.filterwarnings("ignore", message="Glyph .* missing from font")  # file names may hold any character

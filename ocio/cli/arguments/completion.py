@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from .parts import Commands, add_command
 
-#: The shells that shtab knows. Its own list is not read here: importing it takes a third as long as all of --help.
-SHELLS = ("bash", "zsh", "tcsh", "fish", "powershell")
+#: Shells that shtab knows, which is not imported here: that takes a third as long as all of --help.
+SHELLS = ("bash", "zsh", "fish")
 
 EXAMPLES = """examples:
   crfnet completion bash > ~/.local/share/bash-completion/completions/crfnet

@@ -4,15 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .parts import (
-    Commands,
-    add_command,
-    add_each,
-    add_frames,
-    add_network,
-    add_plate,
-    written_path,
-)
+from .parts import Commands, add_command, add_frames, add_network, add_plate, written_path
 
 EXAMPLES = """examples:
   crfnet estimate plate01.jpg --out look
@@ -39,8 +31,7 @@ def add(commands: Commands) -> None:
         help="JPEG, HEIC, PNG, TIFF, DPX and others, a movie, or a sequence",
     )
     parser.add_argument("--out", type=written_path, required=True, metavar="DIR", help="folder for everything written")
-    add_frames(parser)
-    add_each(parser, "one response per photograph, not one for all; PHOTO may be a folder")
+    add_frames(parser, "one response per photograph, not one for all; PHOTO may be a folder")
     parser.add_argument("--forward", action="store_true", help="write the LUT from light to code values, too")
     parser.add_argument("--no-sheet", action="store_true", help="do not draw the picture")
     parser.add_argument("--no-linear", action="store_true", help="do not write the photographs as linear EXR")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from .parts import Commands, add_command, add_each, add_frames, add_network, add_plate, written_path
+from .parts import Commands, add_command, add_frames, add_network, add_plate, written_path
 
 EXAMPLES = """examples:
   crfnet linearize plate01.jpg --lut look/plate01.spi1d --out plate01_linear.exr
@@ -36,13 +36,9 @@ def add(commands: Commands) -> None:
         help="file, or pattern like that of PLATES; with --each a folder",
     )
     parser.add_argument(
-        "--lut",
-        type=Path,
-        metavar="FILE",
-        help="the response: a 1D LUT of any format that OpenColorIO reads",
+        "--lut", type=Path, metavar="FILE", help="the response: a 1D LUT of any format that OpenColorIO reads"
     )
-    add_frames(parser)
-    add_each(parser, "photographs, not a sequence: without --lut and --camera each by its own response")
+    add_frames(parser, "photographs, not a sequence: without --lut and --camera each by its own response")
     parser.add_argument(
         "--encoded", action="store_true", help="OpenEXR plates that do not say it hold encoded values, not linear ones"
     )

@@ -51,14 +51,9 @@ def add_action(actions: Commands, name: str, summary: str) -> argparse.ArgumentP
     return parser
 
 
-def add_model(parser: argparse.ArgumentParser) -> None:
-    """Add --model."""
-    parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
-
-
 def add_network(parser: argparse.ArgumentParser) -> None:
     """Add the options of commands that run the network."""
-    add_model(parser)
+    parser.add_argument("--model", type=Path, metavar="MODEL", help="another model: a folder, or crfnet2017")
     parser.add_argument(
         "--prior",
         default=PRIORS[0],
@@ -110,14 +105,10 @@ def add_plate(parser: argparse.ArgumentParser) -> None:
     add_json(parser)
 
 
-def add_frames(parser: argparse.ArgumentParser) -> None:
-    """Add --frames."""
+def add_frames(parser: argparse.ArgumentParser, each: str) -> None:
+    """Add --frames, and --each, which a text explains, with its workers."""
     parser.add_argument("--frames", metavar="SPEC", help="which frames, like 1001-1100 or 1-99x2 (all)")
-
-
-def add_each(parser: argparse.ArgumentParser, words: str) -> None:
-    """Add --each, which `words` explain, and where it works."""
-    parser.add_argument("--each", action="store_true", help=words)
+    parser.add_argument("--each", action="store_true", help=each)
     parser.add_argument(
         "--workers", type=positive, metavar="N", help="with --each: photographs at a time (as many as cores)"
     )

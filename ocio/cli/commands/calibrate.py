@@ -9,11 +9,11 @@ from crfnet_core.calibration import calibrate_stack, parse_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
-from .printing import prepare_matplotlib, print_earlier, print_json, print_lines, progress_bar
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Measure a response, write every file, and print the result, with the distance of another response."""
+    """Measure a response, write every file, and print the result and how far another response is from it."""
     frames: list[Path] = arguments.photos
     outputs = OutputOptions(has_sheet=not arguments.no_sheet and prepare_matplotlib(), has_linear=False)
     plan = pipeline.plan_calibration(arguments.out, frames, outputs, name=arguments.name, overwrite=arguments.overwrite)
@@ -23,10 +23,12 @@ def run(arguments: argparse.Namespace) -> None:
         calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
     comparison = calibration.compare(other) if other else None
     document = pipeline.write_calibration(plan, calibration, comparison)
-    if arguments.json:
-        print_json(document | plan.earlier.document)
-        return
-    print_lines([*report.calibration_lines(calibration), *(report.comparison_lines(comparison) if comparison else [])])
-    lines = report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals")
-    print_lines(["", f"Written to {arguments.out}:", *lines])
-    print_earlier(plan.earlier, plan.files.config, "this calibration")
+    lines = [
+        *report.calibration_lines(calibration),
+        *(report.comparison_lines(comparison) if comparison else []),
+        "",
+        f"Written to {arguments.out}:",
+        *report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals"),
+        *lost_lines(plan),
+    ]
+    print_result(document | lost_document(plan), lines, as_json=arguments.json)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-from collections.abc import Callable
 
 from crfnet_core.errors import CameraError
 from crfnet_core.files import atomic_write_text, json_text
@@ -18,18 +17,12 @@ from crfnet_core.library import (
 
 from ... import pipeline, report
 from ...luts.files import write_lut
-from .printing import print_json, print_lines
+from .printing import print_lines, print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
     """Run `crfnet camera add`, `list`, `show`, `remove` or `export`."""
-    actions: dict[str, Callable[[argparse.Namespace], None]] = {
-        "add": _add,
-        "list": _list,
-        "show": _show,
-        "remove": _remove,
-        "export": _export,
-    }
+    actions = {"add": _add, "list": _list, "show": _show, "remove": _remove, "export": _export}
     actions[arguments.action](arguments)
 
 
@@ -43,15 +36,18 @@ def _add(arguments: argparse.Namespace) -> None:
 
 
 def _list(arguments: argparse.Namespace) -> None:
-    """List the user's cameras, and those that come with this project."""
-    own, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
-    if arguments.json:
-        cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (own, shipped))
-        print_json({"folder": str(own.folder), "cameras": cameras, "shipped": others, "problems": own.problems()})
-        return
-    print_lines([f"Yours, in {own.folder}:", *_indented(own)])
-    print_lines(["Measured, with crfnet:", *_indented(shipped)])
-    print_lines(f"note: {problem}" for problem in own.problems())
+    """List the user's cameras, and the ones that come with this project."""
+    user, shipped = CameraLibrary.of_user(), CameraLibrary.shipped()
+    cameras, others = (list(map(report.camera_summary, library.cameras())) for library in (user, shipped))
+    document = {"folder": str(user.folder), "cameras": cameras, "shipped": others, "problems": user.problems()}
+    lines = [
+        f"Yours, in {user.folder}:",
+        *_indented(user),
+        "Measured, with crfnet:",
+        *_indented(shipped),
+        *(f"note: {problem}" for problem in user.problems()),
+    ]
+    print_result(document, lines, as_json=arguments.json)
 
 
 def _show(arguments: argparse.Namespace) -> None:
@@ -63,10 +59,8 @@ def _remove(arguments: argparse.Namespace) -> None:
     """Remove a camera of the user's."""
     library = CameraLibrary.of_user()
     library.remove(arguments.name)
-    if arguments.json:
-        print_json({"folder": str(library.folder), "removed": arguments.name})
-    else:
-        print_lines([f"Removed: {arguments.name}."])
+    document = {"folder": str(library.folder), "removed": arguments.name}
+    print_result(document, [f"Removed: {arguments.name}."], as_json=arguments.json)
 
 
 def _export(arguments: argparse.Namespace) -> None:
@@ -76,19 +70,14 @@ def _export(arguments: argparse.Namespace) -> None:
         atomic_write_text(out, json_text(camera_document(camera)), overwrite=arguments.overwrite, error=CameraError)
     else:
         write_lut(out, pipeline.response_lut(camera_estimate(camera)), overwrite=arguments.overwrite)
-    if arguments.json:
-        print_json({"camera": camera.name, "written": str(out)})
-    else:
-        print_lines([f"Written: {out}."])
+    print_result({"camera": camera.name, "written": str(out)}, [f"Written: {out}."], as_json=arguments.json)
 
 
 def _print_camera(camera: Camera, *, as_json: bool) -> None:
     """Print a camera and how good its response is."""
     estimate = camera_estimate(camera)
-    if as_json:
-        print_json(report.camera_summary(camera) | {"estimate": estimate.to_dict()})
-    else:
-        print_lines([report.camera_line(camera), *report.verdict_lines(estimate)])
+    document = report.camera_summary(camera) | {"estimate": estimate.to_dict()}
+    print_result(document, [report.camera_line(camera), *report.verdict_lines(estimate)], as_json=as_json)
 
 
 def _indented(library: CameraLibrary) -> list[str]:

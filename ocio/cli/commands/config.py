@@ -10,7 +10,7 @@ from ...configs.derived import write_derived_config
 from ...configs.looks import read_looks
 from ...configs.plate_color_space import PlateInConfig, plates_in_config
 from ...configs.sources import find_config
-from .printing import print_json, print_lines
+from .printing import print_result
 
 
 def run(arguments: argparse.Namespace) -> None:
@@ -23,23 +23,21 @@ def _add(arguments: argparse.Namespace) -> None:
     paths = dict.fromkeys(path.resolve() for path in arguments.looks)
     looks = [look for path in paths for look in read_looks(path)]
     derived = write_derived_config(find_config(arguments.base), arguments.out, looks, overwrite=arguments.overwrite)
-    if arguments.json:
-        plates = [asdict(plate) for plate in derived.plates]
-        print_json({"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)})
-        return
-    print_lines([f"Written: {derived.path}", *_plate_lines(derived.plates)])
+    plates = [asdict(plate) for plate in derived.plates]
+    document = {"config": str(derived.path), "plates": plates, "without_rule": list(derived.without_rule)}
     reason = "many cameras give such names, or several plates have it"
-    print_lines(f"note: no file rule for {pattern}: {reason}" for pattern in derived.without_rule)
+    notes = [f"note: no file rule for {pattern}: {reason}" for pattern in derived.without_rule]
+    lines = [f"Written: {derived.path}", *_plate_lines(derived.plates), *notes]
+    print_result(document, lines, as_json=arguments.json)
 
 
 def _list(arguments: argparse.Namespace) -> None:
     """List the plates of a config."""
     source = find_config(arguments.config)
     plates = plates_in_config(source.config)
-    if arguments.json:
-        print_json({"config": source.name, "plates": [asdict(plate) for plate in plates]})
-    else:
-        print_lines(_plate_lines(plates) if plates else [f"{source.name}: has no plates"])
+    document = {"config": source.name, "plates": [asdict(plate) for plate in plates]}
+    lines = _plate_lines(plates) or [f"{source.name}: has no plates"]
+    print_result(document, lines, as_json=arguments.json)
 
 
 def _plate_lines(plates: Iterable[PlateInConfig]) -> list[str]:

@@ -6,7 +6,6 @@ import argparse
 import shlex
 from collections.abc import Mapping
 from concurrent.futures import ThreadPoolExecutor
-from dataclasses import asdict
 from importlib import import_module
 from pathlib import Path
 from typing import Any
@@ -14,23 +13,13 @@ from typing import Any
 from crfnet_core.posterior import Verdict
 
 from ... import pipeline, report
-from ...defaults import ESTIMATES
 from ...movies.source import movie_of
 from ...options import OutputOptions, PlateOptions
 from ...output_files import OutputFiles, plain_stem
-from ...pipeline import EachReport, EstimateBatch, FileEstimate, OutputPlan
 from ..arguments.parts import NOT_TRUSTED
-from ..remedies import CommandError
-from .options import check_each, estimate_options, plate_arguments, plate_options
-from .printing import (
-    check_records,
-    prepare_matplotlib,
-    print_earlier,
-    print_json,
-    print_lines,
-    print_stale,
-    progress_bar,
-)
+from .each import check_each, run_each
+from .options import estimate_options, plate_arguments, plate_options
+from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -41,11 +30,16 @@ def run(arguments: argparse.Namespace) -> int:
         has_linear=not arguments.no_linear,
         has_forward=arguments.forward,
     )
-    verdicts = _run_each(arguments, outputs) if arguments.each else _run_one(arguments, outputs)
+    if arguments.each:
+        options, plates = estimate_options(arguments), plate_options(arguments)
+        batch = pipeline.EstimateBatch(out=arguments.out, options=options, plates=plates, outputs=outputs)
+        verdicts = run_each(arguments, arguments.photos, batch, "estimates")
+    else:
+        verdicts = [_run_one(arguments, outputs)]
     return NOT_TRUSTED if arguments.strict and Verdict.DO_NOT_TRUST in verdicts else 0
 
 
-def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> list[str]:
+def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> str:
     """Estimate one response of all photographs; return its verdict."""
     options, sources = estimate_options(arguments), pipeline.photograph_sources(arguments.photos, arguments.frames)
     paths = [source.paths[0] for source in sources]
@@ -56,56 +50,38 @@ def _run_one(arguments: argparse.Namespace, outputs: OutputOptions) -> list[str]
         estimated = pipeline.estimate_files(sources, options, progress=progress)
     light = pipeline.estimated_light(estimated, plan.plates, lut_length=plan.lut_length)
     document = pipeline.deliver_estimate(plan, estimated, light)
-    if arguments.json:
-        print_json({"folder": str(arguments.out), "estimates": [document], **plan.earlier.document})
-    else:
-        _print_estimate(estimated, document, plan)
-    return [estimated.estimate.verdict]
+    printed = {"folder": str(arguments.out), "estimates": [document], **lost_document(plan)}
+    print_result(printed, _lines(estimated, document, plan), as_json=arguments.json)
+    return estimated.estimate.verdict
 
 
-def _run_each(arguments: argparse.Namespace, outputs: OutputOptions) -> list[str]:
-    """Estimate one response of each photograph; return the verdicts. Those that fail are named at the end."""
-    if arguments.frames:
-        raise CommandError("frames_of_each")
-    options, plates = estimate_options(arguments), plate_options(arguments)
-    batch = EstimateBatch(out=arguments.out, options=options, plates=plates, outputs=outputs)
-    photographs = pipeline.find_photographs(arguments.photos)
-    with progress_bar("photographs") as progress:
-        done = pipeline.estimate_each(
-            batch, photographs, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
-        )
-    stale = [path.as_posix() for path in done.stale_files]
-    if arguments.json:
-        document = {"folder": str(arguments.out), "estimates": [asdict(record) for record in done.records]}
-        print_json(document | ({"left": stale} if stale else {}))
-    else:
-        _print_records(done, arguments.out)
-        print_stale(stale, "these estimates")
-    check_records(done.records)
-    return [record.verdict for record in done.records]
-
-
-def _print_estimate(estimated: FileEstimate, document: Mapping[str, Any], plan: OutputPlan) -> None:
-    """Print what was read, found and written, and how to use it."""
-    files = plan.files
-    lines = [
+def _lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
+    """Return what was read, estimated and written, and how to use it, for people."""
+    return [
         *estimated.movies,
         *(str(photograph.report) for photograph in estimated.photographs),
         *report.verdict_lines(estimated.estimate),
         *report.light_lines(document),
         *report.offer_lines(estimated.offers),
+        "",
+        f"Written to {plan.files.report.parent}:",
+        *report.file_lines(plan.files),
+        *lost_lines(plan),
+        "",
+        *_usage_lines(estimated, document, plan),
     ]
-    print_lines([*lines, "", f"Written to {files.report.parent}:", *report.file_lines(files)])
-    print_earlier(plan.earlier, files.config, "this estimate")
-    print_lines([""])
-    first = estimated.firsts[0]
+
+
+def _usage_lines(estimated: pipeline.FileEstimate, document: Mapping[str, Any], plan: pipeline.OutputPlan) -> list[str]:
+    """Return the command lines that make linear plates of the first photograph, or of all frames of a movie."""
+    path, first = estimated.paths[0], estimated.firsts[0]
     if movie_of(first.plate):
-        print_lines([f"The linear plate is frame {first.plate.numbers[0]}; the whole movie, with the LUT:"])
-        print_lines([f"  {_linearize_line(estimated.paths[0], files, plan.plates)}"])
-        return
-    print_lines(["The linear plate in oiiotool, with the LUT or the config:"])
-    lines = report.oiiotool_lines(estimated.paths[0], files, document, alpha=first.alpha)
-    print_lines(f"  {line}" for line in lines)
+        title = f"The linear plate is frame {first.plate.numbers[0]}; the whole movie, with the LUT:"
+        lines = [_linearize_line(path, plan.files, plan.plates)]
+    else:
+        title = "The linear plate in oiiotool, with the LUT or the config:"
+        lines = report.oiiotool_lines(path, plan.files, document, alpha=first.alpha)
+    return [title, *(f"  {line}" for line in lines)]
 
 
 def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> str:
@@ -113,12 +89,3 @@ def _linearize_line(movie: Path, files: OutputFiles, plates: PlateOptions) -> st
     frames = Path("linear", f"{plain_stem(movie)}.%04d.exr")
     command = ["crfnet", "linearize", str(movie), "--lut", str(files.lut), "--out", str(frames)]
     return shlex.join([*command, *plate_arguments(plates)])
-
-
-def _print_records(done: EachReport, folder: Path) -> None:
-    """Print the result of each photograph in one line, and the files of the first."""
-    print_lines([*(record.error or record.summary for record in done.records), ""])
-    if files := done.first:
-        lines = [line for line in report.file_lines(files) if files.config.name not in line or files.config.exists()]
-        print_lines([f"Written to {folder}, for each photograph as for the first:", *lines])
-    print_lines([f"All results, one JSON line each: {folder / ESTIMATES}"])

@@ -5,20 +5,20 @@ from __future__ import annotations
 import argparse
 from pathlib import Path
 
-from crfnet_core.errors import ModelError
 from crfnet_core.network import ResponseNetwork, model_folder
 
 from ... import report
 from ...luts.opencolorio import READABLE
 from ...luts.response import read_response
-from .printing import print_json, print_lines
+from ..remedies import CommandError
+from .printing import print_result
 
 #: Names of the files of a model; either of them stands for its folder.
 MODEL_FILES = ("model.json", "model.onnx")
 
 
 def run(arguments: argparse.Namespace) -> None:
-    """Say what a LUT file or a model folder holds."""
+    """Print the contents of a LUT file or a model folder."""
     subject: Path = arguments.subject
     if subject.suffix.lower() in READABLE:
         document = report.lut_document(read_response(subject))
@@ -27,8 +27,5 @@ def run(arguments: argparse.Namespace) -> None:
         document = report.model_document(ResponseNetwork.load(folder).config)
         lines = report.model_lines(document)
     else:
-        raise ModelError(f"{subject}: is neither a LUT ({', '.join(READABLE)}) nor a model folder; give one of these")
-    if arguments.json:
-        print_json(document)
-    else:
-        print_lines(lines)
+        raise CommandError("neither_lut_nor_model", path=subject, suffixes=", ".join(READABLE))
+    print_result(document, lines, as_json=arguments.json)

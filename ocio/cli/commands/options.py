@@ -7,7 +7,6 @@ import argparse
 from crfnet_core.estimate.options import AnalysisOptions
 
 from ...options import EstimateOptions, PlateOptions, stated_device
-from ..remedies import CommandError
 
 
 def estimate_options(arguments: argparse.Namespace) -> EstimateOptions:
@@ -19,19 +18,6 @@ def estimate_options(arguments: argparse.Namespace) -> EstimateOptions:
         camera=arguments.camera,
         analysis=AnalysisOptions(use_metadata=not arguments.ignore_metadata, device=device),
     )
-
-
-def check_each(arguments: argparse.Namespace) -> None:
-    """Refuse the options of --each where it is not given.
-
-    Raises
-    ------
-    CommandError
-        With the option.
-    """
-    for name in ("workers", "scheduler"):
-        if getattr(arguments, name) is not None and not arguments.each:
-            raise CommandError("each_option_alone", name=name)
 
 
 def plate_options(arguments: argparse.Namespace) -> PlateOptions:

@@ -6,10 +6,9 @@ import os
 import shlex
 import sys
 import time
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
@@ -17,17 +16,11 @@ from tqdm import tqdm
 from crfnet_core.files import json_text
 from crfnet_core.types import Progress
 
-from ...errors import PlateError
-
 if TYPE_CHECKING:
-    from ...pipeline.plan import EarlierRun
-    from ...pipeline.records import PhotographRecord
+    from ...pipeline.plan import OutputPlan
 
 #: Seconds between two lines of progress where there is no terminal.
 LINE_SECONDS = 60
-
-#: Most files that a warning names.
-MOST_NAMES = 20
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
 
@@ -41,48 +34,34 @@ def prepare_matplotlib() -> bool:
     return False
 
 
-def print_json(document: Mapping[str, Any]) -> None:
-    """Print a JSON document."""
-    sys.stdout.write(json_text(document))
-
-
 def print_lines(lines: Iterable[str]) -> None:
     """Print lines."""
     sys.stdout.writelines(f"{line}\n" for line in lines)
 
 
-def check_records(records: Sequence[PhotographRecord]) -> None:
-    """Check that no photograph failed.
-
-    Raises
-    ------
-    PlateError
-        With the number of those that did, and the first of their errors.
-    """
-    if failed := [record for record in records if record.error]:
-        code = "photographs_failed_of_many" if len(failed) < len(records) else "photographs_failed"
-        raise PlateError(code, failed=len(failed), count=len(records), problem=failed[0].error)
+def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:
+    """Print a JSON document, or the same in lines."""
+    if as_json:
+        sys.stdout.write(json_text(document))
+    else:
+        print_lines(lines)
 
 
-def print_stale(names: Sequence[str], what: str) -> None:
-    """Warn of files of an earlier run that are not part of what was written; of many, the first are named."""
-    if names:
-        more = f" and {len(names) - MOST_NAMES} more" if len(names) > MOST_NAMES else ""
-        listed = ", ".join(names[:MOST_NAMES]) + more
-        print_lines([f"Warning: left from an earlier run, and not part of {what}: {listed}; remove them."])
+def lost_document(plan: OutputPlan) -> dict[str, Any]:
+    """Return the names of plates that a replaced config has no more, for JSON; empty without any."""
+    return {"dropped": list(plan.lost_color_spaces)} if plan.lost_color_spaces else {}
 
 
-def print_earlier(earlier: EarlierRun, config: Path, what: str) -> None:
-    """Warn of the remains of an earlier run; name the command that brings the color spaces of plates back."""
-    print_stale([path.name for path in earlier.stale_files], what)
-    if names := earlier.lost_color_spaces:
-        which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
-        print_lines(
-            [
-                f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
-                f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
-            ]
-        )
+def lost_lines(plan: OutputPlan) -> list[str]:
+    """Return a warning of these plates, with the command that brings them back."""
+    if not (names := plan.lost_color_spaces):
+        return []
+    which = f'"{names[0]}"' + (f" and {len(names) - 1} more" if names[1:] else "")
+    config = plan.files.config
+    return [
+        f"Warning: {config.name} was replaced, and does not have {which} any more; crfnet config add --base"
+        f" {shlex.quote(str(config))} --out FOLDER LOOK writes one with both, by the JSON of the other."
+    ]
 
 
 @contextmanager

@@ -11,6 +11,7 @@ from crfnet.luts.files import read_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
@@ -151,16 +152,11 @@ def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
 
 
-def test_files_of_an_earlier_run_that_no_longer_fit_are_named(crfnet, frames, tmp_path):
-    again = ("calibrate", *frames, "--out", tmp_path, "--name", "eos20d", "--no-sheet", "--overwrite")
-    (tmp_path / "eos20d.json").write_text("{}")
-    (tmp_path / "eos20d_sheet.png").write_text("of an earlier run")
-    (tmp_path / "eos20d_linear.exr").write_text("of another command, which stays unnamed")
-    done = crfnet(*again)
-    assert (
-        "Warning: left from an earlier run, and not part of this calibration: eos20d_sheet.png; remove them."
-        in done.out
-    )
-    assert json.loads(crfnet(*again, "--json").out)["left"] == ["eos20d_sheet.png"]
-    (tmp_path / "eos20d_sheet.png").unlink()
-    assert "from an earlier run" not in crfnet(*again).out
+def test_a_response_from_a_lut_is_gamma(tmp_path):
+    """`response_to_compare` on a LUT of gamma 2.2."""
+    from crfnet.luts.files import write_lut
+    from crfnet.luts.lut1d import inverse_response_lut
+    from crfnet.pipeline import response_to_compare
+
+    write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
+    assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01

@@ -22,14 +22,9 @@ from tests.helpers.folders import listed, tree
 from tests.helpers.footage import log_picture
 from tests.helpers.images import write_image
 from tests.helpers.processes import start_interruptible
+from tests.helpers.records import records_in
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
-
-
-def records(tmp_path):
-    """The last record of each photograph."""
-    lines = map(json.loads, (tmp_path / "out" / ESTIMATES).read_text().splitlines())
-    return list({record["photograph"]: record for record in lines}.values())
 
 
 def without_records(files):
@@ -49,9 +44,15 @@ def test_a_folder_is_searched_and_its_subfolders_are_kept(estimate, photographs,
 def test_the_records_agree_with_the_documents_and_name_the_lut(estimate, photographs, tmp_path):
     estimate(photographs, *QUICK)
     names = ("a.jpg", "b.JPG", "day 2/a.jpg")
-    assert [record["photograph"] for record in records(tmp_path)] == [str(photographs / name) for name in names]
-    assert [record["lut"] for record in records(tmp_path)] == ["a.spi1d", "b.spi1d", "day 2/a.spi1d"]
-    for record in records(tmp_path):
+    assert [record["photograph"] for record in records_in(tmp_path / "out")] == [
+        str(photographs / name) for name in names
+    ]
+    assert [record["lut"] for record in records_in(tmp_path / "out")] == [
+        "a.spi1d",
+        "b.spi1d",
+        "day 2/a.spi1d",
+    ]
+    for record in records_in(tmp_path / "out"):
         stem = record["photograph"].rpartition("/")[2].partition(".")[0]
         document = json.loads((tmp_path / "out" / record["folder"] / f"{stem}.json").read_text())
         for name in ("weights", "verdict", "uncertainty", "shape_uncertainty_stops", "warnings"):
@@ -73,18 +74,8 @@ def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_pa
     assert "1 of 4 photographs failed and the others are written; the first: " in done.err
     assert done.err.count("\n") == 1
     assert sum(", expected error " in line for line in done.out.splitlines()) == 3
-    assert [bool(record["error"]) for record in records(tmp_path)] == [False, False, True, False]
+    assert [bool(record["error"]) for record in records_in(tmp_path / "out")] == [False, False, True, False]
     assert "CRF bad" not in (tmp_path / "out" / "config.ocio").read_text()
-
-
-def test_only_files_that_were_written_are_named(estimate, photographs):
-    for name in ("a.jpg", "b.JPG"):
-        (photographs / name).write_bytes(b"no photograph")
-    bad = (photographs / "a.jpg", photographs / "b.JPG")
-    assert "a.spi1d" not in estimate(*bad, *QUICK).out
-    shutil.copy(photographs / "day 2" / "a.jpg", photographs / "b.JPG")
-    out = estimate(*bad, *QUICK).out
-    assert ("a.spi1d" in out, "  b.spi1d, b.cube, b.clf" in out) == (False, True)
 
 
 def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, monkeypatch):
@@ -106,12 +97,6 @@ def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, mo
     }
     config = (tmp_path / "out" / "config.ocio").read_text()
     assert all(f"name: CRF {stem}\n" in config for stem in ("a", "b", "bad", "c"))
-
-
-def test_of_one_photograph_that_failed_no_others_are_said_to_be_written(estimate, tmp_path):
-    (tmp_path / "bad.jpg").write_text("no photograph")
-    done = estimate(tmp_path / "bad.jpg", *QUICK)
-    assert done.err.startswith(f"crfnet: error: 1 of 1 photographs failed; the first: {tmp_path / 'bad.jpg'}: is no")
 
 
 @pytest.mark.parametrize(
@@ -138,7 +123,7 @@ def test_any_exception_is_the_record_of_its_photograph(estimate, photographs, tm
 
     monkeypatch.setattr(estimates, "estimate_response", fail_for_b)
     assert estimate(photographs, *QUICK).code == BAD_INPUT
-    errors = {Path(record["photograph"]).name: record["error"] for record in records(tmp_path)}
+    errors = {Path(record["photograph"]).name: record["error"] for record in records_in(tmp_path / "out")}
     assert errors == {"a.jpg": "", "b.JPG": f"{photographs / 'b.JPG'}: RuntimeError (a bug of ours)"}
 
 
@@ -146,7 +131,7 @@ def test_metadata_that_is_not_utf_8_stops_nothing(estimate, photographs, codes, 
     latin = write_image(photographs / "latin.jpg", codes, Make="Voigtlxnder", Model="Voigtlxnder R")
     latin.write_bytes(latin.read_bytes().replace(b"Voigtlx", b"Voigtl\xe4"))
     done = estimate(photographs, "--each", "--no-sheet", "--workers", "1")
-    assert (done.code, [record["error"] for record in records(tmp_path)]) == (0, [""] * 4)
+    assert (done.code, [record["error"] for record in records_in(tmp_path / "out")]) == (0, [""] * 4)
 
 
 def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
@@ -156,7 +141,7 @@ def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
     runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]
     errors = [run.communicate(timeout=100)[1] for run in runs]
     assert ([run.returncode for run in runs], errors) == ([0, 0], ["", ""])
-    assert [record["error"] for record in records(tmp_path)] == [""] * 3
+    assert [record["error"] for record in records_in(tmp_path / "out")] == [""] * 3
     assert all(f"name: CRF {stem}\n" in (tmp_path / "out" / "config.ocio").read_text() for stem in "ab")
 
 
@@ -204,10 +189,8 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, tmp_path, text)
     "change",
     [
         {"exposure": 10**400},
-        {"exposure": float("inf")},
         {"exposure": "much"},
         {"primaries": {"name": "mine", "red": [10**400, 0], "green": [0, 1], "blue": [0, 0]}},
-        {"primaries": {"name": "mine", "red": ["a", "b"], "green": [0, 1], "blue": [0, 0]}},
         {
             "primaries": {
                 "name": "mine",
@@ -217,8 +200,6 @@ def test_a_file_of_other_lines_is_refused(estimate, photographs, tmp_path, text)
                 "white": [0.3, 0.3],
             }
         },
-        {"primaries": {"name": "mine", "red": [0.6, 0.3], "green": [0.3, 0.6], "blue": [0.1, 0.1], "white": [0.3, 0]}},
-        {"primaries": {"name": "mine", "red": [0.6], "green": [0.3, 0.6], "blue": [0.1, 0.1], "white": [0.3, 0.3]}},
         {"photograph": 1},
         {"folder": "../elsewhere"},
         {"folder": "/elsewhere"},
@@ -277,9 +258,9 @@ def test_a_killed_run_is_continued(photographs, fixed_model, tmp_path):
     with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE) as process:
         process.stdout.readline()
         process.send_signal(signal.SIGKILL)
-    assert len(records(tmp_path)) == 1
+    assert len(records_in(tmp_path / "out")) == 1
     subprocess.run([sys.executable, "-m", "crfnet.cli.main", *arguments], capture_output=True, check=True)
-    assert len(records(tmp_path)) == 3
+    assert len(records_in(tmp_path / "out")) == 3
     assert "config.ocio" in listed(tmp_path / "out")
 
 
@@ -306,7 +287,7 @@ def test_a_dask_worker_that_dies_loses_nothing(photographs, fixed_model, tmp_pat
             kill_a_busy_worker(distributed, cluster)
             _, err = process.communicate(timeout=100)
     assert (process.returncode, err) == (0, "")
-    assert [record["error"] for record in records(tmp_path)] == [""] * 6
+    assert [record["error"] for record in records_in(tmp_path / "out")] == [""] * 6
 
 
 @pytest.mark.parametrize("address", ["tcp://127.0.0.1:{silent}", "tls://127.0.0.1:{silent}", "bogus://x", "x y"])

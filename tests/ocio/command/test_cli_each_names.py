@@ -13,14 +13,9 @@ from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.configs.file_rules import FAMILY
 from crfnet.defaults import ESTIMATES
 from tests.helpers.folders import listed, tree
+from tests.helpers.records import records_in
 
 QUICK = ("--each", "--no-sheet", "--no-linear", "--workers", "1")
-
-
-def records(tmp_path):
-    """The last record of each photograph."""
-    lines = map(json.loads, (tmp_path / "out" / ESTIMATES).read_bytes().split(b"\n")[:-1])
-    return list({record["photograph"]: record for record in lines}.values())
 
 
 def configured(config):
@@ -47,7 +42,7 @@ def test_two_of_one_name_get_files_of_their_own(estimate, photographs, tmp_path,
         pytest.skip("this file system takes A and a for one name")
     for _ in range(2):
         assert estimate(photographs / "a.jpg", photographs / name, *QUICK).code == 0
-        luts = {Path(record["photograph"]).name: record["lut"] for record in records(tmp_path)}
+        luts = {Path(record["photograph"]).name: record["lut"] for record in records_in(tmp_path / "out")}
         assert (luts["a.jpg"], luts[name].casefold()) == ("a.spi1d", "a_2.spi1d")
         assert sorted(map(str.casefold, configured(tmp_path / "out" / "config.ocio"))) == ["a", "a_2"]
 
@@ -55,7 +50,7 @@ def test_two_of_one_name_get_files_of_their_own(estimate, photographs, tmp_path,
 def test_a_photograph_that_is_given_twice_is_one(estimate, photographs, tmp_path, monkeypatch):
     monkeypatch.chdir(photographs)
     assert estimate("a.jpg", photographs / "a.jpg", "day 2/../a.jpg", *QUICK).code == 0
-    assert [record["photograph"] for record in records(tmp_path)] == ["a.jpg"]
+    assert [record["photograph"] for record in records_in(tmp_path / "out")] == ["a.jpg"]
 
 
 def test_a_photograph_of_a_later_run_takes_no_files_of_another(estimate, photographs, tmp_path):
@@ -64,7 +59,7 @@ def test_a_photograph_of_a_later_run_takes_no_files_of_another(estimate, photogr
     assert estimate(photographs / "day 2", *QUICK).code == 0
     after = tree(tmp_path / "out")
     assert after["a.spi1d"] == before["a.spi1d"]
-    assert [record["lut"] for record in records(tmp_path)] == ["a.spi1d", "a_2.spi1d"]
+    assert [record["lut"] for record in records_in(tmp_path / "out")] == ["a.spi1d", "a_2.spi1d"]
 
 
 @pytest.mark.skipif(sys.platform != "linux", reason="other systems have no such names")
@@ -77,7 +72,7 @@ def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
         assert "3 of 6 photographs failed and the others are written; the first: " in done.err
         assert "a?.jpg: the name is not valid Unicode; rename it" in done.err
         assert done.err.count("\n") == 1
-        errors = {record["photograph"]: record["error"] for record in records(tmp_path)}
+        errors = {record["photograph"]: record["error"] for record in records_in(tmp_path / "out")}
         assert len(errors) == 6
         said = f"{photographs}/?.jpg: the name is not valid Unicode; rename it"
         assert errors[str(photographs / os.fsdecode(b"\xff.jpg"))] == said
@@ -142,7 +137,7 @@ def test_photographs_in_the_output_folder_itself_are_searched_and_sheets_are_not
 def test_an_output_folder_with_all_the_photographs_is_refused(crfnet, fixed_model, photographs, tmp_path):
     done = crfnet("estimate", tmp_path, "--out", photographs, "--model", fixed_model, *QUICK)
     assert done.code == BAD_INPUT
-    assert "all photographs lie in the output folder; choose another one" in done.err
+    assert "holds no photograph" in done.err
 
 
 @pytest.fixture
@@ -166,7 +161,7 @@ def test_a_subfolder_that_cannot_be_read_is_named_and_tried_again(estimate, phot
     assert done.code == BAD_INPUT
     said = f"{photographs / 'day 2'}: cannot be read (Permission denied); check its permissions"
     assert f"1 of 4 photographs failed and the others are written; the first: {said}" in done.err
-    assert [record["error"] for record in records(tmp_path)] == ["", "", "", said]
+    assert [record["error"] for record in records_in(tmp_path / "out")] == ["", "", "", said]
     locked.clear()
     done = estimate(photographs, *QUICK, "--json")
     assert (done.code, [record["error"] for record in json.loads(done.out)["estimates"]]) == (0, [""] * 4)

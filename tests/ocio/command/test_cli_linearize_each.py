@@ -10,11 +10,11 @@ from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.defaults import PLATES
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.pipeline import each_linear
 from crfnet_core import ResponseCurve
 from crfnet_core.library.library import SHIPPED
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
+from tests.helpers.records import records_in
 
 
 @pytest.fixture
@@ -28,25 +28,22 @@ def linearize(crfnet, fixed_model, tmp_path):
     return run
 
 
-def records(tmp_path):
-    """The last record of each photograph."""
-    lines = map(json.loads, (tmp_path / "out" / PLATES).read_text().splitlines())
-    return list({record["photograph"]: record for record in lines}.values())
-
-
 def test_a_lut_holds_for_all(linearize, photographs, look, linear, tmp_path):
     done = linearize(photographs, "--lut", look / "plate.spi1d")
     assert (done.code, done.err) == (0, "")
     assert listed(tmp_path / "out") == ["a.exr", "b.exr", "day 2", PLATES]
     np.testing.assert_array_equal(read_image(tmp_path / "out" / "day 2" / "a.exr"), linear)
-    assert [record["linear"] for record in records(tmp_path)] == ["a.exr", "b.exr", "day 2/a.exr"]
-    assert all((record["weights"], record["verdict"], record["error"]) == ([], "", "") for record in records(tmp_path))
+    assert [record["linear"] for record in records_in(tmp_path / "out")] == ["a.exr", "b.exr", "day 2/a.exr"]
+    assert all(
+        (record["weights"], record["verdict"], record["error"]) == ([], "", "")
+        for record in records_in(tmp_path / "out")
+    )
 
 
 def test_each_has_its_own_response(linearize, photographs, look, linear, tmp_path):
     assert linearize(photographs).code == 0
     document = json.loads((look / "plate.json").read_text())
-    for record in records(tmp_path):
+    for record in records_in(tmp_path / "out"):
         assert (record["weights"], record["verdict"]) == (document["weights"], document["verdict"])
     np.testing.assert_allclose(read_image(tmp_path / "out" / "a.exr"), linear, rtol=1e-6)
 
@@ -54,29 +51,12 @@ def test_each_has_its_own_response(linearize, photographs, look, linear, tmp_pat
 def test_a_camera_holds_for_all(linearize, photographs, tmp_path):
     done = linearize(photographs, "--camera", "Canon EOS 20D")
     assert (done.code, done.err) == (0, "")
-    assert len({tuple(record["weights"]) for record in records(tmp_path)}) == 1
-    assert [record["summary"].partition(":")[0] for record in records(tmp_path)] == ["a.jpg", "b.JPG", "a.jpg"]
-
-
-def test_a_bad_photograph_stops_no_other_and_is_tried_again(linearize, photographs, look, tmp_path, monkeypatch):
-    (photographs / "bad.jpg").write_bytes(b"no photograph")
-    arguments = (photographs, "--lut", look / "plate.spi1d")
-    done = linearize(*arguments)
-    assert done.code == BAD_INPUT
-    assert "1 of 4 photographs failed and the others are written; the first: " in done.err
-    before = tree(tmp_path / "out")
-    shutil.copy(photographs / "a.jpg", photographs / "bad.jpg")
-    worked_on = []
-    done = each_linear.LinearBatch.done
-    monkeypatch.setattr(
-        each_linear.LinearBatch, "done", lambda batch, task: (worked_on.append(task.photo.name), done(batch, task))[1]
-    )
-    assert linearize(*arguments).code == 0
-    assert worked_on == ["bad.jpg"]
-    after = tree(tmp_path / "out")
-    assert {name: after[name] for name in before if name.endswith(".exr")} == {
-        name: content for name, content in before.items() if name.endswith(".exr")
-    }
+    assert len({tuple(record["weights"]) for record in records_in(tmp_path / "out")}) == 1
+    assert [record["summary"].partition(":")[0] for record in records_in(tmp_path / "out")] == [
+        "a.jpg",
+        "b.JPG",
+        "a.jpg",
+    ]
 
 
 def test_a_movie_is_told_to_go_by_itself(linearize, plate, look, tmp_path):
@@ -95,7 +75,7 @@ def test_a_finished_file_without_a_record_stays(linearize, photographs, look, tm
     (tmp_path / "out" / PLATES).unlink()
     assert linearize(*arguments).code == 0
     assert (tmp_path / "out" / "a.exr").stat().st_mtime_ns == before
-    assert len(records(tmp_path)) == 3
+    assert len(records_in(tmp_path / "out")) == 3
 
 
 def test_another_response_is_refused(linearize, photographs, look, tmp_path):
@@ -141,23 +121,12 @@ def test_so_is_a_camera_that_has_changed(crfnet, fixed_model, photographs, own_c
     assert (done.code, "other options or another response" in done.err) == (2, True)
 
 
-def test_two_of_one_name_get_files_of_their_own(linearize, photographs, look, tmp_path):
-    shutil.copy(photographs / "a.jpg", photographs / "a.jpeg")
-    assert linearize(photographs, "--lut", look / "plate.spi1d").code == 0
-    assert listed(tmp_path / "out") == ["a.exr", "a_2.exr", "b.exr", "day 2", PLATES]
-
-
-def test_processes_write_the_same_bytes_as_one(linearize, crfnet, fixed_model, photographs, tmp_path):
-    linearize(photographs)
-    arguments = ("--out", tmp_path / "two", "--model", fixed_model, "--depth", "float", "--workers", "2")
-    assert crfnet("linearize", photographs, "--each", *arguments).code == 0
-    two, one = ({n: c for n, c in tree(tmp_path / out).items() if n != PLATES} for out in ("two", "out"))
-    assert two == one
-
-
 def test_json(linearize, photographs, look, tmp_path):
     done = linearize(photographs, "--lut", look / "plate.spi1d", "--json")
-    assert json.loads(done.out) == {"folder": str(tmp_path / "out"), "photographs": records(tmp_path)}
+    assert json.loads(done.out) == {
+        "folder": str(tmp_path / "out"),
+        "photographs": records_in(tmp_path / "out"),
+    }
 
 
 @pytest.mark.parametrize(

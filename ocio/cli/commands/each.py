@@ -1,0 +1,40 @@
+"""`--each` of `crfnet estimate` and `crfnet linearize`: many photographs."""
+
+from __future__ import annotations
+
+import argparse
+from collections.abc import Iterable
+from dataclasses import asdict
+from pathlib import Path
+
+from ... import pipeline
+from ...errors import PlateError
+from ...pipeline.batch import Batch
+from ..remedies import CommandError
+from .printing import print_result, progress_bar
+
+
+def check_each(arguments: argparse.Namespace) -> None:
+    """Raise CommandError for the options of --each where it is not given."""
+    for name in ("workers", "scheduler"):
+        if getattr(arguments, name) is not None and not arguments.each:
+            raise CommandError("each_option_alone", name=name)
+
+
+def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: Batch, key: str) -> list[str]:
+    """Do a batch, print the records (in JSON as `key`) and return the verdicts; PlateError if a photograph failed."""
+    if arguments.frames:
+        raise CommandError("frames_of_each")
+    photographs = pipeline.find_photographs(list(map(Path, names)), batch.out)
+    with progress_bar("photographs") as progress:
+        records = pipeline.run_batch(
+            batch, photographs, workers=arguments.workers, scheduler=arguments.scheduler, progress=progress
+        )
+    document = {"folder": str(batch.out), key: [asdict(record) for record in records]}
+    lines = [record.error or record.summary for record in records]
+    more = ["", f"Written to {batch.out}. All results, one JSON line each: {batch.records.path}"]
+    print_result(document, [*lines, *more], as_json=arguments.json)
+    if failed := [record for record in records if record.error]:
+        code = "photographs_failed_of_many" if len(failed) < len(records) else "photographs_failed"
+        raise PlateError(code, failed=len(failed), count=len(records), problem=failed[0].error)
+    return [record.verdict for record in records]
