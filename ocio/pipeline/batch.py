@@ -13,12 +13,12 @@ from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.errors import CRFNetError, one_line
+from crfnet_core.errors import CRFNetError
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.files import cut_to_bytes
 from crfnet_core.types import Progress, cores, show_progress
 
-from ..errors import PlateError
+from ..errors import PlateError, error_of_file
 from ..options import EstimateOptions, PlateOptions
 from ..output_files import LONGEST_STEM, check_targets, output_folder, plain_stem
 from ..plates.light import PlateLight
@@ -304,8 +304,9 @@ def _recorded(task: Task) -> PhotographRecord:
         if reason := unreadable_reason(task.photo):
             raise PlateError("unreadable", path=task.photo, reason=reason)
         return _done_once(task)
-    except Exception as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
-        return PhotographRecord(photograph=str(task.photo), options=task.options, error=_words(problem, task.photo))
+    except BaseException as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
+        error = str(error_of_file(problem, task.photo))
+        return PhotographRecord(photograph=str(task.photo), options=task.options, error=error)
 
 
 def _done_once(task: Task) -> PhotographRecord:
@@ -346,13 +347,3 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
 def _existing(task: Task) -> list[Path]:
     """Return the files of a task that are there."""
     return [path for path in task.targets if os.path.lexists(path)]
-
-
-def _words(problem: Exception, photo: Path) -> str:
-    """Return why a photograph failed, on one line, with its name."""
-    if isinstance(problem, MemoryError):
-        return one_line(f"{photo}: not enough memory")
-    text = one_line(problem)
-    if isinstance(problem, CRFNetError | OSError):
-        return text
-    return one_line(f"{photo}: {type(problem).__name__} ({text})")

@@ -13,6 +13,7 @@ from crfnet_core.calibration import Calibration, Comparison
 from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
 from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.staging import staged_files
 
 from ..configs.files import write_config
 from ..configs.plate_color_space import PlateColorSpace
@@ -24,7 +25,6 @@ from ..luts.response import read_response, response_of_lut
 from ..options import OutputOptions
 from ..output_files import OutputFiles, check_outputs, output_folder
 from ..report import calibration_document, calibration_provenance
-from ..staging import staged_files
 from .delivery import EarlierRun
 
 

@@ -6,8 +6,6 @@ from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 
-from crfnet_core.errors import CRFNetError
-
 from .frame_files import EncodedFrame, FrameSource
 
 
@@ -28,7 +26,7 @@ class FirstFrame:
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
     """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
     for position, load in enumerate(sequence.loaders(range(max(1, len(sequence.numbers))))):
-        with suppress(CRFNetError):
+        with suppress(Exception, SystemExit, GeneratorExit):  # all but an interruption
             return FirstFrame(position, frame_path(sequence, position), load())
     return None
 
