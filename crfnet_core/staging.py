@@ -60,7 +60,8 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
         _put_back(temporary, folder)
         with suppress(OSError):
             locked.close()
-        shutil.rmtree(temporary, ignore_errors=True)
+        with suppress(OSError):
+            shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
