@@ -18,6 +18,7 @@ from crfnet_core.files import json_text
 from crfnet_core.types import Progress
 
 from ...errors import PlateError
+from ..streams import shown
 
 if TYPE_CHECKING:
     from ...pipeline.delivery import EarlierRun
@@ -47,8 +48,8 @@ def print_json(document: Mapping[str, Any]) -> None:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Print lines."""
-    sys.stdout.writelines(f"{line}\n" for line in lines)
+    """Print lines; every word of the command goes this way, but for JSON and errors."""
+    sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
 def check_records(records: Sequence[PhotographRecord]) -> None:
