@@ -1,11 +1,12 @@
-"""Fuzzing: every test tries damaged files for a while, from seed 0 on, and names the seeds that found something.
+"""Fuzzing: every test tries damaged files for a while, with other seeds in each run, and names those that fail.
 
 `CRFNET_FUZZ_SECONDS` says how long each test goes on; `make fuzz` gives them an hour together. `CRFNET_FUZZ_SEED` is
-another seed to begin with, to try one again. A single case that hangs ends everything with a traceback.
+the seed to begin with, to try one again. A single case that hangs ends everything with a traceback.
 """
 
 import faulthandler
 import os
+import secrets
 import sys
 import time
 import traceback
@@ -18,8 +19,8 @@ import pytest
 from crfnet_core.errors import CRFNetError
 
 #: The first seed; seconds of each test, and of a single case.
-FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED", "0"))
-SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "6"))
+FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED") or secrets.randbelow(2**32))
+SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "4.5"))
 MOST_SECONDS = 20.0
 
 #: Bytes of memory beyond those at the start.
@@ -45,7 +46,9 @@ def fuzz(record_property, capsys):
                 assert capsys.readouterr() == ("", ""), "printed something"
             except Exception as problem:  # noqa: BLE001 - whatever is raised is a finding
                 place = traceback.extract_tb(problem.__traceback__)[-1]
-                failures.append(f"seed {seed}: {type(problem).__name__} in {place.name}, {place.filename}: {problem}")
+                failures.append(
+                    f"CRFNET_FUZZ_SEED={seed}: {type(problem).__name__} in {place.name}, {place.filename}: {problem}"
+                )
         faulthandler.cancel_dump_traceback_later()
         cases = seed - FIRST_SEED
         record_property("cases", cases)
