@@ -22,6 +22,7 @@ import tomllib
 import zipfile
 from collections.abc import Mapping, Sequence
 from pathlib import Path
+from urllib.parse import quote
 
 #: The exit code after a failure.
 FAILED = 2
@@ -75,7 +76,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
-    """Write zips into a folder and return their paths.
+    """Write zips and our own wheel into a folder, each with its list of components; return the paths of the zips.
 
     Parameters
     ----------
@@ -108,6 +109,9 @@ def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
         contents[MANIFEST] = platform_manifest(text, platform, wheels).encode()
         zips.append(out / f"{manifest['id']}-{manifest['version']}-{zip_name.replace('-', '_')}.zip")
         write_zip(zips[-1], contents)
+        write_sbom(zips[-1], [members[wheel.removeprefix("./")] for wheel in wheels])
+    shutil.copyfile(own_wheel, out / own_wheel.name)
+    write_sbom(out / own_wheel.name, [])
     return zips
 
 
@@ -203,6 +207,34 @@ def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
             info.external_attr = 0o100644 << 16
             archive.writestr(info, contents[name])
     temporary.replace(path)
+
+
+def write_sbom(path: Path, wheels: Sequence[Path]) -> None:
+    """Write the CycloneDX list of a zip and the wheels in it, or of a wheel, next to it: `NAME.cdx.json`."""
+    main = {"type": "application", "name": path.name, "hashes": _hashes(path)}
+    document = {
+        "bomFormat": "CycloneDX",
+        "specVersion": "1.5",
+        "version": 1,
+        "metadata": {"component": main if wheels else _component(path)},
+        "components": [_component(wheel) for wheel in sorted(wheels)],
+    }
+    text = json.dumps(document, indent=1) + "\n"
+    path.with_name(f"{path.name}.cdx.json").write_text(text, encoding="utf-8", newline="\n")
+
+
+def _component(wheel: Path) -> dict[str, object]:
+    """Return the component of a wheel: its name, version, package URL and SHA-256."""
+    name, version = wheel.name.split("-")[:2]
+    project = name.replace("_", "-").lower()
+    purl = f"pkg:pypi/{project}@{quote(version)}?file_name={quote(wheel.name)}"
+    parts = {"type": "library", "name": project, "version": version, "purl": purl, "bom-ref": purl}
+    return parts | {"hashes": _hashes(wheel)}
+
+
+def _hashes(path: Path) -> list[dict[str, str]]:
+    """Return the SHA-256 of a file as CycloneDX has it."""
+    return [{"alg": "SHA-256", "content": _sha256(path)}]
 
 
 def _parser() -> argparse.ArgumentParser:

@@ -9,7 +9,7 @@ response       a monotone response and its inverse, EMoR, metrics
 calibration    the response measured from an exposure stack instead
 library        responses of one's cameras, kept to be used again
 colorimetry    from chromaticities to matrices
-files          write a file whole or not at all
+files, staging files that appear whole or not at all; locks has the locks between processes
 errors, types  the errors that a user can fix; names of array types. messages has the sentences of the errors
 
 The names below are the public interface: see docs/API.md. docs/METHOD.md explains the steps and their equations.

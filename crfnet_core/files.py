@@ -8,14 +8,14 @@ import json
 import math
 import os
 import re
-import secrets
 import stat
 from collections.abc import Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NoReturn
 
 from crfnet_core.errors import CRFNetError
+from crfnet_core.staging import staged_files
 
 #: Size in bytes of the largest JSON file that is read.
 MAX_JSON_SIZE = 16 * 2**20
@@ -85,33 +85,16 @@ def check_target(path: str | Path, *, overwrite: bool = False, error: type[CRFNe
 def atomic_write(
     path: str | Path, *, overwrite: bool = False, error: type[CRFNetError] = CRFNetError
 ) -> Iterator[Path]:
-    """Yield an empty temporary file in the folder of `path` that takes its name only if the block succeeds.
+    """Yield an empty temporary file of the same name that takes its place only if the block succeeds.
 
-    The caller fills it and does not replace it. It has the suffix of `path`, only the user may open it, and a file that
-    somebody else put in its place is refused. The content is on the disk before the name is: `fsync` may fail as a
-    write does. In the end it has the permissions of any new file.
-
-    Raise `error` as `check_target` does, or when the disk refuses the file.
+    It lies in a `staged_files` folder next to `path`, and is on the disk before its name is. Raise `error` as
+    `check_target` does, or when the disk refuses the file.
     """
     try:
         path = check_target(path, overwrite=overwrite, error=error)
-        temporary = _temporary_name(path)
-        descriptor = os.open(temporary, os.O_CREAT | os.O_EXCL | os.O_RDWR, 0o666)
-        try:
-            try:
-                mode = os.fstat(descriptor).st_mode
-                _change_mode(descriptor, 0o600)
-                yield temporary
-                if not os.path.samestat(os.fstat(descriptor), os.lstat(temporary)):
-                    raise OSError(errno.EPERM, "another file took its place meanwhile")
-                _change_mode(descriptor, mode)
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
-            temporary.replace(path)
-        finally:
-            temporary.unlink(missing_ok=True)
-        _flush_folder(path.parent)
+        with staged_files(path.parent, overwrite=overwrite, error=error) as folder:
+            (folder / path.name).touch()
+            yield folder / path.name
     except OSError as problem:
         raise error("not_written", path=path, reason=problem.strerror or problem) from problem
 
@@ -129,11 +112,6 @@ def cut_to_bytes(name: str, most: int) -> str:
     return name.encode(errors="ignore")[: max(most, 0)].decode(errors="ignore")
 
 
-def temporary_stem(path: Path) -> str:
-    """Return the stem of a file as the temporary names of `atomic_write` hold it: cut where the name is long."""
-    return cut_to_bytes(path.stem, LONGEST_NAME - len("..XXXXXXXX") - len(os.fsencode(path.suffix)))
-
-
 def json_text(document: Mapping[str, Any]) -> str:
     """Return a document as JSON text, with all characters as they are and each row of numbers on one line."""
     text = json.dumps(document, indent=1, ensure_ascii=False)
@@ -148,25 +126,3 @@ def _refused(constant: str) -> NoReturn:
 def _finite(text: str) -> float:
     """Return the number in a text, which must not be too large."""
     return number if math.isfinite(number := float(text)) else _refused(text)
-
-
-def _change_mode(descriptor: int, mode: int) -> None:
-    """Change the permissions of an open file where the system has them."""
-    if os.name != "nt":
-        os.fchmod(descriptor, stat.S_IMODE(mode))
-
-
-def _flush_folder(folder: Path) -> None:
-    """Flush the names in a folder; file systems that cannot do so keep the whole file under one name or none."""
-    if os.name != "nt":
-        with suppress(OSError):
-            descriptor = os.open(folder, os.O_RDONLY)
-            try:
-                os.fsync(descriptor)
-            finally:
-                os.close(descriptor)
-
-
-def _temporary_name(path: Path) -> Path:
-    """Return the name of a hidden file in the folder of a file, `.stem.XXXXXXXX.suffix`."""
-    return path.with_name(f".{temporary_stem(path)}.{secrets.token_hex(4)}{path.suffix}")

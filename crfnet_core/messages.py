@@ -61,6 +61,7 @@ SENTENCES: Mapping[str, str] = {
     "folder_read_only": "{path}: the folder {folder} is not writable; choose another",
     "is_folder": "{path}: is a folder; give the name of a file",
     "not_written": "{path}: cannot be written ({reason})",
+    "written_meanwhile": "{path}: was written by another process meanwhile; choose another name",
     # response
     "brightness_codes": "found values up to {found:g}, but brightness and irradiance lie in [0, 1]: divide code values"
     " by the largest code, such as 255",

@@ -10,7 +10,6 @@ plates        frame sequences, and linear EXR files made of them
 movies        movies as sources of frames
 luts          the LUT, and its file formats
 output_files  which files an estimate writes, and whether they may be written
-staging       a set of files that appears whole or not at all
 options       typed options of the pipeline
 defaults      constants that several modules share
 errors        the errors of this package; messages has their sentences

@@ -102,7 +102,6 @@ SENTENCES: Mapping[str, str] = {
     # pipeline: which files there are, and whether they may be written
     "empty_folder": "{path}: the folder holds no photograph ({suffixes}) outside the output folder; check the name",
     "file_exists": "{path}: exists already; choose another folder",
-    "file_not_written": "{path}: cannot be written ({reason}); check the file",
     "files_exist": "{path}: {name} and {more} more exist already; choose another folder",
     "folder_for_photograph": "{path}: is a folder; give one photograph, or the frames of a shot ({pattern})",
     "folder_in_place": "{path}: is a folder, and a file of that name is to be written; choose another folder",
@@ -117,10 +116,10 @@ SENTENCES: Mapping[str, str] = {
     "replaces_photograph": "{path}: is one of the photographs and would be replaced; choose another folder",
     "variables_in_path": "{path}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"
     " folder",
-    "written_meanwhile": "{path}: was written by another process meanwhile; choose another folder",
     # pipeline: many photographs
     "movie_in_batch": "{path}: is a movie; linearize it by itself",
     "no_dask": "a scheduler needs Dask: pip install 'crfnet[cluster]'",
+    "no_memory": "{path}: not enough memory",
     "no_scheduler": "{address}: no Dask scheduler answers there ({reason}); check the address",
     "not_records": "{path}: holds other lines than records of photographs; choose another folder",
     "other_options": "{path}: has {photo} with other options or another response; give the same, or choose another"
@@ -129,5 +128,6 @@ SENTENCES: Mapping[str, str] = {
     "photographs_failed_of_many": "{failed} of {count} photographs failed and the others are written; the first:"
     " {problem}",
     "process_died": "a process died, perhaps for lack of memory; run the same again",
+    "reader_failed": "{path}: {kind} ({reason})",
     "unreadable": "{path}: {reason}",
 }

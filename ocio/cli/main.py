@@ -12,7 +12,7 @@ from importlib import import_module
 from .arguments.command_line import build_parser
 from .arguments.parts import BAD_INPUT
 from .interruption import interruptible
-from .streams import complete_streams, own_stderr
+from .streams import complete_streams, own_stderr, shown
 
 #: Errors whose own message would not help the user.
 UNEXPLAINED: dict[type[BaseException], str] = {
@@ -70,7 +70,7 @@ def _fail(problem: BaseException) -> int:
 def _print_error(line: str) -> None:
     """Print a line on stderr, if stderr takes it."""
     with suppress(OSError):
-        print(line, file=sys.stderr, flush=True)  # noqa: T201
+        print(shown(line), file=sys.stderr, flush=True)  # noqa: T201
 
 
 if __name__ == "__main__":

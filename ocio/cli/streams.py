@@ -44,6 +44,17 @@ def own_stderr() -> Iterator[None]:
         copy.close()
 
 
+def shown(text: str) -> str:
+    """Return a text as the command prints it: control characters, as names of files hold them, are question marks.
+
+    What is not Unicode in a name stays: the streams escape it.
+    """
+    return "".join(
+        character if character.isprintable() or character == "\n" or "\ud800" <= character <= "\udfff" else "?"
+        for character in text
+    )
+
+
 def _nowhere() -> TextIO:
     """Return a stream that takes everything and keeps nothing."""
     return Path(os.devnull).open("w", encoding="utf-8")

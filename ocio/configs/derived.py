@@ -15,12 +15,13 @@ from pathlib import Path
 
 import PyOpenColorIO as OCIO
 
+from crfnet_core.staging import staged_files
+
 from ..defaults import CONFIG_NAME
 from ..errors import ConfigError
 from ..luts.files import write_lut
 from ..luts.lut1d import Lut1D
 from ..output_files import check_config_folder, distinct_names, output_folder
-from ..staging import staged_files
 from .file_rules import is_counter_name
 from .files import write_config
 from .looks import Look

@@ -77,6 +77,7 @@ def write_config(path: str | Path, config: OCIO.Config, *, check: Mapping[str, L
         with _whole_configs(), atomic_write(path, overwrite=overwrite, error=ConfigError) as temporary:
             temporary.write_text(config.serialize(), encoding="utf-8", newline="\n")
             loaded = OCIO.Config.CreateFromFile(str(temporary))
+            loaded.setWorkingDir(str(Path(path).parent))  # where its LUTs lie
             loaded.validate()
             for name, lut in check.items():
                 _check_conversion(loaded, name, lut)

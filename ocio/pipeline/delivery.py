@@ -14,6 +14,7 @@ from typing import Any
 
 from crfnet_core.colorimetry import REC709
 from crfnet_core.files import atomic_write_text, check_target, json_text
+from crfnet_core.staging import staged_files
 from crfnet_core.types import Progress
 
 from ..configs.files import write_config
@@ -29,7 +30,6 @@ from ..plates.light import PlateLight
 from ..plates.linear import linearize_plates
 from ..plates.primaries import LinearSpace, PlatePrimaries, common_primaries
 from ..report import estimate_document
-from ..staging import staged_files
 from .estimates import FileEstimate, response_lut
 from .plan import OutputPlan
 

@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import json
 import os
-import sys
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import asdict, dataclass, fields
@@ -19,6 +18,7 @@ import numpy as np
 
 from crfnet_core.colorimetry import Primaries
 from crfnet_core.files import parse_json
+from crfnet_core.locks import lock, unlock
 
 from ..errors import PlateError
 from ..plates.primaries import PlatePrimaries
@@ -119,11 +119,11 @@ class RecordFile:
     def locked(self) -> Iterator[BinaryIO]:
         """Open the file for appending, with no other process in such a block meanwhile."""
         with self.path.open("a+b") as file:
-            _lock(file)
+            lock(file)
             try:
                 yield file
             finally:
-                _unlock(file)
+                unlock(file)
 
 
 def _drop_cut_line(file: BinaryIO) -> None:
@@ -134,29 +134,3 @@ def _drop_cut_line(file: BinaryIO) -> None:
     if file.read() != b"\n":
         file.seek(0)
         file.truncate(file.read().rfind(b"\n") + 1)
-
-
-if sys.platform == "win32":
-    import msvcrt
-
-    #: Windows locks bytes, which nobody else can then read: this one lies far behind the end.
-    _LOCKED_BYTE = 1 << 30
-
-    def _lock(file: BinaryIO) -> None:
-        file.seek(_LOCKED_BYTE)
-        msvcrt.locking(file.fileno(), msvcrt.LK_LOCK, 1)
-
-    def _unlock(file: BinaryIO) -> None:
-        file.flush()
-        file.seek(_LOCKED_BYTE)
-        msvcrt.locking(file.fileno(), msvcrt.LK_UNLCK, 1)
-
-else:
-    import fcntl
-
-    def _lock(file: BinaryIO) -> None:
-        fcntl.flock(file, fcntl.LOCK_EX)
-
-    def _unlock(file: BinaryIO) -> None:
-        file.flush()
-        fcntl.flock(file, fcntl.LOCK_UN)

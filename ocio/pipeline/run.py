@@ -9,10 +9,10 @@ from concurrent.futures import BrokenExecutor, as_completed
 from dataclasses import replace
 from pathlib import Path
 
-from crfnet_core.errors import CRFNetError, one_line
+from crfnet_core.errors import CRFNetError
 from crfnet_core.types import Progress, cores, show_progress
 
-from ..errors import PlateError
+from ..errors import PlateError, error_of_file
 from ..output_files import output_folder
 from .batch import Batch, Task, plan_tasks
 from .photographs import unreadable_reason
@@ -94,8 +94,9 @@ def _recorded(task: Task) -> PhotographRecord:
         if reason := unreadable_reason(task.photo):
             raise PlateError("unreadable", path=task.photo, reason=reason)
         return _done_once(task)
-    except Exception as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
-        return PhotographRecord(photograph=str(task.photo), options=task.options, error=_words(problem, task.photo))
+    except BaseException as problem:  # noqa: BLE001 - a bad photograph never stops the others, whatever it provokes
+        error = str(error_of_file(problem, task.photo))
+        return PhotographRecord(photograph=str(task.photo), options=task.options, error=error)
 
 
 def _done_once(task: Task) -> PhotographRecord:
@@ -133,11 +134,3 @@ def _record_of_existing(task: Task) -> PhotographRecord | None:
 def _existing(task: Task) -> list[Path]:
     """Return the files of a task that are there."""
     return [path for path in task.targets if os.path.lexists(path)]
-
-
-def _words(problem: Exception, photo: Path) -> str:
-    """Return why a photograph failed, on one line, with its name."""
-    if isinstance(problem, CRFNetError | OSError):
-        return one_line(problem)
-    is_memory = isinstance(problem, MemoryError)
-    return one_line(f"{photo}: {'not enough memory' if is_memory else f'{type(problem).__name__} ({problem})'}")

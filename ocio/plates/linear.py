@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import os
-import re
-import time
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import closing, suppress
+from collections.abc import Mapping, Sequence
+from contextlib import closing
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -16,14 +14,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import atomic_write, check_target, temporary_stem
+from crfnet_core.files import atomic_write, check_target
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.types import Progress, cores, show_progress
 
-from ..errors import PlateError
+from ..errors import PlateError, error_of_file
 from ..luts.rgb_lut import AnyLut
 from ..options import PlateOptions
-from ..staging import STALE_SECONDS
 from .exr import SAMPLE_TYPES, linear_header, write_exr
 from .frame_files import EncodedFrame, FirstFrame, FrameLoader, FrameSource, first_frame, frame_path
 from .frame_numbers import format_frames
@@ -38,8 +35,6 @@ MAX_WORKERS = 8
 
 #: Rows linearized at a time, which keeps the memory for intermediate values small.
 _ROWS = 64
-
-_LEFTOVER = re.compile(r"\.(.+)\.[a-z0-9_]{8}(\.exr)", re.IGNORECASE)  # the temporary names of `atomic_write`
 
 
 @dataclass(frozen=True)
@@ -93,7 +88,7 @@ def linearize_plates(
     A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
     unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure, space or
     depth is refused then. A frame that another process finishes meanwhile is left alone too, and checked in the same
-    way. Temporary files of a killed run are removed once they are `STALE_SECONDS` old.
+    way.
 
     Missing frames are only reported, and a frame that fails does not stop the others. `workers` frames, by default one
     a core, up to `MAX_WORKERS`, are in memory. `progress` is called in this thread with the number of finished (and
@@ -113,7 +108,6 @@ def linearize_plates(
     check_finished(skipped, light, options.depth, sizes=sizes)
     left_alone = set(skipped)
     pending = {target: position for position, target in enumerate(targets) if target not in left_alone}
-    _remove_leftovers(pending)
     failures: dict[Path, CRFNetError] = {}
     elsewhere: list[Path] = []  # finished by another process meanwhile
     loaders = sequence.loaders([*pending.values()])
@@ -124,11 +118,9 @@ def linearize_plates(
     show_progress(progress, len(skipped), len(targets))
     with closing(finished(jobs, _worker_count(workers))) as ended:
         for done, (target, future) in enumerate(ended, len(skipped) + 1):
-            try:
-                future.result()
-            except CRFNetError as problem:
+            if problem := future.exception():
                 if options.overwrite or not target.exists():
-                    failures[target] = problem
+                    failures[target] = error_of_file(problem, frame_path(sequence, pending[target]))
                 else:
                     elsewhere.append(target)
             show_progress(progress, done, len(targets))
@@ -229,18 +221,6 @@ def _worker_count(workers: int | None) -> int:
     if workers is not None and workers < 1:
         raise PlateError("bad_workers", workers=workers)
     return workers or min(cores(), MAX_WORKERS)
-
-
-def _remove_leftovers(targets: Iterable[Path]) -> None:
-    """Remove old temporary files of frames about to be written; a recent one may belong to a running process."""
-    names = {target.with_name(temporary_stem(target) + target.suffix) for target in targets}
-    for folder in {name.parent for name in names}:
-        for path in folder.iterdir():
-            match = _LEFTOVER.fullmatch(path.name)
-            if match and folder / (match[1] + match[2]) in names:
-                with suppress(OSError):
-                    if time.time() - path.stat().st_mtime > STALE_SECONDS:
-                        path.unlink()
 
 
 def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> CRFNetError:

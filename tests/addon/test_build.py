@@ -1,5 +1,7 @@
 """The manifest of the extension, and the builder of its zips; without Blender."""
 
+import hashlib
+import json
 import os
 import re
 import subprocess
@@ -110,6 +112,21 @@ def test_a_zip_depends_on_its_contents_alone(tmp_path):
     with zipfile.ZipFile(tmp_path / "first.zip") as archive:
         assert {name: archive.read(name) for name in archive.namelist()} == contents
         assert archive.namelist() == sorted(contents)
+
+
+def test_a_zip_and_a_wheel_have_their_list_of_components(tmp_path):
+    (tmp_path / "a.zip").write_bytes(b"zip")
+    (tmp_path / "pi_heif-1.1.0+ab-cp311-cp311-win_amd64.whl").write_bytes(b"wheel")
+    wheel = next(tmp_path.glob("*.whl"))
+    build.write_sbom(tmp_path / "a.zip", [wheel])
+    build.write_sbom(wheel, [])
+    bom = json.loads((tmp_path / "a.zip.cdx.json").read_text())
+    assert (bom["bomFormat"], bom["specVersion"]) == ("CycloneDX", "1.5")
+    assert bom["metadata"]["component"]["hashes"][0]["content"] == hashlib.sha256(b"zip").hexdigest()
+    (component,) = bom["components"]
+    assert component["hashes"] == [{"alg": "SHA-256", "content": hashlib.sha256(b"wheel").hexdigest()}]
+    assert component["purl"] == f"pkg:pypi/pi-heif@1.1.0%2Bab?file_name={wheel.name.replace('+', '%2B')}"
+    assert json.loads((tmp_path / f"{wheel.name}.cdx.json").read_text())["metadata"]["component"] == component
 
 
 def test_a_wheel_without_a_hash_is_refused(tmp_path):

@@ -87,7 +87,7 @@ def build_zip(sources, out, umask, root):
     if "cannot be downloaded" in done.stderr:
         pytest.skip(done.stderr.strip())
     assert done.returncode == 0, done.stderr
-    (path,) = out.iterdir()
+    (path,) = out.glob("*.zip")
     return path
 
 

@@ -8,22 +8,28 @@ from pathlib import Path
 
 import OpenImageIO as oiio
 
+#: The fault of a write that takes half of its bytes.
+SHORT = "short"
+
 
 class Injector:
-    """Counts the calls below a folder and lets one, such as ("write", 3), fail: with an errno, or with SIGKILL."""
+    """Counts the calls below a folder and lets one, such as ("write", 3), fail: with an errno, `SHORT`, or SIGKILL."""
 
     def __init__(self, folder, *, call=None, fault=None):
         self.folder, self.call, self.fault, self.calls = str(folder), call, fault, []
 
     def count(self, name, path):
-        """Count a call; fail if it is the chosen one."""
+        """Count a call; fail if it is the chosen one. Return whether it has to be short."""
         if not str(path).startswith(self.folder):
-            return
+            return False
         self.calls.append(name)
         if (name, self.calls.count(name)) == self.call:
             if self.fault is None:
                 os.kill(os.getpid(), signal.SIGKILL)
+            if self.fault == SHORT:
+                return True
             raise OSError(self.fault, os.strerror(self.fault), str(path))
+        return False
 
     def install(self):
         """Replace the calls in this process, for good."""
@@ -64,8 +70,8 @@ class _Raw(io.FileIO):
         super().__init__(path, mode)
 
     def write(self, content):
-        self.injector.count("write", self.name)
-        return super().write(content)
+        is_short = self.injector.count("write", self.name)
+        return super().write(content[: max(1, len(content) // 2)] if is_short else content)
 
     def close(self):
         is_open = not self.closed

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import struct
 from collections.abc import Callable, Sequence
 from typing import Any
@@ -126,7 +127,23 @@ def _cut(content: bytes, generator: np.random.Generator) -> bytes:
     return content[: generator.integers(len(content))]
 
 
+def _text_recoded(content: bytes, generator: np.random.Generator) -> bytes:
+    """Put text that is not UTF-8 into a word, as programs of other decades and countries write it."""
+    words = list(re.finditer(rb"[A-Za-z]{4,40}", content[: 2**20]))
+    if not words:
+        return content
+    word = words[generator.integers(len(words))]
+    foreign = (
+        "Voigtl\u00e4nder".encode("latin-1"),
+        "\u30ab\u30e1\u30e9".encode("shift-jis"),
+        "\u76f8\u673a".encode("gbk"),
+    )
+    text = (foreign[generator.integers(len(foreign))] * 8)[: len(word[0])]
+    return content[: word.start()] + text + content[word.end() :]
+
+
 _STEPS = (
+    _text_recoded,
     _bit_flipped,
     _bit_flipped,
     _integer_placed,

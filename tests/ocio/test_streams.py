@@ -55,3 +55,24 @@ def test_a_damaged_png_gives_one_line(tmp_path, command):
     assert done.returncode == BAD_INPUT
     assert done.stderr.startswith(f"crfnet: error: {path}: this PNG file is damaged or cut short")
     assert done.stderr.count("\n") == 1
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="Windows has no such names")
+def test_no_control_character_of_a_name_is_printed(crfnet, plate, fixed_model, tmp_path):
+    """ESC, the turn to right-to-left, a line separator, and the CSI of one byte."""
+    photo = tmp_path / "a\x1b[31m\u202e\u2028\x9bb.jpg"
+    photo.write_bytes(plate.read_bytes())
+    out, linear = tmp_path / "out\x1b", tmp_path / "li\x9bnear"
+    commands = (
+        ("estimate", photo, "--out", out, "--model", fixed_model, "--no-sheet"),
+        ("estimate", photo, "--out", linear, "--model", fixed_model, "--no-sheet", "--each", "--workers", "1"),
+        ("linearize", photo, "--lut", out / f"{photo.stem}.spi1d", "--out", out / "a\u202e.exr"),
+        ("info", photo),
+        ("info", tmp_path / "absent\x1b.jpg"),
+        ("estimate", "--no-such\x1b[31m", photo),
+    )
+    for command in commands:
+        done = crfnet(*command)
+        printed = done.out + done.err
+        assert printed, command
+        assert all(character.isprintable() or character == "\n" for character in printed), repr(printed)

@@ -7,6 +7,7 @@ from pathlib import Path
 from typing import NamedTuple, NoReturn, TypeAlias
 
 from ...defaults import DEPTHS, DEVICES, GRAY_BRIGHTNESS, MAX_EXPOSURE, OUTPUT_SPACES, PRIMARIES, PRIORS
+from ..streams import shown
 
 #: Exit code of refused arguments and refused files.
 BAD_INPUT = 2
@@ -27,7 +28,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> NoReturn:
         """Print `message` on one line and exit with `BAD_INPUT`."""
-        self.exit(BAD_INPUT, f"crfnet: error: {message} (see {self.prog} --help)\n")
+        self.exit(BAD_INPUT, f"crfnet: error: {shown(message)} (see {self.prog} --help)\n")
 
 
 Commands: TypeAlias = "argparse._SubParsersAction[Parser]"

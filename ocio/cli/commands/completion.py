@@ -13,7 +13,7 @@ from ..arguments.command_line import build_parser
 from ..arguments.parts import written_path
 
 #: The words in the help for files and folders that the parser does not make paths of.
-PATHS = {"CONFIG", "LIST", "PLATES", "camera|any|FILE"}
+PATHS = {"CONFIG", "PLATES", "camera|any|FILE"}
 
 
 def run(arguments: argparse.Namespace) -> None:

@@ -16,6 +16,8 @@ from tqdm import tqdm
 from crfnet_core.files import json_text
 from crfnet_core.types import Progress
 
+from ..streams import shown
+
 if TYPE_CHECKING:
     from ...pipeline.plan import OutputPlan
 
@@ -35,8 +37,8 @@ def prepare_matplotlib() -> bool:
 
 
 def print_lines(lines: Iterable[str]) -> None:
-    """Print lines."""
-    sys.stdout.writelines(f"{line}\n" for line in lines)
+    """Print lines; every word of the command goes this way, but for JSON and errors."""
+    sys.stdout.writelines(f"{shown(line)}\n" for line in lines)
 
 
 def print_result(document: Mapping[str, Any], lines: Iterable[str], *, as_json: bool) -> None:

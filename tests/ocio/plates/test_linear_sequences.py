@@ -1,11 +1,9 @@
 """linearize_plates on sequences: which frames are written, and how an interrupted run goes on."""
 
-import os
 import shutil
 import signal
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
@@ -13,9 +11,6 @@ import pytest
 
 from crfnet.errors import PlateError
 from crfnet.luts.lut1d import Lut1D
-from crfnet.plates import linear
-from crfnet.staging import STALE_SECONDS
-from crfnet_core.files import atomic_write
 from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
@@ -120,22 +115,6 @@ def test_gaps_are_named_although_a_frame_failed(tmp_path, out):
     with pytest.raises(PlateError) as caught:
         linearize(pattern, out / "a.%d.exr", LUT)
     assert caught.value.facts["gaps"] == "; missing are 3, 5-8"
-
-
-def test_old_leftovers_of_these_frames_are_removed(tmp_path, out):
-    pattern = write_sequence(tmp_path, (1, 2))
-    old = time.time() - STALE_SECONDS - 60
-    with atomic_write(out / "a.0001.exr") as temporary:
-        assert linear._LEFTOVER.fullmatch(temporary.name)
-        names = [temporary.name, ".b.0001.abcdefgh.exr", ".a.0009.abcdefgh.exr", ".a.0001.exr", "a.0001.abcdefgh.exr"]
-    (out / "a.0001.exr").unlink()
-    for name in [*names, ".a.0002.abcdefgh.exr"]:
-        (out / name).touch()
-    for name in names:
-        os.utime(out / name, (old, old))
-    linearize(pattern, out / "a.####.exr", LUT)
-    expected = {*names[1:], ".a.0002.abcdefgh.exr", "a.0001.exr", "a.0002.exr"}
-    assert set(listed(out)) == expected, "only what is old and belongs to a frame of this run goes"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")

@@ -1,0 +1,190 @@
+import errno
+import os
+import signal
+import stat
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from crfnet_core.errors import CRFNetError, PhotoError
+from crfnet_core.staging import _remove_abandoned, staged_files
+
+
+def content(folder):
+    return {path.name: path.read_text() for path in folder.iterdir()}
+
+
+def test_files_take_their_names_together(tmp_path):
+    (tmp_path / "a.txt").write_text("old")
+    with staged_files(tmp_path) as staged:
+        (staged / "a.txt").write_text("new")
+        (staged / "b.txt").write_text("new")
+        assert (tmp_path / "a.txt").read_text() == "old"
+    assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
+
+
+def write(folder, names, *, problem=None):
+    with staged_files(folder) as staged:
+        for name in names:
+            (staged / name).write_text("new")
+        if problem:
+            raise problem(f"{staged / names[-1]}: no room")
+
+
+def test_a_failed_block_leaves_the_folder_as_it_was(tmp_path):
+    (tmp_path / "a.txt").write_text("old")
+    with pytest.raises(ZeroDivisionError):
+        write(tmp_path, ["a.txt"], problem=ZeroDivisionError)
+    assert content(tmp_path) == {"a.txt": "old"}
+
+
+def test_errors_keep_their_class_code_and_facts_and_name_the_final_file(tmp_path):
+    inner = CRFNetError("exists")
+
+    def fail():
+        with staged_files(tmp_path) as staged:
+            inner.facts = {"path": staged / "b.txt"}
+            raise PhotoError("too_small", path=staged / "a.txt", width=64, first=inner, text=f"{staged}/c: no")
+
+    with pytest.raises(PhotoError) as caught:
+        fail()
+    assert caught.value.code == "too_small"
+    assert caught.value.facts == {"path": tmp_path / "a.txt", "width": 64, "first": inner, "text": f"{tmp_path}/c: no"}
+    assert inner.facts == {"path": tmp_path / "b.txt"}
+
+
+@pytest.mark.skipif(os.name == "nt", reason="needs POSIX permissions")
+def test_nobody_else_may_enter_the_temporary_folder(tmp_path):
+    with staged_files(tmp_path) as staged:
+        assert stat.S_IMODE(staged.stat().st_mode) == 0o700
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs fsync of folders")
+@pytest.mark.parametrize("number", range(4))
+def test_what_is_not_on_the_disk_is_not_there(tmp_path, monkeypatch, number):
+    """Two files, the temporary folder, the folder."""
+    (tmp_path / "a.txt").write_text("old")
+    real, calls = os.fsync, []
+
+    def fail(descriptor):
+        calls.append(descriptor)
+        if len(calls) == number + 1:
+            raise OSError(errno.EIO, "Input/output error")
+        real(descriptor)
+
+    monkeypatch.setattr(os, "fsync", fail)
+    with pytest.raises(CRFNetError) as caught:
+        write(tmp_path, ["a.txt", "b.txt"])
+    assert caught.value.code == "not_written"
+    assert content(tmp_path) == {"a.txt": "old"}
+
+
+@pytest.mark.parametrize("locked", ["a.txt", "b.txt", "c.txt"])
+def test_a_name_that_cannot_be_taken_leaves_the_folder_as_it_was(tmp_path, monkeypatch, locked):
+    for name in ("a.txt", "c.txt"):
+        (tmp_path / name).write_text("old")
+    replace = Path.replace
+
+    def refuse(path, target):
+        if Path(target) == tmp_path / locked and path.parent.name != ".earlier":
+            raise PermissionError(1, "Operation not permitted")
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, "replace", refuse)
+    with pytest.raises(CRFNetError) as caught:
+        write(tmp_path, ["a.txt", "b.txt", "c.txt"])
+    assert (caught.value.code, caught.value.facts["path"]) == ("not_written", tmp_path / locked)
+    assert content(tmp_path) == {"a.txt": "old", "c.txt": "old"}
+
+
+@pytest.mark.parametrize("is_done", [False, True])
+@pytest.mark.parametrize("number", range(1, 6))
+def test_an_interruption_at_any_moment_leaves_the_folder_as_it_was(tmp_path, monkeypatch, number, is_done):
+    """At the move of every file, before it is done and after."""
+    for name in ("a.txt", "c.txt"):
+        (tmp_path / name).write_text("old")
+    replace, calls = Path.replace, []
+
+    def interrupt(path, target):
+        calls.append(path)
+        if len(calls) == number and is_done:
+            replace(path, target)
+        if len(calls) == number:
+            raise KeyboardInterrupt
+        return replace(path, target)
+
+    monkeypatch.setattr(Path, "replace", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        write(tmp_path, ["a.txt", "b.txt", "c.txt"])
+    assert len(calls) >= number
+    assert content(tmp_path) == {"a.txt": "old", "c.txt": "old"}
+
+
+def left_by_a_killed_run(folder, files):
+    """Make a temporary folder with earlier files that no process has locked."""
+    temporary = folder / ".crfnet-killed"
+    (temporary / ".earlier").mkdir(parents=True)
+    for name, text in files.items():
+        (temporary / ".earlier" / name).write_text(text)
+    return temporary
+
+
+def test_earlier_files_of_killed_runs_go_back_where_there_is_none(tmp_path):
+    left_by_a_killed_run(tmp_path, {"a.txt": "old", "b.txt": "old"})
+    (tmp_path / "b.txt").write_text("new")
+    with staged_files(tmp_path):
+        pass
+    assert content(tmp_path) == {"a.txt": "old", "b.txt": "new"}
+
+
+def test_an_earlier_file_that_cannot_go_back_stays_where_it_is(tmp_path, monkeypatch):
+    temporary = left_by_a_killed_run(tmp_path, {"a.txt": "old"})
+
+    def refuse(path, target):
+        raise PermissionError(1, "Operation not permitted")
+
+    monkeypatch.setattr(Path, "replace", refuse)
+    with staged_files(tmp_path):
+        pass
+    assert content(temporary / ".earlier") == {"a.txt": "old"}
+
+
+STAGE = """
+import os, pathlib, sys
+from crfnet_core.staging import staged_files
+with staged_files(pathlib.Path(sys.argv[1])) as staged:
+    (staged / "file").write_text("half")
+    print(flush=True)
+    sys.stdin.read()
+"""
+
+
+def test_temporary_folders_of_killed_runs_are_removed_and_those_of_others_are_not(tmp_path):
+    """Whatever their age: the clocks of two computers differ."""
+    with subprocess.Popen(
+        [sys.executable, "-c", STAGE, tmp_path], stdin=subprocess.PIPE, stdout=subprocess.PIPE
+    ) as process:
+        process.stdout.readline()
+        (temporary,) = tmp_path.iterdir()
+        os.utime(temporary, (0, 0))
+        write(tmp_path, ["a.txt"])
+        assert (temporary / "file").exists()
+        process.send_signal(signal.SIGKILL if os.name != "nt" else signal.SIGTERM)
+    _remove_abandoned.cache_clear()
+    write(tmp_path, ["b.txt"])
+    assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
+
+
+def test_files_that_another_process_writes_meanwhile_are_kept(tmp_path):
+    def write_beside():
+        with staged_files(tmp_path, overwrite=False) as staged:
+            (staged / "a.txt").write_text("new")
+            (staged / "b.txt").write_text("new")
+            (tmp_path / "b.txt").write_text("theirs")
+
+    with pytest.raises(CRFNetError) as caught:
+        write_beside()
+    assert (caught.value.code, caught.value.facts["path"]) == ("written_meanwhile", tmp_path / "b.txt")
+    assert content(tmp_path) == {"b.txt": "theirs"}
