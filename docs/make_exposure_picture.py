@@ -3,13 +3,10 @@
 The bundled photograph in linear light under the ACES 2.0 view of OpenColorIO's studio config, with white at 1, and with
 gray at 0.18 (``--exposure gray``). In front of it are three things that reflect 18 % of the light: a gray card as a
 camera stores it by convention (code 118 of the photograph), and a card and a sphere that are rendered.
-
-``python docs/make_exposure_picture.py PHOTO ...`` prints the mean display levels of photographs instead.
 """
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
 
 import numpy as np
@@ -17,18 +14,18 @@ import PyOpenColorIO as OCIO
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
+import crfnet
 from crfnet.defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from crfnet.luts.exposure import anchored_exposure
-from crfnet_core import Photo, ResponseCurve, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.types import Float32Array
 
 ROOT = Path(__file__).resolve().parents[1]
 PHOTO = ROOT / "tests" / "data" / "plate.jpg"
 PICTURE = ROOT / "docs" / "pictures" / "exposure.jpg"
 
-#: The config, its display and view, and the spaces of linear light and of a photograph taken for a texture.
-CONFIG, DISPLAY, VIEW = "studio-config-latest", "sRGB - Display", "ACES 2.0 - SDR 100 nits (Rec.709)"
-LINEAR, TEXTURE = "Linear Rec.709 (sRGB)", "sRGB Encoded Rec.709 (sRGB)"
+#: The config, the space of linear light, and the display and view.
+CONFIG, LINEAR = "studio-config-latest", "Linear Rec.709 (sRGB)"
+DISPLAY, VIEW = "sRGB - Display", "ACES 2.0 - SDR 100 nits (Rec.709)"
 
 #: Rows of the photograph that are shown, and the height of the objects, in pixels.
 ROWS, SIDE = slice(0, 290), 96
@@ -39,8 +36,8 @@ TO_LIGHT, AMBIENT = np.array([0.3, -0.75, 0.6]), 0.25
 
 def draw_exposure_picture(path: Path) -> None:
     """Write the picture as JPEG."""
-    photo = read_photo(PHOTO)
-    curve = estimated(photo)
+    photo = crfnet.read_photo(PHOTO)
+    curve = crfnet.estimate(photo).curve
     figure = Figure(figsize=(12, 3.0), dpi=90, facecolor="white")
     FigureCanvasAgg(figure)
     for column, gray in enumerate((None, GRAY_BRIGHTNESS)):
@@ -57,26 +54,10 @@ def draw_exposure_picture(path: Path) -> None:
     figure.savefig(path, format="jpeg", pil_kwargs={"quality": 88, "optimize": True})
 
 
-def print_levels(path: Path) -> None:
-    """Print how bright a photograph looks under the view: as a texture, with white at 1, and with gray at 0.18."""
-    photo = read_photo(path)
-    pixels, curve = photo.pixels[::4, ::4], estimated(photo)
-    stops = anchored_exposure(curve, gray=GRAY_BRIGHTNESS)
-    light = curve.inverse(pixels).astype(np.float32)
-    shown = (displayed(pixels, TEXTURE), displayed(light), displayed(light * np.float32(2**stops)))
-    means, whites = (" ".join(f"{measure(each):.3f}" for each in shown) for measure in (np.mean, np.max))
-    sys.stdout.write(f"{path.name}: {stops:+.2f} stop; texture, white, gray: mean {means}, brightest {whites}\n")
-
-
-def estimated(photo: Photo) -> ResponseCurve:
-    """Return the estimated response."""
-    return estimate_response(photo, network=ResponseNetwork.load()).curve
-
-
-def displayed(pixels: Float32Array, space: str = LINEAR) -> Float32Array:
-    """Return pixels (H, W, 3) as the view shows them, in [0, 1]."""
+def displayed(pixels: Float32Array) -> Float32Array:
+    """Return linear pixels (H, W, 3) as the view shows them, in [0, 1]."""
     shown = np.array(pixels, dtype=np.float32, order="C")
-    view = OCIO.DisplayViewTransform(src=space, display=DISPLAY, view=VIEW)
+    view = OCIO.DisplayViewTransform(src=LINEAR, display=DISPLAY, view=VIEW)
     OCIO.Config.CreateFromBuiltinConfig(CONFIG).getProcessor(view).getDefaultCPUProcessor().applyRGB(shown)
     return np.clip(shown, 0, 1)
 
@@ -107,7 +88,4 @@ def with_rendered_objects(plate: Float32Array) -> Float32Array:
 
 
 if __name__ == "__main__":
-    for name in sys.argv[1:]:
-        print_levels(Path(name))
-    if not sys.argv[1:]:
-        draw_exposure_picture(PICTURE)
+    draw_exposure_picture(PICTURE)

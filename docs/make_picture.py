@@ -3,7 +3,7 @@
 Above: the estimated response of the bundled photograph with its 90 % band, the true response, and gamma 2.2. Below,
 on crops of that photograph: two stops less light, and a defocus. Each is done on the code values as they are, after
 gamma 2.2, after the estimated response, and after the true one. Both work on light, so they are right only on linear
-values. Every result is encoded again by the curve that linearised it.
+values. Every result is encoded again by the curve that linearized it.
 """
 
 from __future__ import annotations
@@ -20,7 +20,8 @@ from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
-from crfnet_core import Photo, ResponseCurve, ResponseEstimate, ResponseNetwork, estimate_response, read_photo
+import crfnet
+from crfnet import Photo, ResponseCurve, ResponseEstimate
 from crfnet_core.types import Float32Array, Float64Array
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -51,8 +52,8 @@ STYLE: dict[Any, Any] = {"font.family": "DejaVu Sans", "font.size": 11, "text.co
 
 def draw_picture(path: Path) -> None:
     """Write the picture as PNG."""
-    photo = read_photo(PHOTO)
-    estimate = estimate_response(photo, network=ResponseNetwork.load())
+    photo = crfnet.read_photo(PHOTO)
+    estimate = crfnet.estimate(photo)
     true = ResponseCurve.from_samples(np.loadtxt(TRUE_RESPONSE, delimiter=",", skiprows=1)[:, 1])
     with mpl.rc_context():
         mpl.rcdefaults()
@@ -68,7 +69,7 @@ def draw_picture(path: Path) -> None:
 
 
 class Linearization(NamedTuple):
-    """A way to make the plate linear: its title, its colour in the picture, and its response."""
+    """A way to make the plate linear: its title, its color in the picture, and its response."""
 
     title: str
     color: str
@@ -149,7 +150,7 @@ def _draw_row(
     operation: Callable[[Float32Array, ResponseCurve], Float64Array],
     crop: Crop,
 ) -> None:
-    """Show a crop of an operation in each of the linearisations, the last of which is the truth."""
+    """Show a crop of an operation in each of the linearizations, the last of which is the truth."""
     width, height = 0.239, 0.75 * 0.239 * SIZE[0] / SIZE[1]
     figure.text(0.01, bottom + height + 0.042, heading, size=15, weight="bold")
     truth = operation(photo.pixels, curves[-1].curve)

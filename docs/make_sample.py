@@ -1,6 +1,7 @@
 """Write docs/sample/ anew: ``python docs/make_sample.py`` (needs the extra `plot`).
 
-It holds what ``crfnet estimate tests/data/plate.jpg`` writes, but for the linear plate, and the sheet at half its size.
+It holds the files that ``crfnet estimate tests/data/plate.jpg`` writes, except the linear plate; the sheet has half its
+size.
 """
 
 from __future__ import annotations
@@ -24,7 +25,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PHOTO = ROOT / "tests" / "data" / "plate.jpg"
 SAMPLE = ROOT / "docs" / "sample"
 
-#: What is copied as it is.
+#: Files that are copied.
 COPIED = ("config.ocio", *(f"plate{suffix}" for suffix in WRITERS), "plate.json")
 
 SHEET = "plate_sheet.png"
@@ -34,7 +35,7 @@ NO_METADATA: dict[str, Any] = {"Software": None}
 
 
 def make_sample(folder: Path) -> None:
-    """Write the sample files into `folder`, replacing those that are there."""
+    """Write the sample files into `folder`, replacing earlier ones."""
     with tempfile.TemporaryDirectory() as name:
         written = Path(name)
         with contextlib.redirect_stdout(io.StringIO()):
