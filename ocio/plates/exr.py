@@ -20,7 +20,7 @@ from crfnet_core.photograph.image_io import first_line, oiio_message
 from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
-KEPT_METADATA = (
+COPIED_METADATA = (
     "DateTime",
     "Exif:ExposureBiasValue",
     "Exif:FocalLength",
@@ -38,7 +38,7 @@ KEPT_METADATA = (
     "smpte:TimeCode",
 )
 
-#: OpenEXR's own names of metadata -> OpenImageIO's names of the same, the first that is there, which stay as well. The
+#: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
 #: other standard attributes OpenImageIO names itself: expTime, aperture, capDate, framesPerSecond, timeCode, keyCode.
 STANDARD_NAMES = {
     "cameraMake": ("Make",),
@@ -63,7 +63,7 @@ def linear_header(
 ) -> Any:
     """Return the OpenImageIO header of a linear plate of 3 channels, or 4 with alpha; `depth` is half or float.
 
-    The size, the windows and the `KEPT_METADATA` are those of `source`, the header of the encoded plate; `attributes`
+    The size, the windows and the `COPIED_METADATA` come from `source`, the header of the encoded plate; `attributes`
     say what the values mean, as in `PlateLight.attributes`.
     """
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
@@ -71,8 +71,8 @@ def linear_header(
         setattr(header, name, getattr(source, name))
     header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
     for attribute in source.extra_attribs:
-        if attribute.name in KEPT_METADATA:
-            # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
+        if attribute.name in COPIED_METADATA:
+            # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, with its type.
             kind = "int" if isinstance(attribute.value, int) else attribute.type
             value = one_line(attribute.value) if isinstance(attribute.value, str) else attribute.value
             header.attribute(attribute.name, kind, value)
@@ -91,7 +91,7 @@ def _text(value: Any) -> Any:
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:
-    """Return the metadata in a header that OpenEXR has names of its own for, by these names."""
+    """Return the metadata in a header that OpenEXR itself has names for, by these names."""
     attributes: dict[str, str | float] = {}
     for name, others in STANDARD_NAMES.items():
         value = next((value for other in others if (value := header.getattribute(other))), None)

@@ -244,7 +244,7 @@ def _remove_leftovers(targets: Iterable[Path]) -> None:
 
 
 def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> CRFNetError:
-    """Return the error that names the frames that failed; of a single file its own."""
+    """Return the error that names the frames that failed; for a single file its error."""
     failed = [target for target in targets if target in failures]
     first = failures[failed[0]]
     if not sequence.numbers:
