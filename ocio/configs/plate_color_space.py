@@ -49,9 +49,9 @@ class PlateColorSpace:
     aliases: tuple[str, ...] = ()  # a config gets those that it does not use already
     description: str = ""
     file_patterns: tuple[str, ...] = ()  # the plate's file names, for a file rule: see `file_rules.rule_regex`
-    exposure: float = 0.0  # stops after the response: a transform of its own, to be edited in the config
+    exposure: float = 0.0  # stops after the response: a separate transform, to be edited in the config
     primaries: Primaries = REC709  # of the encoded plate
-    linear_patterns: tuple[str, ...] = ()  # the names of the plate's linear files, for a file rule of their own
+    linear_patterns: tuple[str, ...] = ()  # the names of the plate's linear files, for a second file rule
     linear_primaries: Primaries | None = None  # of those files; None if they are not known, which makes no rule
 
     def __post_init__(self) -> None:

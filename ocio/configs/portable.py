@@ -1,4 +1,4 @@
-"""A small config of our own for plates, which every host from OpenColorIO 2.0 on can load."""
+"""A small config for plates, which every host from OpenColorIO 2.0 on can load."""
 
 from __future__ import annotations
 

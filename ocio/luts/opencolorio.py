@@ -81,11 +81,11 @@ def _processor(path: Path) -> OCIO.Processor:
     """Return OpenColorIO's processor of a file, or raise a LutError with its reason."""
     OCIO.ClearAllCaches()
     context = OCIO.Context()
-    context.setEnvironmentMode(OCIO.ENV_ENVIRONMENT_LOAD_PREDEFINED)  # a $ in a file's name is no variable
+    context.setEnvironmentMode(OCIO.ENV_ENVIRONMENT_LOAD_PREDEFINED)  # a $ in a file's name is not a variable
     transform = OCIO.FileTransform(src=str(path.absolute()), interpolation=OCIO.INTERP_LINEAR)
     try:
         return OCIO.Config.CreateRaw().getProcessor(context, transform, OCIO.TRANSFORM_DIR_FORWARD)
-    except UnicodeError:  # OpenColorIO's message quotes the file, or the name is no text
+    except UnicodeError:  # OpenColorIO's message quotes the file, or the name is not text
         raise LutError("lut_refused", path=path, reason="not a text") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         reason = one_line(problem).rpartition(" failed with: ")[2].replace(str(path.absolute()), path.name)

@@ -35,7 +35,7 @@ JPEG_CODECS = ("mjpeg", "mjpegb")
 #: Codecs as people know them; others by FFmpeg's name.
 CODEC_NAMES = {"h264": "H.264", "hevc": "HEVC", "prores": "ProRes", "vp9": "VP9", "av1": "AV1", "libdav1d": "AV1"}
 
-#: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one found counts.
+#: FFmpeg's names, in lower case, of the camera's maker, its model and its firmware; the first one present counts.
 MAKES = ("com.apple.quicktime.make", "com.android.manufacturer", "make")
 MODELS = ("com.apple.quicktime.model", "com.android.model", "model")
 FIRMWARE = ("com.apple.quicktime.software",)
@@ -122,7 +122,7 @@ class MovieStream:
         )
 
     def _text(self, names: tuple[str, ...]) -> str:
-        """Return the printable characters of the first metadata found."""
+        """Return the printable characters of the first metadata present."""
         text = next((self.metadata[name] for name in names if name in self.metadata), "")
         return "".join(filter(str.isprintable, text[:LONGEST_TEXT])).strip()
 

@@ -21,7 +21,7 @@ from crfnet_core.photograph.image_io.header_checks import attribute_value
 from ..errors import PlateError
 
 #: Metadata that still holds for the linear plate, by OpenImageIO's names. Color profiles do not.
-KEPT_METADATA = (
+COPIED_METADATA = (
     "DateTime",
     "Exif:ExposureBiasValue",
     "Exif:FocalLength",
@@ -39,7 +39,7 @@ KEPT_METADATA = (
     "smpte:TimeCode",
 )
 
-#: OpenEXR's own names of metadata -> OpenImageIO's names of the same, the first that is there, which stay as well. The
+#: OpenEXR's names of metadata -> OpenImageIO's names of the same, of which the first present one counts and stays. The
 #: other standard attributes OpenImageIO names itself: expTime, aperture, capDate, framesPerSecond, timeCode, keyCode.
 STANDARD_NAMES = {
     "cameraMake": ("Make",),
@@ -64,7 +64,7 @@ def linear_header(
 ) -> Any:
     """Return the OpenImageIO header of a linear plate of 3 channels, or 4 with alpha; `depth` is half or float.
 
-    The size, the windows and the `KEPT_METADATA` are those of `source`, the header of the encoded plate; `attributes`
+    The size, the windows and the `COPIED_METADATA` come from `source`, the header of the encoded plate; `attributes`
     say what the values mean, as in `PlateLight.attributes`.
     """
     header = oiio.ImageSpec(source.width, source.height, channels, depth)
@@ -72,7 +72,7 @@ def linear_header(
         setattr(header, name, getattr(source, name))
     header.attribute("DateTime", "")  # else OpenImageIO writes the present time, and no two files are the same
     for attribute in source.extra_attribs:
-        if attribute.name in KEPT_METADATA:
+        if attribute.name in COPIED_METADATA:
             # OpenImageIO's Python drops a single integer of 16 bits, such as the sensitivity, if given its type.
             value = attribute_value(source, attribute)
             value = one_line(value) if isinstance(value, str) else value
@@ -92,7 +92,7 @@ def _text(value: Any) -> Any:
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:
-    """Return the metadata in a header that OpenEXR has names of its own for, by these names."""
+    """Return the metadata in a header that OpenEXR itself has names for, by these names."""
     attributes: dict[str, str | float] = {}
     for name, others in STANDARD_NAMES.items():
         value = next((value for other in others if (value := header.getattribute(other))), None)

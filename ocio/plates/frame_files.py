@@ -78,7 +78,7 @@ class FirstFrame:
 
 
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
-    """Return the first frame that can be read; None if there is none, and each fails with an error of its own."""
+    """Return the first frame that can be read; None if all fail."""
     for position, load in enumerate(sequence.loaders(range(max(1, len(sequence.numbers))))):
         with suppress(CRFNetError):
             return FirstFrame(position, frame_path(sequence, position), load())

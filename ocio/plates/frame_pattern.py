@@ -1,6 +1,6 @@
 """A file name with a placeholder for the frame number, such as `plate.%04d.png` or `plate.####.png`.
 
-Fileseq's own reader of file names is not used: it refuses `a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in
+Fileseq's reader of file names is not used: it refuses `a@2x.%03d.png` and `shot_v2-%04d.png`, and takes the 1 in
 `v1####.png` for a frame.
 """
 
@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..errors import PlateError
 
-#: Placeholders for the frame number, the most explicit first; the first kind found in a name is the one that counts.
+#: Placeholders for the frame number, the most explicit first; the first kind in a name counts.
 _PLACEHOLDERS = tuple(map(re.compile, (r"%(?:0[0-9]{1,2})?d", r"\$F[0-9]{0,2}(?![A-Z])", "#+", "@+")))
 
 

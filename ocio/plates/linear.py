@@ -224,7 +224,7 @@ def _worker_count(workers: int | None) -> int:
 
 
 def _failure(failures: Mapping[Path, CRFNetError], targets: Sequence[Path], sequence: FrameSource) -> CRFNetError:
-    """Return the error that names the frames that failed; of a single file its own."""
+    """Return the error that names the frames that failed; for a single file its error."""
     failed = [target for target in targets if target in failures]
     first = failures[failed[0]]
     if not sequence.numbers:

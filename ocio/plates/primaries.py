@@ -13,13 +13,13 @@ from crfnet_core.types import Float64Array
 from ..defaults import OUTPUT_SPACES, PRIMARIES
 from ..errors import PlateError
 
-#: The source of primaries that the user gave, and of those of a file without tags, which is taken for sRGB.
+#: The sources of primaries that the user states, and of a file without tags, which is taken for sRGB.
 CHOSEN, BY_CONVENTION = "as given", "no tag, so by convention"
 
 #: The Color Interop Forum's name of a space that has none, or is not known.
 UNKNOWN = "unknown"
 
-#: The primaries of the output spaces; "plate" has those of the plate.
+#: The primaries of the output spaces; "plate" keeps the primaries of the plate.
 TARGETS = {"scene_linear": REC709, "plate": None, "ACEScg": AP1, "ACES2065-1": AP0}
 
 
@@ -79,7 +79,7 @@ class LinearSpace:
 
     @property
     def matrix(self) -> Float64Array | None:
-        """From the plate's linear RGB to that of the space, shape (3, 3); None where nothing is to be done."""
+        """From linear RGB of the plate to linear RGB of the space, (3, 3); None if they are the same or unknown."""
         if self.source is None or self.target is None or self.source == self.target:
             return None
         return conversion_matrix(self.source, self.target)

@@ -35,7 +35,7 @@ OTHER_LUT = inverse_response_lut(ResponseCurve.gamma(1.8))
 #: Of all built-in configs, it reads every OpenEXR file as ACES2065-1.
 STUDIO = "studio-config-v4.0.0_aces-v2.0_ocio-v2.5"
 
-#: The colour space of `write_look`.
+#: The color space of `write_look`.
 NAME = "CRF plate01"
 
 CORNERS = ("red", "green", "blue", "white")
@@ -82,7 +82,7 @@ def add(base: str | Path, out: Path, *looks: Path, overwrite: bool = False) -> D
 
 
 def space_of(config: OCIO.Config, path: str) -> str:
-    """Return the colour space that a config's rules give a file."""
+    """Return the color space that a config's rules give a file."""
     return str(config.getColorSpaceFromFilepath(path)[0])
 
 

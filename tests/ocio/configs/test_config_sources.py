@@ -33,9 +33,9 @@ def executable(path):
 
 
 def test_a_file_is_itself(config):
-    found = find_config(str(config))
-    assert (found.path, found.name) == (config, str(config))
-    assert found.config.getName() == "crfnet"
+    result = find_config(str(config))
+    assert (result.path, result.name) == (config, str(config))
+    assert result.config.getName() == "crfnet"
 
 
 def test_a_folder_holds_a_config(config):
@@ -52,9 +52,9 @@ def test_a_link_leads_to_the_file_whose_luts_lie_beside_it(config, tmp_path):
 @pytest.mark.parametrize("name", ["studio-config-v2.1.0_aces-v1.3_ocio-v2.3", "cg-config-latest", "default"])
 @pytest.mark.parametrize("start", ["", "ocio://"])
 def test_built_in_configs_have_names(name, start):
-    found = find_config(start + name)
-    assert (found.path, found.name) == (None, f"ocio://{name}")
-    assert found.config.getColorSpace("ACES2065-1") is not None
+    result = find_config(start + name)
+    assert (result.path, result.name) == (None, f"ocio://{name}")
+    assert result.config.getColorSpace("ACES2065-1") is not None
 
 
 def test_every_built_in_name_works():

@@ -37,29 +37,29 @@ def conversions(config):
     return pixels
 
 
-def assert_same(found, expected):
-    assert found.keys() == expected.keys()
+def assert_same(result, expected):
+    assert result.keys() == expected.keys()
     for name, pixels in expected.items():
-        np.testing.assert_array_equal(found[name], pixels, err_msg=name)
+        np.testing.assert_array_equal(result[name], pixels, err_msg=name)
 
 
 @pytest.mark.parametrize("name", BUILT_IN)
 class TestBuiltIn:
     def test_all_of_it_is_kept_and_the_plate_is_right_in_aces(self, name, small_look, tmp_path):
-        found = loaded(add(name, tmp_path / "show", small_look).path)
-        assert all_names(found) == all_names(OCIO.Config.CreateFromBuiltinConfig(name))
+        result = loaded(add(name, tmp_path / "show", small_look).path)
+        assert all_names(result) == all_names(OCIO.Config.CreateFromBuiltinConfig(name))
         pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
         expected = LUT.apply(pixels) @ np.transpose(REC709_TO_AP0)
-        np.testing.assert_allclose(converted(found, NAME, "aces_interchange", pixels), expected, atol=1e-5)
+        np.testing.assert_allclose(converted(result, NAME, "aces_interchange", pixels), expected, atol=1e-5)
 
     def test_only_the_plates_own_files_change_their_space(self, name, small_look, tmp_path):
         base = OCIO.Config.CreateFromBuiltinConfig(name)
-        found = loaded(add(name, tmp_path / "show", small_look).path)
-        assert [space_of(found, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
+        result = loaded(add(name, tmp_path / "show", small_look).path)
+        assert [space_of(result, path) for path in ("/a/plate01.jpg", "PLATE01.JPG")] == [NAME] * 2
         for path in ("/a/plate01_linear.exr", "Plate01_Linear.EXR", "plate01.0001.exr"):
-            assert found.getColorSpace(space_of(found, path)).getName().startswith("Linear Rec.709")
+            assert result.getColorSpace(space_of(result, path)).getName().startswith("Linear Rec.709")
         for path in ("b.exr", "x/b.jpg", "plate01.png", "plate02.jpg", "aplate01.jpg", "plate01.jpg.exr", "b.mov"):
-            assert space_of(found, path) == space_of(base, path)
+            assert space_of(result, path) == space_of(base, path)
 
 
 class TestBase:
@@ -71,11 +71,11 @@ class TestBase:
         assert tree(studio.parent) == before
         assert listed(tmp_path / "new") == ["config.ocio", "plate01.spi1d"]
         assert done.files == (tmp_path / "new" / "config.ocio", tmp_path / "new" / "plate01.spi1d")
-        found = loaded(done.path)
-        assert all_names(found) == all_names(loaded(studio))
-        assert_same(conversions(found), conversions(loaded(studio)))
+        result = loaded(done.path)
+        assert all_names(result) == all_names(loaded(studio))
+        assert_same(conversions(result), conversions(loaded(studio)))
         home = str(studio.parent)
-        assert list(found.getSearchPaths()) == [f"{home}/luts", f"{home}/$SHOW/luts", "$SHOW/luts", "."]
+        assert list(result.getSearchPaths()) == [f"{home}/luts", f"{home}/$SHOW/luts", "$SHOW/luts", "."]
 
     @pytest.mark.parametrize("paths", [[".", "luts"], ["luts", "."], ["sub/../luts"], ["more", ".", "luts"], []])
     @pytest.mark.parametrize("lut", [THIRD_LUT, None])
@@ -90,8 +90,8 @@ class TestBase:
         for path in paths:
             config.addSearchPath(path)
         studio.write_text(config.serialize())
-        found = conversions(loaded(add(studio, tmp_path / "new", small_look).path))
-        assert_same(found, conversions(loaded(studio)))
+        result = conversions(loaded(add(studio, tmp_path / "new", small_look).path))
+        assert_same(result, conversions(loaded(studio)))
 
     @pytest.mark.parametrize("is_absolute", [True, False])
     def test_paths_that_begin_with_a_variable_mean_the_same_folder(self, studio, small_look, tmp_path, is_absolute):
@@ -104,17 +104,17 @@ class TestBase:
         config.addSearchPath("$WHERE")
         config.addEnvironmentVar("WHERE", str(studio.parent / "other") if is_absolute else "other")
         studio.write_text(config.serialize())
-        found = converted(loaded(add(studio, tmp_path / "new", small_look).path), "film", "scene_linear", CODES)
-        np.testing.assert_array_equal(found, converted(loaded(studio), "film", "scene_linear", CODES))
+        result = converted(loaded(add(studio, tmp_path / "new", small_look).path), "film", "scene_linear", CODES)
+        np.testing.assert_array_equal(result, converted(loaded(studio), "film", "scene_linear", CODES))
 
     def test_a_lut_of_the_bases_name_is_not_taken_for_it(self, studio, tmp_path, tolerance):
         """The plate's LUT would be called film.spi1d, like one of the base."""
         look = write_look(tmp_path / "look", ["film.jpg"])
         done = add(studio, tmp_path / "new", look)
         assert listed(tmp_path / "new") == ["config.ocio", "film (look).spi1d"]
-        found = loaded(done.path)
-        assert_same(conversions(found), conversions(loaded(studio)))
-        light = converted(found, "CRF film", "scene_linear", CODES)
+        result = loaded(done.path)
+        assert_same(conversions(result), conversions(loaded(studio)))
+        light = converted(result, "CRF film", "scene_linear", CODES)
         np.testing.assert_allclose(light, LUT.apply(CODES), atol=tolerance.plate)
 
     def test_a_config_of_profile_1_gets_the_space_alone(self, studio, small_look, tmp_path):
@@ -138,12 +138,12 @@ class TestAgain:
     def test_more_looks_are_added_to_the_config_of_the_first(self, studio, small_look, tmp_path, tolerance):
         one = add(studio, tmp_path / "one", small_look)
         two = add(one.path, tmp_path / "two", write_look(tmp_path / "night", ["night.jpg"], lut=OTHER_LUT))
-        found = loaded(two.path)
+        result = loaded(two.path)
         assert [plate.name for plate in two.plates] == ["CRF night"]
         for name, lut in ((NAME, LUT), ("CRF night", OTHER_LUT)):
-            light = converted(found, name, "scene_linear", CODES)
+            light = converted(result, name, "scene_linear", CODES)
             np.testing.assert_allclose(light, lut.apply(CODES), atol=tolerance.plate)
-        assert [space_of(found, path) for path in ("plate01.jpg", "night.jpg")] == [NAME, "CRF night"]
+        assert [space_of(result, path) for path in ("plate01.jpg", "night.jpg")] == [NAME, "CRF night"]
 
     @pytest.mark.parametrize("is_together", [True, False])
     def test_plates_of_one_file_name_keep_their_responses_and_none_gets_the_rule(
@@ -158,17 +158,17 @@ class TestAgain:
             for number, look in enumerate(looks):
                 done = add(path, tmp_path / f"show{number}", look)
                 path = done.path
-        found = loaded(done.path)
+        result = loaded(done.path)
         for name, lut in zip((NAME, f"{NAME} (s020)", f"{NAME} (s030)"), luts.values(), strict=True):
-            light = converted(found, name, "scene_linear", CODES)
+            light = converted(result, name, "scene_linear", CODES)
             np.testing.assert_allclose(light, lut.apply(CODES), atol=tolerance.plate)
-        assert space_of(found, "/s010/plate01.jpg") == space_of(loaded(studio), "plate01.jpg") == "sRGB"
+        assert space_of(result, "/s010/plate01.jpg") == space_of(loaded(studio), "plate01.jpg") == "sRGB"
         assert done.without_rule == ("plate01.jpg",)
 
     def test_linear_files_of_one_name_and_different_spaces_get_no_rule(self, tmp_path):
         looks = [write_look(tmp_path / "a", interop_id="lin_ap1_scene"), write_look(tmp_path / "b")]
-        found = loaded(add(STUDIO, tmp_path / "show", *looks).path)
-        assert space_of(found, "plate01_linear.exr") == space_of(OCIO.Config.CreateFromBuiltinConfig(STUDIO), "b.exr")
+        result = loaded(add(STUDIO, tmp_path / "show", *looks).path)
+        assert space_of(result, "plate01_linear.exr") == space_of(OCIO.Config.CreateFromBuiltinConfig(STUDIO), "b.exr")
 
     def test_the_same_again_writes_the_same_bytes(self, studio, small_look, tmp_path):
         add(studio, tmp_path / "new", small_look)
@@ -208,8 +208,8 @@ class TestFolder:
     def test_it_can_be_moved_if_the_base_is_built_in(self, small_look, tmp_path, tolerance):
         add(STUDIO, tmp_path / "show", small_look)
         (tmp_path / "show").rename(tmp_path / "elsewhere")
-        found = converted(loaded(tmp_path / "elsewhere" / "config.ocio"), NAME, "lin_rec709_scene", CODES)
-        np.testing.assert_allclose(found, LUT.apply(CODES), atol=tolerance.plate)
+        result = converted(loaded(tmp_path / "elsewhere" / "config.ocio"), NAME, "lin_rec709_scene", CODES)
+        np.testing.assert_allclose(result, LUT.apply(CODES), atol=tolerance.plate)
 
 
 class TestRules:
@@ -223,18 +223,18 @@ class TestRules:
     def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
         """The frames of `crfnet linearize` are called sky.0001.exr."""
         look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
-        found = loaded(add(STUDIO, tmp_path / "show", look).path)
-        assert {space_of(found, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
-        assert space_of(found, "sky.v2.png") == "sRGB - Display"
-        linear = found.getColorSpace(interop_id).getName()
+        result = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert {space_of(result, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}
+        assert space_of(result, "sky.v2.png") == "sRGB - Display"
+        linear = result.getColorSpace(interop_id).getName()
         for path in ("sky.0099_linear.exr", "wall_linear.exr", "sky.0099.exr"):
-            assert space_of(found, path) == linear
+            assert space_of(result, path) == linear
 
     def test_a_movie_has_rules_for_its_file_and_its_linear_frames(self, tmp_path):
         look = write_look(tmp_path / "look", ["clip.mp4 frame 1", "clip.mp4 frame 9"], interop_id="lin_ap1_scene")
-        found = loaded(add(STUDIO, tmp_path / "show", look).path)
-        assert space_of(found, "/x/clip.mp4") == "CRF clip"
-        assert [space_of(found, path) for path in ("clip.0001.exr", "clip_linear.exr")] == ["ACEScg"] * 2
+        result = loaded(add(STUDIO, tmp_path / "show", look).path)
+        assert space_of(result, "/x/clip.mp4") == "CRF clip"
+        assert [space_of(result, path) for path in ("clip.0001.exr", "clip_linear.exr")] == ["ACEScg"] * 2
 
     @pytest.mark.parametrize("interop_id", ["lin_ap0_scene", "unknown"])
     def test_linear_plates_get_no_rule_where_they_need_none_or_are_unknown(self, tmp_path, interop_id):

@@ -16,7 +16,7 @@ from crfnet.configs.portable import portable_config
 
 
 def space_of(pattern, path):
-    """The colour space that OpenColorIO's own rules give a file."""
+    """The color space that OpenColorIO's own rules give a file."""
     config = portable_config([])
     add_file_rule(config, "plate", "ACEScct", [pattern])
     return config.getColorSpaceFromFilepath(path)[0]
@@ -45,8 +45,8 @@ def test_a_pattern_holds_for_full_names(pattern, matching, others):
 def test_several_patterns_are_one_rule():
     config = portable_config([])
     add_file_rule(config, "plate", "ACEScct", ["a.jpg", "b.#.png"])
-    found = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
-    assert found == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
+    result = {name: config.getColorSpaceFromFilepath(name)[0] for name in ("a.jpg", "b.7.png", "c.png")}
+    assert result == {"a.jpg": "ACEScct", "b.7.png": "ACEScct", "c.png": "sRGB"}
     assert list(plate_rules(config, "plate").values()) == ["ACEScct"]
 
 

@@ -1,4 +1,4 @@
-"""A plate's colour space as data, and added to any config."""
+"""A plate's color space as data, and added to any config."""
 
 import copy
 
@@ -42,7 +42,7 @@ def small_config(version="2", roles="data: raw"):
 
 
 def added(config, *spaces):
-    """A copy of a config with plates, which finds their LUTs beside it."""
+    """A copy of a config with plates, which finds their LUTs in its folder."""
     config = copy.deepcopy(config)
     config.addSearchPath(".")
     add_plate_color_spaces(config, spaces)
@@ -76,8 +76,8 @@ class TestAdding:
         config = added(small_config(roles="aces_interchange: working"), SPACE)
         write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
         written = loaded(folder / "config.ocio")
-        found = converted(written, "CRF plate01", "working", [[1, 1, 1], [1, 0, 0]])
-        np.testing.assert_allclose(found, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
+        result = converted(written, "CRF plate01", "working", [[1, 1, 1], [1, 0, 0]])
+        np.testing.assert_allclose(result, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
 
     def test_a_config_without_any_way_from_rec709_is_refused(self):
         with pytest.raises(ConfigError) as caught:
@@ -93,11 +93,11 @@ class TestPrimaries:
         config = added(OCIO.Config.CreateFromBuiltinConfig(base), self.PLATE)
         write_config(folder / "config.ocio", config, check={"CRF plate01": LUT})
         pixels = np.random.default_rng(0).uniform(0, 1, (500, 3)).astype(np.float32)
-        found = converted(loaded(folder / "config.ocio"), "CRF plate01", "ACES2065-1", pixels)
+        result = converted(loaded(folder / "config.ocio"), "CRF plate01", "ACES2065-1", pixels)
         base_config = OCIO.Config.CreateFromBuiltinConfig("studio-config-latest")
         light = LUT.apply(pixels).astype(np.float32) * 2**0.5
         expected = converted(base_config, "lin_p3d65_scene", "ACES2065-1", light)
-        np.testing.assert_allclose(found, expected, atol=1e-5)
+        np.testing.assert_allclose(result, expected, atol=1e-5)
 
     @pytest.mark.parametrize("name", ["lin_p3d65_scene", "lin_adobergb_scene", "lin_rec2020_scene"])
     @pytest.mark.parametrize("target", ["ACES2065-1", "ACEScg", "lin_rec709_scene"])
@@ -110,8 +110,8 @@ class TestPrimaries:
     @pytest.mark.parametrize("source", [REC709, DISPLAY_P3, ADOBE_RGB, REC2020])
     def test_our_matrices_to_aces_are_those_of_opencolorio(self, source, target, primaries):
         config = OCIO.Config.CreateFromBuiltinConfig("studio-config-latest")
-        found = converted(config, source.interop_id, target, np.eye(3, dtype=np.float32)).T
-        np.testing.assert_allclose(conversion_matrix(source, primaries), found, atol=1e-6)
+        result = converted(config, source.interop_id, target, np.eye(3, dtype=np.float32)).T
+        np.testing.assert_allclose(conversion_matrix(source, primaries), result, atol=1e-6)
 
     def test_the_matrix_of_the_configs_is_ours(self):
         np.testing.assert_allclose(conversion_matrix(REC709, AP0), REC709_TO_AP0, atol=1e-11)

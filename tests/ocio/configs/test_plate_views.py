@@ -25,9 +25,9 @@ def shown(tmp_path):
 
     def show(config, display, view, pixels, *, optimization=OCIO.OPTIMIZATION_DEFAULT):
         (tmp_path / "config.ocio").write_text(config.serialize())
-        found = loaded(tmp_path / "config.ocio")
+        result = loaded(tmp_path / "config.ocio")
         pixels = np.array(pixels, dtype=np.float32)
-        processor = found.getProcessor("scene_linear", display, view, OCIO.TRANSFORM_DIR_FORWARD)
+        processor = result.getProcessor("scene_linear", display, view, OCIO.TRANSFORM_DIR_FORWARD)
         processor.getOptimizedCPUProcessor(optimization).applyRGB(pixels)
         return pixels
 
@@ -59,17 +59,17 @@ def with_plate(**options):
 class TestRoundTrip:
     def test_every_code_of_the_plate_comes_back(self, exposure, linear, shown, codes):
         config, codes = with_plate(exposure=exposure), codes.reshape(-1, 3)
-        found = shown(config, "sRGB", CLIPPED, linear(config, codes))
-        np.testing.assert_array_equal(np.rint(found * 255), codes)
+        result = shown(config, "sRGB", CLIPPED, linear(config, codes))
+        np.testing.assert_array_equal(np.rint(result * 255), codes)
 
     def test_the_rolled_off_view_leaves_codes_up_to_the_knee(self, exposure, linear, shown, codes):
         config, codes = with_plate(exposure=exposure), codes.reshape(-1, 3)
-        found = np.rint(shown(config, "sRGB", ROLLED_OFF, linear(config, codes)) * 255)
+        result = np.rint(shown(config, "sRGB", ROLLED_OFF, linear(config, codes)) * 255)
         highest = int(np.floor(LUT.apply_inverse(KNEE) * 255))
         assert 200 < highest < 255
         below = (codes <= highest).all(axis=1)
-        np.testing.assert_array_equal(found[below], codes[below])
-        assert found[codes == 255].max() < 255
+        np.testing.assert_array_equal(result[below], codes[below])
+        assert result[codes == 255].max() < 255
 
 
 def test_cg_gets_the_cameras_response(shown):
@@ -104,8 +104,8 @@ class TestOtherPrimaries:
         codes = np.array([[120, 100, 90], [60, 64, 70]])
         curve = lambda x: np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)  # noqa: E731
         config = with_plate(**self.OPTIONS)
-        found = curve(shown(config, "sRGB", CLIPPED, linear(config, codes)))
-        np.testing.assert_allclose(found, curve(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
+        result = curve(shown(config, "sRGB", CLIPPED, linear(config, codes)))
+        np.testing.assert_allclose(result, curve(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
 
 
 class TestRollOff:

@@ -37,16 +37,16 @@ def test_every_host_finds_its_name_of_scene_linear(name):
     ],
 )
 def test_its_spaces_have_known_values(source, target, pixel, expected):
-    found = converted(portable_config([]), source, target, [pixel])
-    np.testing.assert_allclose(found, [expected], atol=3e-6)
+    result = converted(portable_config([]), source, target, [pixel])
+    np.testing.assert_allclose(result, [expected], atol=3e-6)
 
 
 @pytest.mark.parametrize("display", ["sRGB", "Rec.709"])
 def test_its_displays_show_white_as_white(display):
     transform = OCIO.DisplayViewTransform(src="scene_linear", display=display, view="Standard")
     processor = portable_config([]).getProcessor(transform)
-    found = processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB([1.0, 1.0, 1.0])
-    np.testing.assert_allclose(found, 1, atol=3e-6)
+    result = processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_LOSSLESS).applyRGB([1.0, 1.0, 1.0])
+    np.testing.assert_allclose(result, 1, atol=3e-6)
     assert list(portable_config([]).getViews(display)) == ["Standard", "Raw"]
 
 

@@ -41,10 +41,10 @@ def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
 @pytest.mark.parametrize("kind", [np.float32, np.float64])
 def test_apply_interpolates_clamps_and_takes_nan_for_the_first_entry(kind):
     lut = Lut1D([0.0, 0.25, 1.0])
-    given = np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind)
-    found = lut.apply(given)
-    assert found.dtype == kind
-    assert found.tolist() == [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0]
+    inputs = np.array([-1, 0, 0.25, 0.5, 0.75, 1, 2, np.inf, -np.inf, np.nan], dtype=kind)
+    result = lut.apply(inputs)
+    assert result.dtype == kind
+    assert result.tolist() == [0, 0, 0.125, 0.25, 0.625, 1, 1, 1, 0, 0]
 
 
 @pytest.mark.parametrize("domain", [(0.0, 1.0), (-0.125, 1.125)])
@@ -92,7 +92,7 @@ def test_pixels_keep_their_shape_and_are_not_written():
         ([0, 1], (-1e36, 1e36), "lut_span"),
     ],
 )
-def test_tables_that_are_none_are_refused(values, domain, code):
+def test_other_tables_are_refused(values, domain, code):
     with pytest.raises(LutError) as caught:
         Lut1D(values, domain)
     assert caught.value.code == code
@@ -128,9 +128,9 @@ def test_strictly_increasing_raises_by_units_in_the_last_place_and_keeps_the_end
 @given(arrays(np.float64, st.integers(2, 200), elements=st.floats(-2, 2, width=32)))
 def test_strictly_increasing_moves_values_by_no_more_than_their_number_of_units(values):
     ordered = np.sort(values)
-    found = strictly_increasing(ordered)
-    assert (np.diff(found.astype(np.float32)) > 0).all()
-    assert np.abs(found - ordered).max() <= values.size * np.spacing(np.float32(4))
+    result = strictly_increasing(ordered)
+    assert (np.diff(result.astype(np.float32)) > 0).all()
+    assert np.abs(result - ordered).max() <= values.size * np.spacing(np.float32(4))
 
 
 @pytest.mark.parametrize(
@@ -211,7 +211,7 @@ def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(c
 
 
 @pytest.mark.parametrize("step", [Lut1D.apply, Lut1D.apply_inverse])
-def test_code_values_are_no_brightness(true_response, step):
+def test_code_values_are_refused(true_response, step):
     """Clipped, all but the first would be white."""
     lut = inverse_response_lut(true_response)
     with pytest.raises(LutError) as caught:

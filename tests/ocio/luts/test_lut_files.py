@@ -72,9 +72,9 @@ def test_colour_science_agrees_with_numpy(tmp_path, suffix, reader, name, tolera
     lut = inverse_response_lut(CURVES[name], length=5101, domain=EXTENDED, comments=("photo: a.jpg",))
     write_lut(path, lut)
     values = np.linspace(*EXTENDED, 3000)
-    found = reader(str(path)).apply(np.repeat(values[:, np.newaxis], 3, axis=1))
+    result = reader(str(path)).apply(np.repeat(values[:, np.newaxis], 3, axis=1))
     slope = np.diff(lut.values).max() * (lut.values.size - 1) / 1.25
-    assert np.abs(found - lut.apply(values)[:, np.newaxis]).max() < max(tolerance.lut, slope * 1e-9)
+    assert np.abs(result - lut.apply(values)[:, np.newaxis]).max() < max(tolerance.lut, slope * 1e-9)
 
 
 @settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])

@@ -17,9 +17,9 @@ GRID = np.linspace(0, 1, 4081)
 @pytest.mark.parametrize("domain", [(0.0, 1.0), (-0.125, 1.125)])
 @pytest.mark.parametrize("length", [4081, 16321])
 def test_it_returns_the_response(true_response, length, domain):
-    found = response_of_lut(inverse_response_lut(true_response, length=length, domain=domain))
-    assert np.abs(found.brightness - true_response.brightness).max() < 2e-4
-    assert np.abs(found.inverse(GRID) - true_response.inverse(GRID)).max() < 5e-5
+    result = response_of_lut(inverse_response_lut(true_response, length=length, domain=domain))
+    assert np.abs(result.brightness - true_response.brightness).max() < 2e-4
+    assert np.abs(result.inverse(GRID) - true_response.inverse(GRID)).max() < 5e-5
 
 
 def test_the_scale_of_the_lut_does_not_count():
@@ -48,16 +48,16 @@ class TestFiles:
     def test_an_inverse_response_is_taken_as_it_is(self, tmp_path, suffix, true_response):
         lut = inverse_response_lut(true_response, comments=("mine",))
         write_lut(tmp_path / f"a{suffix}", lut)
-        found = read_response(tmp_path / f"a{suffix}")
-        assert (found.lut, found.table, found.was_forward) == (lut, lut, False)
-        assert found.words == f"LUT of the format {suffix}, one table, from code values to light"
+        result = read_response(tmp_path / f"a{suffix}")
+        assert (result.lut, result.table, result.was_forward) == (lut, lut, False)
+        assert result.words == f"LUT of the format {suffix}, one table, from code values to light"
 
     def test_a_response_is_inverted(self, tmp_path, suffix, true_response):
         write_lut(tmp_path / f"a{suffix}", forward_lut(inverse_response_lut(true_response)))
-        found = read_response(tmp_path / f"a{suffix}")
-        assert found.was_forward
-        assert np.abs(found.lut.apply(GRID) - true_response.inverse(GRID)).max() < 1e-4
-        assert found.lut.comments[0].endswith("from light to code values; this is its inverse")
+        result = read_response(tmp_path / f"a{suffix}")
+        assert result.was_forward
+        assert np.abs(result.lut.apply(GRID) - true_response.inverse(GRID)).max() < 1e-4
+        assert result.lut.comments[0].endswith("from light to code values; this is its inverse")
 
 
 def test_linear_light_is_not_inverted(tmp_path):

@@ -141,9 +141,9 @@ def test_a_change_midway_is_refused(tmp_path, change):
 
 
 def test_interlaced_movies_are_named_and_not_linearized(tmp_path, movie):
-    found = read_stream(write_movie(tmp_path / "a.mp4", is_interlaced=True))
-    assert "; interlaced: its frames mix two moments" in str(found)
-    assert refusal(None, lambda _: check_progressive(found)) == "movie_interlaced"
+    result = read_stream(write_movie(tmp_path / "a.mp4", is_interlaced=True))
+    assert "; interlaced: its frames mix two moments" in str(result)
+    assert refusal(None, lambda _: check_progressive(result)) == "movie_interlaced"
     check_progressive(read_stream(movie))
 
 
@@ -176,8 +176,8 @@ def test_the_film_is_taken_and_not_the_thumbnail_before_it(tmp_path):
                 frame = av.VideoFrame.from_ndarray(image, format="rgb24").reformat(format=form)
                 container.mux(stream.encode(frame))
             container.mux(stream.encode())
-    found = read_stream(tmp_path / "a.mov")
-    assert (found.codec, found.picture.size, found.frame_count) == ("H.264", (128, 96), 12)
+    result = read_stream(tmp_path / "a.mov")
+    assert (result.codec, result.picture.size, result.frame_count) == ("H.264", (128, 96), 12)
 
 
 def test_alpha_is_kept(tmp_path):

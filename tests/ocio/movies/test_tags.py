@@ -49,9 +49,9 @@ def test_metadata_that_is_not_utf8_is_read(tmp_path):
 def test_maker_model_rate_and_timecode(tmp_path):
     tags = {"com.apple.quicktime.make": "Apple", "com.apple.quicktime.model": "iPhone", "timecode": "01:00:00:00"}
     path = write_movie(tmp_path / "a.mov", metadata=tags, muxer={"movflags": "use_metadata_tags"})
-    found = read_stream(path)
-    assert (found.rate, "timecode 01:00:00:00" in str(found)) == (Fraction(24), True)
-    assert file_origin(found.file_metadata).words == ("taken by Apple iPhone, a phone", "a frame of a movie")
+    result = read_stream(path)
+    assert (result.rate, "timecode 01:00:00:00" in str(result)) == (Fraction(24), True)
+    assert file_origin(result.file_metadata).words == ("taken by Apple iPhone, a phone", "a frame of a movie")
     header = next(MovieFrames.find(path).loaders([0]))().header
     assert header.getattribute("FramesPerSecond") == (24, 1)
     assert header.get_string_attribute("Model") == "iPhone"

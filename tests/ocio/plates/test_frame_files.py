@@ -52,7 +52,7 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
         (("mask.R",), {}, "exr_channels"),
     ],
 )
-def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attributes, code):
+def test_other_exr_files_are_refused(tmp_path, channels, attributes, code):
     path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
     with pytest.raises(PlateError) as caught:
         read_frame(path)
@@ -60,7 +60,7 @@ def test_an_exr_that_is_no_encoded_plate_is_refused(tmp_path, channels, attribut
 
 
 @pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
-def test_an_exr_that_says_nothing_of_its_encoding_is_refused_unless_told(tmp_path, tag):
+def test_an_untagged_exr_is_refused_unless_it_is_stated_to_be_encoded(tmp_path, tag):
     path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), **tag)
     with pytest.raises(PlateError) as caught:
         read_frame(path)
@@ -68,7 +68,7 @@ def test_an_exr_that_says_nothing_of_its_encoding_is_refused_unless_told(tmp_pat
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, [[[0.5, 0.5, 0.5]]])
 
 
-def test_an_exr_that_says_it_is_encoded_needs_no_option(tmp_path):
+def test_an_exr_tagged_as_encoded_is_read(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="srgb_rec709_scene")
     np.testing.assert_array_equal(read_frame(path).samples, [[[0.5, 0.5, 0.5]]])
 
@@ -112,7 +112,7 @@ def test_the_tags_alone_are_refused_where_the_frame_is(tmp_path):
     assert read_color_tags(path, is_encoded=True).primaries is None
 
 
-def test_a_damaged_exr_with_bytes_that_are_no_text_is_refused_in_one_printable_line(tmp_path):
+def test_the_error_of_a_damaged_exr_is_printable(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.zeros((4, 4, 3)), ("R", "G", "B"))
     path.write_bytes(path.read_bytes().replace(b"channels\0chlist\0", b"channels\0chl\xa7\x1bt\0", 1))
     with pytest.raises(PlateError) as caught:

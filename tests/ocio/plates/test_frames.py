@@ -47,7 +47,7 @@ def test_a_pattern_keeps_the_folder(tmp_path):
 
 
 @pytest.mark.parametrize("name", ["plate.png", "plate.%s.png", "plate.%4d.png", "100%.png", "a[1].png", "$FF.png"])
-def test_a_name_without_a_placeholder_is_no_pattern(name):
+def test_a_name_without_a_placeholder_is_not_a_pattern(name):
     assert FramePattern.parse(name) is None
 
 

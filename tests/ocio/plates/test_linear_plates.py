@@ -110,9 +110,9 @@ def test_encoded_exr_keeps_its_windows(tmp_path, out):
     gray = np.full((3, 4, 3), 0.5, np.float16)
     plate = write_image(tmp_path / "a.exr", gray, origin=(5, -2), display=(0, 0, 20, 10))
     linearize(plate, out / "a.exr", LUT, is_encoded=True)
-    found = read_exr(out / "a.exr")[1]
-    assert (found.x, found.y, found.width, found.height) == (5, -2, 4, 3)
-    assert (found.full_x, found.full_y, found.full_width, found.full_height) == (0, 0, 20, 10)
+    result = read_exr(out / "a.exr")[1]
+    assert (result.x, result.y, result.width, result.height) == (5, -2, 4, 3)
+    assert (result.full_x, result.full_y, result.full_width, result.full_height) == (0, 0, 20, 10)
 
 
 def test_metadata_that_remains_true_is_kept(tmp_path, out):
@@ -129,24 +129,24 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
         DateTime="2001:02:03 04:05:06",
     )
     linearize(plate, out / "a.exr", LUT)
-    found = attributes(read_exr(out / "a.exr")[1])
-    assert found["compression"] == "zips"
-    assert found["colorInteropID"] == "lin_rec709_scene"
-    assert found["crfnet:response"] == "photograph plate.jpg | model test"
-    assert (found["Make"], found["Orientation"], found["DateTime"]) == ("Canon", 1, "2001:02:03 04:05:06")
-    assert found["FNumber"] == pytest.approx(2.8)
-    assert found["ExposureTime"] == pytest.approx(0.02)
-    assert found["crfnet:exposure"] == 0
-    assert found["crfnet:lut"] == LUT.identity
-    assert not {"ICCProfile", "Exif:ColorSpace", "Software"} & set(found)
+    result = attributes(read_exr(out / "a.exr")[1])
+    assert result["compression"] == "zips"
+    assert result["colorInteropID"] == "lin_rec709_scene"
+    assert result["crfnet:response"] == "photograph plate.jpg | model test"
+    assert (result["Make"], result["Orientation"], result["DateTime"]) == ("Canon", 1, "2001:02:03 04:05:06")
+    assert result["FNumber"] == pytest.approx(2.8)
+    assert result["ExposureTime"] == pytest.approx(0.02)
+    assert result["crfnet:exposure"] == 0
+    assert result["crfnet:lut"] == LUT.identity
+    assert not {"ICCProfile", "Exif:ColorSpace", "Software"} & set(result)
 
 
 def test_metadata_has_the_names_of_openexr(tmp_path, out):
     exif = {"Exif__LensModel": "EF50mm", "Exif__FocalLength": 50.0, "Exif__PhotographicSensitivity": 200}
     camera = {"Make": "Canon", "Model": "EOS 20D", "ExposureTime": 0.02, "FNumber": 2.8}
     linearize(write_image(tmp_path / "a.jpg", SMALL[..., :3], **exif, **camera), out / "a.exr", LUT, is_encoded=True)
-    found = attributes(read_exr(out / "a.exr")[1])
-    assert {name: found.get(name) for name in STANDARD_NAMES} == {
+    result = attributes(read_exr(out / "a.exr")[1])
+    assert {name: result.get(name) for name in STANDARD_NAMES} == {
         "cameraMake": "Canon",
         "cameraModel": "EOS 20D",
         "lensModel": "EF50mm",
@@ -166,10 +166,10 @@ def test_time_code_and_rate_are_kept(tmp_path, out):
         PixelAspectRatio=2.0,
     )
     linearize(plate, out / "a.exr", LUT, is_encoded=True)
-    found, expected = attributes(read_exr(out / "a.exr")[1]), attributes(read_exr(plate)[1])
-    assert found["smpte:TimeCode"] == expected["smpte:TimeCode"]
-    assert found["FramesPerSecond"] == expected["FramesPerSecond"]
-    assert found["PixelAspectRatio"] == 2
+    result, expected = attributes(read_exr(out / "a.exr")[1]), attributes(read_exr(plate)[1])
+    assert result["smpte:TimeCode"] == expected["smpte:TimeCode"]
+    assert result["FramesPerSecond"] == expected["FramesPerSecond"]
+    assert result["PixelAspectRatio"] == 2
 
 
 def test_output_is_reproducible_and_undated(tmp_path, out):
