@@ -28,7 +28,6 @@ SENTENCES: Mapping[str, str] = {
     "bad_model_json": "{path}: is not JSON with an object; restore it",
     "bad_output": "{folder}: model.onnx answers with {name} of shape {shape} or not finite, needed is {needed}; export"
     " the model again",
-    "bad_signature": "{folder}: model.onnx needs one input, and {name} of float {needed}; export the model again",
     "external_weights": "{folder}: model.onnx has weights in another file; export the model again",
     "failing_graph": "{folder}: model.onnx fails ({reason}); export the model again",
     "negative_threads": "the number of threads must be 0 (all cores) or more, found {threads}",

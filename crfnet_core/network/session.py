@@ -1,4 +1,4 @@
-"""A graph in onnxruntime, its inputs and outputs checked."""
+"""A graph in onnxruntime, its outputs checked."""
 
 from __future__ import annotations
 
@@ -13,12 +13,9 @@ from crfnet_core.network.model import ModelConfig
 from crfnet_core.network.runtime import onnxruntime
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.posterior.families import UNUSUAL
-from crfnet_core.statistics import LENGTHS
-from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
 
-#: Shapes that a row of each input may have, and shapes of the outputs: location, factor and log-odds, once or twice.
-INPUT_SHAPES = {"windows": ((WINDOW_SIZE, WINDOW_SIZE, 3),), "statistics": tuple((length,) for length in LENGTHS)}
+#: Shapes of the outputs: location, factor and log-odds, once or twice.
 OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len(UNUSUAL),))
 
 #: A tensor whose weights lie in another file has an entry "location"; in Protocol Buffers the last byte of a text's
@@ -44,8 +41,7 @@ _FATAL = 4
 class Session:
     """The network of a model folder on one thread of the CPU; threads may share it.
 
-    Raise ModelError if the graph has weights in another file, cannot be loaded, or has other inputs or outputs than
-    model.json says.
+    Raise ModelError if the graph has weights in another file or cannot be loaded.
     """
 
     def __init__(self, folder: Path, graph: bytes, config: ModelConfig) -> None:
@@ -58,9 +54,8 @@ class Session:
             )
         except _PROBLEMS as problem:
             raise ModelError("unloadable_graph", folder=folder, reason=problem) from None
-        self._check_signature()
-        size = self._session.get_inputs()[0].shape[1]
-        self._read = size if isinstance(size, int) else None  # a name takes all
+        sizes = [size for node in self._session.get_inputs() for size in node.shape[1:2]]
+        self._read = sizes[0] if sizes and isinstance(sizes[0], int) else None  # a name takes all
 
     def run(self, inputs: Float32Array) -> list[Float32Array]:
         """Return the network's outputs for some rows: finite, and of the shapes of evidence.
@@ -82,17 +77,6 @@ class Session:
                 raise ModelError("bad_output", folder=self._folder, name=name, shape=output.shape, needed=shape)
         return outputs
 
-    def _check_signature(self) -> None:
-        """Check the names, types and shapes of inputs and outputs, as far as the graph declares them."""
-        config, inputs, outputs = self._config, self._session.get_inputs(), self._session.get_outputs()
-        declared = {node.name: node for node in (*inputs, *outputs)}
-        rows = [INPUT_SHAPES[config.input_name], *((row,) for row in OUTPUT_SHAPES * (len(config.output_names) // 3))]
-        for name, fitting in zip((config.input_name, *config.output_names), rows, strict=True):
-            node = declared.get(name)
-            fits = node is not None and node.type == "tensor(float)" and any(_fits(node.shape, row) for row in fitting)
-            if len(inputs) > 1 or not fits:
-                raise ModelError("bad_signature", folder=self._folder, name=name, needed=("N", *fitting[-1]))
-
 
 def _options(config: ModelConfig) -> Any:
     """Return the options of a session: one thread, and nothing on stderr."""
@@ -103,11 +87,3 @@ def _options(config: ModelConfig) -> Any:
         options.graph_optimization_level = onnxruntime.GraphOptimizationLevel.ORT_DISABLE_ALL
     options.add_session_config_entry("session.load_model_format", "ONNX")  # not what its first bytes call it
     return options
-
-
-def _fits(declared: list[Any], row: tuple[int, ...]) -> bool:
-    """Return whether a declared shape, whose free sizes are names or None, is the shape of such rows."""
-    sizes = declared[1:]
-    return len(sizes) == len(row) and all(
-        size == needed for size, needed in zip(sizes, row, strict=True) if isinstance(size, int)
-    )

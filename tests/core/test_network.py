@@ -169,9 +169,9 @@ def test_a_spoiled_config_is_refused(copied, text, code):
         ({"input_name": "pixels"}, "other_kind_of_model"),
         ({"output_names": ["weights", "log_errors"]}, "other_kind_of_model"),
         ({"output_names": ["locations", "locations", {}]}, "other_kind_of_model"),
-        ({"output_names": ["locations", "log_odds", "factors"]}, "bad_signature"),
-        ({"output_names": ["locations", "factors", "absent"]}, "bad_signature"),
-        ({"input_name": "windows"}, "bad_signature"),
+        ({"output_names": ["locations", "log_odds", "factors"]}, "bad_output"),
+        ({"output_names": ["locations", "factors", "absent"]}, "failing_graph"),
+        ({"input_name": "windows"}, "failing_graph"),
     ],
 )
 def test_a_model_of_another_kind_is_refused(copied, entries, code):
