@@ -14,7 +14,7 @@ from training.export.golden import PARITY, assert_parity, write_golden
 from training.export.model_folder import load_network, write_config
 from training.export.onnx_graph import POOLING, export_onnx
 from training.network.average import average
-from training.network.model import KINDS, NetworkConfig, PhotographNet
+from training.network.model import NetworkConfig, PhotographNet
 from training.network.start import start_from, start_record
 
 CONFIG = NetworkConfig(width=64)
@@ -62,11 +62,6 @@ def test_the_exported_folder_loads(exported):
     assert network.config.components == 5
     assert network.config.training["held_out_curves"] == []
     assert network.config.training_commit == "0" * 40 + "-dirty"
-
-
-def test_kinds_of_features_are_left_out_on_demand(exported):
-    embedding = load_network(exported / "run", without=["edges", "levels"]).net.embedding
-    assert [kind for kind in KINDS if getattr(embedding, kind).is_left_out] == ["levels", "edges"]
 
 
 def test_held_out_curves_stand_in_the_configuration(exported):

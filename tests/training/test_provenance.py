@@ -66,18 +66,6 @@ def test_a_changed_working_tree_shows_in_the_commit(shards, monkeypatch):
     assert training_commit(record(shards)) == "f" * 40 + "-dirty"
 
 
-def test_without_a_repository_the_commit_is_unknown(shards, monkeypatch):
-    monkeypatch.setattr(provenance, "_git", lambda *_: None)
-    entries = record(shards)
-    assert (entries["commit"], entries["dirty"]) == (None, None)
-    assert training_commit(entries) == "unknown"
-
-
-def test_a_folder_without_a_record_is_named(tmp_path):
-    with pytest.raises(SystemExit, match=r"holds no run\.json"):
-        read_run(tmp_path)
-
-
 def test_the_packaged_models_carry_a_record_that_agrees_with_model_json():
     for folder in sorted(path.parent for path in MODELS.glob("*/model.json")):
         entries = read_run(folder)

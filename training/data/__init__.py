@@ -5,7 +5,6 @@ splits         which scenes and curves are held out: `splits.json`
 scenes         scene-linear photographs, split by scene
 linear_files   reads camera raw, OpenEXR and Radiance HDR
 import_scenes  adds photographs of your own to the scenes
-studio_lights  five of Blender's studio lights, which the repository holds
 curves         responses to draw from: DoRF, in-camera base curves, mixtures
 dorf           converts DoRF's own text
 families       draws responses of the families that are not measured: edited, film, linear, log

@@ -1,4 +1,4 @@
-"""Which scenes and which curves are held out: ``python -m training.data.splits --data DATA`` writes splits.json.
+"""Which scenes and which curves are held out: splits.json, which never changes, and the rules that it was made by.
 
 Scenes are split in `training.data.scenes`. Curves are held out by whole groups, because some curves of DoRF are nearly
 equal.
@@ -6,7 +6,6 @@ equal.
 
 from __future__ import annotations
 
-import argparse
 import json
 from pathlib import Path
 from typing import Any
@@ -15,7 +14,6 @@ import numpy as np
 from scipy.cluster.hierarchy import fcluster, linkage
 
 from crfnet_core.errors import CRFNetError
-from crfnet_core.files import atomic_write_text
 from crfnet_core.types import Float64Array, IndexArray
 from training.data.curves import DORF_FILE, read_dorf
 from training.data.scenes import SPLIT_SEED, split_scenes
@@ -83,34 +81,5 @@ def checked_splits(data: Path) -> dict[str, Any]:
     computed = compute_splits(data)
     differing = [name for name in splits if splits[name] != computed[name]]
     if differing:
-        raise CRFNetError(
-            f"{data}: {' and '.join(differing)} differ from {SPLITS_FILE.name}; restore the data, or write the splits"
-            " anew (python -m training.data.splits) and train every model again"
-        )
+        raise CRFNetError(f"{data}: {' and '.join(differing)} differ from {SPLITS_FILE.name}; restore the data")
     return splits
-
-
-def splits_text(splits: dict[str, Any]) -> str:
-    """Return the JSON text of splits, one entry a line."""
-    entries = []
-    for name, value in splits.items():
-        if isinstance(value, dict):
-            inner = ",\n".join(f"  {json.dumps(key)}: {json.dumps(item)}" for key, item in value.items())
-            entries.append(f" {json.dumps(name)}: {{\n{inner}\n }}")
-        else:
-            entries.append(f" {json.dumps(name)}: {json.dumps(value)}")
-    return "{\n" + ",\n".join(entries) + "\n}\n"
-
-
-def main() -> None:
-    """Write the splits."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
-    splits = compute_splits(parser.parse_args().data)
-    atomic_write_text(SPLITS_FILE, splits_text(splits), overwrite=True)
-    groups, held_out = max(splits["curve_groups"]) + 1, len(splits["held_out_curves"])
-    print(f"wrote {SPLITS_FILE.name}: {groups} groups of curves, {held_out} curves held out")
-
-
-if __name__ == "__main__":
-    main()

@@ -17,11 +17,10 @@ from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.network import DEFAULT_MODEL
-from training.data.studio_lights import LIGHTS_FOLDER
 from training.evaluation.models import Model
 from training.evaluation.plan import CONDITIONS
 from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation, Settings
-from training.evaluation.test_sets import bundled_test_set, dorf_test_set
+from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, dorf_test_set
 
 #: The protocols of --quick, its photographs, and how many of these are under stress.
 QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "p3"), 40, 5

@@ -197,7 +197,7 @@ class Evaluation:
             yield from sums.real_rows(protocol, cases, ways, seed=seed)
         yield from sums.origin_rows(protocol, cases, seed=seed)
         yield from sums.body_rows(protocol, cases, ways)
-        yield from sums.pooled_rows(protocol + POOLED, together[0], ways, seed=seed)
+        yield from sums.pooled_rows(protocol + POOLED, together[0], list(self._models), seed=seed)
 
     def _pooled(self, protocol: str, photographs: Sequence[RealPhotograph]) -> Cases:
         """Return the photographs that were estimated together, with these answers and the single ones."""

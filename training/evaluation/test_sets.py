@@ -10,16 +10,21 @@ from pathlib import Path
 import numpy as np
 from scipy.stats import norm
 
+from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
-from training.data.scenes import Scene, read_scene, split_scenes
+from training.data.scenes import BAND, Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
-from training.data.studio_lights import LIGHTS, LIGHTS_FOLDER, read_light
 from training.evaluation.baselines import constant_curves
 from training.synthesis.camera import TARGET_BRIGHTNESS, automatic_exposure, reference_luminance
+
+#: Five of Blender's studio lights (CC0), as Blender 4.5 stores them; their panoramas and SHA-256 are in the README.md
+#: there. Sunrise, sunset and night are left out, because the training data holds these panoramas.
+LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
+LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr")
 
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
 #: scenes: about that of the training scenes, each scaled to a geometric mean of 1.
@@ -91,8 +96,17 @@ def dorf_test_set(data: Path) -> TestSet:
 
 def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:
     """Return studio lights of Blender and responses made from formulas that come with the repository."""
-    scenes = tuple(SceneFile(Path(light.file).stem, "panorama", lights / light.file, True) for light in LIGHTS)
+    scenes = tuple(SceneFile(Path(light).stem, "panorama", lights / light, True) for light in LIGHTS)
     return TestSet(scenes, np.stack(list(formula_curves().values())))
+
+
+def read_light(path: Path) -> Scene:
+    """Return the middle rows of a studio light, as of a panorama; raise CRFNetError if the file is absent."""
+    if not path.is_file():
+        raise CRFNetError(f"{path}: is absent; restore it from the repository")
+    pixels = read_scene(path, is_panorama=True).pixels
+    low, high = (round(fraction * len(pixels)) for fraction in BAND)
+    return Scene.scaled(path.stem, pixels[low:high], is_panorama=True)
 
 
 def formula_curves() -> dict[str, Float64Array]:

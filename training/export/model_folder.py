@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import json
-from collections.abc import Sequence
 from pathlib import Path
 
 import torch
@@ -21,21 +20,15 @@ from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.splits import SPLITS_FILE
 from training.export.golden import assert_parity, write_golden
 from training.export.onnx_graph import OPSET, POOLING, Signature, export_onnx, rounded
-from training.network.model import KINDS, NetworkConfig, PhotographNet, ShippedNetwork
+from training.network.model import NetworkConfig, PhotographNet, ShippedNetwork
 from training.network.train import CHECKPOINT
 from training.provenance import RUN_FILE, Record, read_run, training_commit, write_json
 
 
-def load_network(run: Path, *, without: Sequence[str] = ()) -> ShippedNetwork:
-    """Return the network of a run, ready to infer, with the half-precision matrices that it ships with.
-
-    `run`: folder written by the training. `without`: kinds of features, of `KINDS`, that it does not see: to measure
-    what they are worth.
-    """
+def load_network(run: Path) -> ShippedNetwork:
+    """Return the network of a run, ready to infer, with the half-precision matrices that it ships with."""
     net = PhotographNet(NetworkConfig(**read_run(run)["recipe"]["network"]))
     net.load_state_dict(torch.load(run / CHECKPOINT, weights_only=True)["net"])
-    for kind in without:
-        getattr(net.embedding, kind).is_left_out = True
     return rounded(ShippedNetwork(net).eval())
 
 
@@ -94,12 +87,8 @@ def export_options(description: str | None) -> argparse.ArgumentParser:
 
 def main() -> None:
     """Export the network of a run."""
-    parser = export_options((__doc__ or "").splitlines()[0])
-    parser.add_argument(
-        "--without-kind", choices=KINDS, nargs="+", default=(), help="kinds of features that the network does not see"
-    )
-    options = parser.parse_args()
-    write_model(load_network(options.run, without=options.without_kind), POOLING, options)
+    options = export_options((__doc__ or "").splitlines()[0]).parse_args()
+    write_model(load_network(options.run), POOLING, options)
 
 
 if __name__ == "__main__":

@@ -44,22 +44,16 @@ class NetworkConfig:
     kind_dropout: float = 0.15
 
 
-#: The kinds of features, as `Embedding` names their layers.
-KINDS = ("levels", "edges", "equations", "candidates")
-
-
 class KindLayer(nn.Module):
     """One kind of features to a vector: normalization, kind dropout in training, and a dense layer.
 
     features: how many there are
     config: the sizes of the network
-
-    is_left_out: whether all features are set to 0, as training does at random: to measure what a kind is worth
     """
 
     def __init__(self, features: int, config: NetworkConfig) -> None:
         super().__init__()
-        self.kind_dropout, self.is_left_out = config.kind_dropout, False
+        self.kind_dropout = config.kind_dropout
         self.normalization = nn.BatchNorm1d(features, affine=False)
         self.dense = _dense(features, config)
 
@@ -70,8 +64,6 @@ class KindLayer(nn.Module):
 
     def drop_kind(self, features: Tensor) -> Tensor:
         """Return the features; in training, all of some rows are 0 so that the network relies on no kind alone."""
-        if self.is_left_out:
-            return torch.zeros_like(features)
         if not self.training:
             return features
         row = (len(features), *[1] * (features.ndim - 1))

@@ -82,13 +82,12 @@ class Shards:
 
     statistics, float16 (P, 4, LENGTH): of the windows, in `UNIT`s
     weights, float32 (P, 11): EMoR weights of the responses
-    curve_sets, folds, int8 (P,): `CurveSet` of the response, and fold of the scenes
+    curve_sets, int8 (P,): `CurveSet` of the response
     """
 
     statistics: Tensor
     weights: Tensor
     curve_sets: Tensor
-    folds: Tensor
 
     @property
     def families(self) -> Tensor:
@@ -140,16 +139,15 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
     weights: list[np.ndarray] = []
-    sets: list[tuple[int, int]] = []
+    sets: list[int] = []
     while len(rows) < SHARD:
         for photo in source.draw(rng)[: SHARD - len(rows)]:
             windows = photo.windows / np.float32(255)
             rows.append((np.stack([window_statistics(w) for w in windows]) / UNIT).astype(np.float16))
             weights.append(EmorBasis.load().project(photo.curve).astype(np.float32))
-            sets.append((photo.curve_set, photo.fold))
+            sets.append(photo.curve_set)
     with atomic_write(path) as temporary:
-        curve_sets, folds = np.array(sets, np.int8).T
-        np.savez(temporary, statistics=np.stack(rows), weights=np.stack(weights), curve_sets=curve_sets, folds=folds)
+        np.savez(temporary, statistics=np.stack(rows), weights=np.stack(weights), curve_sets=np.array(sets, np.int8))
     return path
 
 
@@ -179,7 +177,7 @@ def read_shards(folder: Path, split: str) -> Shards:
 
 def _joined(shards: Sequence[Mapping[str, np.ndarray]], name: str) -> Tensor:
     """Return an array of all shards, (P, ...), filled one by one: to concatenate them takes twice the memory."""
-    first, count = shards[0][name], sum(len(shard["folds"]) for shard in shards)
+    first, count = shards[0][name], sum(len(shard["weights"]) for shard in shards)
     joined, end = torch.empty((count, *first.shape[1:]), dtype=torch.from_numpy(first).dtype), 0
     for shard in shards:
         part = torch.from_numpy(shard[name])

@@ -19,7 +19,6 @@ from training.network.moving_average import moving_average, resume_average
 from training.network.shards import CurveSet, Shards, read_shards, shard_files
 from training.network.start import start_from, start_record
 from training.provenance import data_record, record_run
-from training.synthesis.photographs import FOLDS
 
 #: The file of the last checkpoint in the folder of a run.
 CHECKPOINT = "last.pt"
@@ -49,8 +48,6 @@ class TrainingConfig:
         random
     without_held_out: whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds
         out
-    without_fold: the fold of the training scenes to leave out and to validate on, in place of the validation
-        scenes
     mixed: whether to compute in bfloat16 where that is safe; slow on processors that emulate it
     seed: of the initial weights and of the order of the photographs
     """
@@ -63,7 +60,6 @@ class TrainingConfig:
     averaged_steps: float = 500.0
     all_windows: float = 0.6
     without_held_out: bool = False
-    without_fold: int | None = None
     mixed: bool = True
     seed: int = 1
 
@@ -153,9 +149,6 @@ def _split(shards: Path, config: TrainingConfig) -> tuple[Shards, Shards]:
     photographs, held_out = read_shards(shards, "train"), read_shards(shards, "validation")
     if config.without_held_out:
         photographs, held_out = (part.only(part.curve_sets != CurveSet.HELD_OUT) for part in (photographs, held_out))
-    if config.without_fold is not None:
-        is_left_out = photographs.folds == config.without_fold
-        photographs, held_out = photographs.only(~is_left_out), photographs.only(is_left_out)
     return photographs, held_out
 
 
@@ -226,7 +219,6 @@ def main() -> None:
         help="steps that the average of the weights reaches back; 1 for none",
     )
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
-    parser.add_argument("--without-fold", type=int, choices=range(FOLDS), help="leave out and validate on these scenes")
     parser.add_argument("--dropout", type=float, default=sizes.dropout)
     parser.add_argument("--width", type=int, default=sizes.width)
     parser.add_argument(

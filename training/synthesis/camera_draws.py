@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 from enum import StrEnum
 
 import numpy as np
@@ -30,28 +30,14 @@ class FrameKind(StrEnum):
     SCALED = "scaled"
 
 
-@dataclass(frozen=True)
-class CameraShares:
-    """Fractions of the training photographs of each `FrameKind`; their sum is 1."""
-
-    plain: float = 0.7
-    native: float = 0.14
-    sampled: float = 0.04
-    scaled: float = 0.12
-
-    @classmethod
-    def only(cls, kind: FrameKind) -> CameraShares:
-        """Return the shares of photographs that are all of one kind."""
-        return cls(**{field.name: float(field.name == kind) for field in fields(cls)})
-
-    def draw(self, rng: np.random.Generator) -> FrameKind:
-        """Return a random kind."""
-        kinds = list(FrameKind)
-        return kinds[rng.choice(len(kinds), p=[getattr(self, kind) for kind in kinds])]
+#: Fractions of the training photographs of each kind.
+KIND_FRACTIONS = {FrameKind.PLAIN: 0.7, FrameKind.NATIVE: 0.14, FrameKind.SAMPLED: 0.04, FrameKind.SCALED: 0.12}
 
 
-#: The shares of training.
-MIXED = CameraShares()
+def draw_kind(rng: np.random.Generator) -> FrameKind:
+    """Return a random kind of frame."""
+    kinds = list(KIND_FRACTIONS)
+    return kinds[rng.choice(len(kinds), p=list(KIND_FRACTIONS.values()))]
 
 
 @dataclass(frozen=True)

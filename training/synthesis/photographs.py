@@ -13,7 +13,7 @@ from training.data.curves import IRRADIANCE, DrawsResponses
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
-from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
+from training.synthesis.camera_draws import WINDOWS, FrameKind, Frames, draw_development, draw_kind
 from training.synthesis.development import develop, is_gray
 from training.synthesis.resampling import THUMBNAIL_STEP, AffineResampling
 from training.synthesis.unusual import UnusualKind, random_exposure, unusual_windows
@@ -24,8 +24,7 @@ TRIED = 2
 #: Codes, of 256, that the best window of a training photograph fills at least.
 LEAST_FILLED = 120
 
-#: Three-fold cross-validation over scenes: each photograph uses scenes of one fold only. A network trained without a
-#: fold says of that fold's photographs what it would say of new scenes.
+#: Each photograph uses scenes of one of so many folds; training uses all of them.
 FOLDS = 3
 
 #: Fractions of photographs: half of the windows show another scene; windows are resampled at any angle and scale; two
@@ -67,13 +66,11 @@ class TrainingPhotograph:
     windows, uint8 (4, 227, 227, 3): code values
     curve, (1024,): the response
     curve_set: which of the source's `curve_sets` the response is from
-    fold: fold of the scenes
     """
 
     windows: Uint8Array
     curve: Float64Array
     curve_set: int
-    fold: int
 
 
 @dataclass(frozen=True)
@@ -86,7 +83,6 @@ class PhotographSource:
     luminance, (N,): see `training.synthesis.camera.automatic_exposure`
     cameras: cameras that take the same windows of a scene
     unusual: number of a set -> kinds of pictures that no response explains, in place of photographs with its responses
-    shares: fractions of the photographs by what their cameras do
     """
 
     scenes: list[Scene]
@@ -95,12 +91,11 @@ class PhotographSource:
     luminance: Float32Array
     cameras: int = 3
     unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
-    shares: CameraShares = MIXED
 
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:
         """Return up to `cameras` photographs of the same windows."""
         fold = int(rng.integers(min(FOLDS, len(self.scenes))))
-        kind = self.shares.draw(rng)
+        kind = draw_kind(rng)
         frames = Frames.draw(kind, rng)
         light = self._light(self.scenes[fold::FOLDS], frames, rng)
         develops = kind is not FrameKind.PLAIN
@@ -111,7 +106,7 @@ class PhotographSource:
         contrasted, contrast = CONTRASTS[develops]
         light = recolor(light, rng, cast=CASTS[develops])
         light = relight(light, rng, contrasted=contrasted, contrast=contrast)
-        drawn = (self._photograph(light, kind, fold, rng) for _ in range(self.cameras))
+        drawn = (self._photograph(light, kind, rng) for _ in range(self.cameras))
         return [photo for photo in drawn if photo.curve_set in self.unusual or _fills_codes(photo)]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
@@ -131,13 +126,11 @@ class PhotographSource:
             light = composited(light, _scene_windows(scenes[rng.integers(len(scenes))], count, side, rng), rng)
         return light
 
-    def _photograph(
-        self, light: Float32Array, kind: FrameKind, fold: int, rng: np.random.Generator
-    ) -> TrainingPhotograph:
+    def _photograph(self, light: Float32Array, kind: FrameKind, rng: np.random.Generator) -> TrainingPhotograph:
         """Return the windows as a random camera records them."""
         curve, chosen = self.draw_curve(rng)
         if chosen in self.unusual:
-            return _unusual_photograph(light, self.unusual[chosen], chosen, fold, rng)
+            return _unusual_photograph(light, self.unusual[chosen], chosen, rng)
         irradiance = light * np.float32(self._exposure(light, curve, kind, rng))
         if kind is FrameKind.PLAIN:
             capture = Capture() if rng.random() < CLEAN else Capture.draw(rng)
@@ -146,7 +139,7 @@ class PhotographSource:
                 windows = np.repeat(windows[..., 1:2], 3, axis=-1)
         else:
             windows = develop(irradiance, curve, draw_development(kind, rng), rng, windows=WINDOWS)
-        return TrainingPhotograph(windows, curve, chosen, fold)
+        return TrainingPhotograph(windows, curve, chosen)
 
     def _exposure(self, light: Float32Array, curve: Float64Array, kind: FrameKind, rng: np.random.Generator) -> float:
         """Return the exposure: a random factor times s_crf, or one that saturates a high percentile of the windows."""
@@ -162,13 +155,13 @@ def _fills_codes(photo: TrainingPhotograph) -> bool:
 
 
 def _unusual_photograph(
-    light: Float32Array, kinds: Sequence[UnusualKind], curve_set: int, fold: int, rng: np.random.Generator
+    light: Float32Array, kinds: Sequence[UnusualKind], curve_set: int, rng: np.random.Generator
 ) -> TrainingPhotograph:
     """Return windows of a picture of one of the kinds; the response is a mere stand-in, the identity."""
     windows = _parts(light, rng)
     kind = kinds[int(rng.integers(len(kinds)))]
     codes = unusual_windows(kind, windows, random_exposure(windows, rng), rng)
-    return TrainingPhotograph(codes, IRRADIANCE, curve_set, fold)
+    return TrainingPhotograph(codes, IRRADIANCE, curve_set)
 
 
 def _parts(light: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -1,11 +1,9 @@
 """The metadata of real photographs from their list."""
 
-import pytest
-
 from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.crafted_files import jpeg
-from training.data.real.case_metadata import is_original, metadata_of_case
+from training.data.real.case_metadata import metadata_of_case
 
 ROW = {
     "exif_make": "NIKON CORPORATION",
@@ -35,8 +33,3 @@ def test_fields_may_be_empty():
     metadata = metadata_of_case(ROW | {"exif_make": "", "exif_model": "", "exif_software": "", "iso": ""})
     assert not metadata.has_camera
     assert metadata.iso is None
-
-
-@pytest.mark.parametrize(("file", "expected"), [("photos/a.webp", False), ("photos/a.jpg", True)])
-def test_the_larger_ones_are_no_originals(file, expected):
-    assert is_original(ROW | {"file": file}) is expected

@@ -11,11 +11,9 @@ from training.data.families import (
     DEVELOPED_HEADROOM,
     LINEAR_POWERS,
     SHOULDER,
-    EditedResponses,
     ResponseFamilies,
     developed,
     edited,
-    log_like,
     nearly_linear,
     with_headroom,
 )
@@ -76,15 +74,3 @@ def test_nearly_linear_responses_are_powers_near_1():
     assert powers.min() >= LINEAR_POWERS[0]
     assert powers.max() <= LINEAR_POWERS[1]
     np.testing.assert_allclose(drawn, UNIFORM ** powers[:, None], atol=1e-9)
-
-
-def test_log_responses_lift_the_shadows_more_than_cameras_do():
-    drawn = log_like(200, np.random.default_rng(0))
-    assert np.median(drawn[:, 20]) > UNIFORM[20] ** 0.45
-    assert (drawn[:, 20] > 0.05).all()
-
-
-def test_single_responses_come_from_the_same_draws():
-    rng = np.random.default_rng(3)
-    source = CurveSource(nearly_linear(3, rng), (), camera_fraction=0)
-    assert EditedResponses(source).draw(rng).shape == (1024,)

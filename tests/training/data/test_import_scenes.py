@@ -34,14 +34,6 @@ def test_a_name_is_only_replaced_when_asked(tmp_path, out, capsys):
     assert read_image(out / "same.exr").shape == (230, 240, 3)
 
 
-def test_a_name_of_the_manifest_is_taken_though_its_file_is_away(tmp_path, out):
-    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
-    import_scene(path, out)
-    (out / "ramp.exr").unlink()
-    with pytest.raises(PhotoError, match="is there already"):
-        import_scene(path, out)
-
-
 def test_a_file_of_the_folder_itself_is_refused(tmp_path, out):
     import_scene(write_dng(tmp_path / "ramp.dng", chart(ramp(1.0))), out)
     with pytest.raises(PhotoError, match="is a file of the folder"):
@@ -63,13 +55,6 @@ def test_another_manifest_is_refused(tmp_path, out):
     with pytest.raises(PhotoError, match=r"needs the columns file, kind, width, .*, and no more; found name, split"):
         import_scene(write_dng(tmp_path / "new.dng", chart(ramp(1.0))), out)
     assert [path.name for path in out.iterdir()] == ["manifest.csv"]
-
-
-def test_a_folder_that_cannot_be_made_is_refused(tmp_path, capsys):
-    (tmp_path / "file").write_text("no folder")
-    path = write_dng(tmp_path / "new.dng", chart(ramp(1.0)))
-    assert main([str(path), "--out", str(tmp_path / "file" / "linear")]) == 2
-    assert "linear: cannot be made (Not a directory); choose another folder" in capsys.readouterr().err
 
 
 def test_two_files_of_one_name_are_refused(tmp_path, out, capsys):

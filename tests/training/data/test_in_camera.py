@@ -5,7 +5,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
-from training.data.in_camera import COMPONENTS, KINDS, InCameraResponses, log_irradiance, response_of
+from training.data.in_camera import KINDS, InCameraResponses, log_irradiance, response_of
 from training.data.real.bodies import Body
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -67,15 +67,3 @@ def test_one_odd_body_hardly_moves_the_center_of_its_kind(bodies):
     after = InCameraResponses.of([*bodies, body("odd", "camera", 0.9)]).centers["camera"]
     odd = log_irradiance(ResponseCurve.from_samples(UNIFORM**0.9))
     assert abs(after[512] - before[512]) < 0.1 * abs(odd[512] - before[512])
-
-
-def test_a_kind_without_bodies_has_the_center_of_all(bodies):
-    found = InCameraResponses.of([each for each in bodies if each.kind != "phone"])
-    expected = np.mean([found.centers["compact"], found.centers["camera"]], axis=0)
-    np.testing.assert_allclose(found.centers["phone"], expected, atol=0.05)
-
-
-def test_few_bodies_still_give_a_distribution(bodies):
-    found = InCameraResponses.of(bodies[:2])
-    assert len(found.components) <= COMPONENTS
-    assert np.isfinite(found.draw("compact", 3, np.random.default_rng(0))).all()

@@ -1,5 +1,4 @@
 import numpy as np
-import OpenImageIO as oiio
 import pytest
 
 pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
@@ -9,7 +8,6 @@ from tests.helpers.images import read_image
 from tests.helpers.linear_pictures import SWATCH, chart, manifest, ramp, swatch_means, write_dng, write_float
 from training.data.import_scenes import import_scene, main
 from training.data.linear_files import automatic_scale, linear_scene
-from training.data.scenes import area_averaged
 
 
 @pytest.mark.parametrize(("camera", "pattern"), [("one", "RGGB"), ("two", "BGGR"), ("one", "GRBG")])
@@ -48,13 +46,6 @@ def test_double_the_light_is_double_the_value_and_white_clips_at_1(tmp_path, out
     np.testing.assert_allclose(values[2], np.minimum(1, 4 * values[0]), rtol=0.005, atol=2 * dark)
 
 
-def test_a_saturated_color_clips_channel_by_channel_below_or_at_1(tmp_path, out):
-    import_scene(write_dng(tmp_path / "red.dng", chart([[4.0, 0.4, 0.2]])), out)
-    means = swatch_means(read_image(out / "red.exr"), SWATCH)[0, 0]
-    assert means[0] == 1
-    assert (means[1:] < 1).all()
-
-
 def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out, capsys):
     scene = chart(ramp(1.0), rows=30, columns=40)  # 960 x 1280
     path = write_dng(tmp_path / "large.dng", scene)
@@ -77,32 +68,11 @@ def test_raw_is_averaged_in_linear_light_to_a_shorter_side_of_454(tmp_path, out,
     )
 
 
-def test_raw_stays_as_stored_whatever_its_orientation(tmp_path, out):
-    row = import_scene(write_dng(tmp_path / "turned.dng", chart(ramp(1.0)), orientation=6), out)
-    assert (row.width, row.height) == (320, 256)
-
-
-def test_the_same_file_gives_the_same_bytes(tmp_path):
-    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
-    contents = []
-    for folder in (tmp_path / "a", tmp_path / "b"):
-        import_scene(path, folder)
-        contents.append([(file.name, file.read_bytes()) for file in sorted(folder.iterdir())])
-    assert contents[0] == contents[1]
-    assert [name for name, _ in contents[0]] == ["manifest.csv", "ramp.exr"]
-    assert "DateTime" not in oiio.ImageBuf(str(tmp_path / "a" / "ramp.exr")).spec().serialize("text", "detailed")
-
-
 @pytest.mark.parametrize(
     ("shape", "scale"), [((227, 900), 1), ((907, 4000), 1), ((908, 1000), 2), ((4000, 6000), 8), ((1361, 1361), 2)]
 )
 def test_automatic_scale(shape, scale):
     assert automatic_scale(*shape) == scale
-
-
-def test_area_averaging_drops_the_incomplete_rest():
-    samples = np.arange(5 * 7).reshape(5, 7, 1).repeat(3, axis=2)
-    np.testing.assert_array_equal(area_averaged(samples, 2)[:, :, 1], [[4, 6, 8], [18, 20, 22]])
 
 
 def test_exr_is_scaled_by_a_power_of_two_without_negative_values(tmp_path):
@@ -115,14 +85,6 @@ def test_exr_is_scaled_by_a_power_of_two_without_negative_values(tmp_path):
     assert pixels[0, 0].tolist() == [0, 0, 3 / 128]
     assert pixels[1, 1].tolist() == [65000 // 32 * 32] * 3  # the steps of half floats there
     assert notes == ["scale=2^-7", "4.6e-06 negative samples set to 0", "1 px clipped at 65000 after scale"]
-
-
-def test_hdr_is_averaged_in_linear_light(tmp_path):
-    light = np.full((460, 460, 3), 0.25)
-    light[::2, ::2] = 1.0
-    pixels, notes = linear_scene(write_float(tmp_path / "a.hdr", light), scale=2)
-    np.testing.assert_array_equal(pixels, np.full((230, 230, 3), 0.4375 / 2, np.float16))
-    assert notes == ["scale=2^-1", "area-averaged 2x2 from 460x460"]
 
 
 def test_gray_exr_has_three_equal_channels(tmp_path, out):

@@ -1,20 +1,17 @@
 import csv
 import json
 
-import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
 from training.data.manifest import (
-    MANIFEST_FILE,
     NO_LICENCE,
     ManifestRow,
     differences,
     main,
     manifest_rows,
-    manifest_text,
     read_manifest,
     training_digest,
 )
@@ -114,12 +111,3 @@ def test_the_committed_manifest_splits_the_scenes_as_splits_json():
             listed[row.split].add(row.file.removeprefix("linear/"))
     splits = json.loads(SPLITS_FILE.read_text())["scenes"]
     assert listed == {split: set(scenes) for split, scenes in splits.items()}
-
-
-def test_the_committed_manifest_is_whole_and_as_the_command_writes_it():
-    rows = read_manifest()
-    assert manifest_text(sorted(rows)) == MANIFEST_FILE.read_text()
-    assert {row.file for row in rows} >= {DORF_FILE, EMOR_FILE, BASE_CURVES_FILE}
-    assert all(row.source and row.licence and len(row.sha256) == 64 for row in rows)
-    kinds, counts = np.unique([row.kind for row in rows], return_counts=True)
-    assert dict(zip(kinds, counts, strict=True))["scene"] == 126

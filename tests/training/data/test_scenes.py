@@ -1,13 +1,10 @@
-from pathlib import Path
-
 import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
-from tests.helpers.images import write_image
-from training.data.scenes import dithered, read_scene, read_scenes, split_scenes
+from training.data.scenes import dithered, read_scenes, split_scenes
 
 
 def test_dither_stays_within_half_a_step(rng):
@@ -45,10 +42,3 @@ def test_a_split_without_scenes_says_so(tmp_path):
     (tmp_path / "manifest.csv").write_text("file,kind\none.exr,photograph\n")
     with pytest.raises(CRFNetError, match="none is left for the split validation"):
         read_scenes(tmp_path, "validation")
-
-
-def test_a_scene_is_scaled_to_a_mean_of_1(tmp_path, scene):
-    read = read_scene(write_image(Path(tmp_path) / "made.exr", scene.pixels), False)
-    luminance = read.pixels @ np.array([0.2126, 0.7152, 0.0722])
-    assert np.exp(np.log(luminance).mean()) == pytest.approx(1, rel=1e-4)
-    assert read.name == "made"

@@ -7,7 +7,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from training.data import splits
-from training.data.splits import SPLITS_FILE, curve_groups, held_out_curves, splits_text
+from training.data.splits import SPLITS_FILE, curve_groups, held_out_curves
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -47,10 +47,6 @@ def test_the_splits_of_the_repository_are_whole():
     scenes = [name for split in kept["scenes"].values() for name in split]
     assert len(scenes) == len(set(scenes)) == 126
     assert len(kept["scenes"]["test"]) == 20
-
-
-def test_the_file_is_written_as_it_is_read():
-    assert splits_text(json.loads(SPLITS_FILE.read_text())) == SPLITS_FILE.read_text()
 
 
 def test_data_split_otherwise_is_refused(monkeypatch, tmp_path):

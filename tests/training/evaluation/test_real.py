@@ -265,7 +265,7 @@ def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):
 
 def test_a_file_that_lost_its_exif_keeps_the_size_of_its_picture_only(root):
     taken = FileMetadata(width=6000, height=4000, make="Canon", model="Canon EOS 6D", software="Adobe Photoshop")
-    photo = replace(read_photo(root / "tests" / "data" / "plate.jpg"), metadata=taken)
+    photo = read_photo(root / "tests" / "data" / "plate.jpg").with_metadata(taken)
     height, width = photo.pixels.shape[:2]
     assert without_exif(photo).metadata == FileMetadata(width=width, height=height, file_format="WebP")
     assert without_exif(photo).pixels is photo.pixels

@@ -78,13 +78,6 @@ def test_weighted_quantiles_are_those_of_repeated_values(rng):
     assert quantile == repeated[int(np.ceil(0.9 * len(repeated))) - 1]
 
 
-def test_the_same_seed_gives_the_same_intervals(rng):
-    values = rng.uniform(0, 1, 12)
-    first, second, other = (Resampling.of(*crossed(3, 4), seed=seed).mean(values) for seed in (7, 7, 8))
-    assert first == second
-    assert first != other
-
-
 def test_figures_are_those_of_the_metrics(rng):
     model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
     parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))

@@ -46,8 +46,8 @@ def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stat
 ):
     asked = []
 
-    def estimate(photo, *, network, device):
-        asked.append((photo.metadata, device))
+    def estimate(photo, *, network, options):
+        asked.append((photo.metadata, options.device))
         return SimpleNamespace(verdict=Verdict.GOOD if "solarized" in str(photo.path) else Verdict.DO_NOT_TRUST)
 
     monkeypatch.setattr("training.evaluation.measure.unusual.estimate_response", estimate)

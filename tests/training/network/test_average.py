@@ -4,7 +4,7 @@ import pytest
 
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
-from training.network.average import average, weighted_mean
+from training.network.average import average
 from training.network.start import start_record
 
 RECORD = {
@@ -38,11 +38,6 @@ def test_a_run_and_one_that_went_on_from_it_are_related(tmp_path):
     second = run_of(tmp_path / "b", 3.0, start=start_record(first / "last.pt"))
     net = torch.load(average([second, first], [1, 1], tmp_path / "mean"), weights_only=True)["net"]
     assert net["weight"].tolist() == [2.0]
-
-
-def test_one_network_is_its_own_mean():
-    state = {"weight": torch.rand(3, 2)}
-    assert torch.equal(weighted_mean([state], [1.0])["weight"], state["weight"])
 
 
 @pytest.mark.parametrize("changed", [{"start": "random weights"}, {"recipe": {"network": {"width": 3}}}])

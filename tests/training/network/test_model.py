@@ -13,10 +13,8 @@ from training.network.features import (
     Features,
 )
 from training.network.model import (
-    KINDS,
     LARGEST_RAW,
     WEIGHT_UNITS,
-    Embedding,
     Head,
     KindLayer,
     NetworkConfig,
@@ -58,19 +56,6 @@ def test_training_leaves_out_kinds_of_features_of_some_rows_only():
     assert all((rows.all(-1).all(-1) == rows.any(-1).any(-1)).all() for rows in left_out)
     assert left_out[0].float().mean() == pytest.approx(0.5, abs=0.1)
     assert not (layer.eval().drop_kind(torch.ones(400, 5)) == 0).any()
-
-
-@pytest.mark.parametrize("kind", KINDS)
-def test_a_kind_that_is_left_out_changes_nothing(statistics, kind):
-    torch.manual_seed(0)
-    embedding = Embedding(CONFIG).eval()
-    layer = getattr(embedding, kind)
-    before = embedding(statistics)
-    layer.is_left_out = True
-    after = embedding(statistics)
-    torch.nn.init.normal_(layer.dense[0].weight)
-    assert not torch.equal(before, after)
-    assert torch.equal(embedding(statistics), after)
 
 
 def test_conjugate_gradients_solve():

@@ -12,7 +12,6 @@ from training.network import train as training_run
 from training.network.model import NetworkConfig
 from training.network.shards import CurveSet, read_shards
 from training.network.train import TrainingConfig, train
-from training.synthesis.photographs import FOLDS
 
 SIZES = NetworkConfig(width=32, dropout=0.1)
 RECIPE = TrainingConfig(epochs=4, batch=32, learning_rate=3e-3, averaged_steps=2)
@@ -32,9 +31,9 @@ def shards(tmp_path_factory):
         parts["histogram"][:] = np.exp(np.outer(weights[:, 0], np.linspace(-1, 1, LEVELS)))[:, None, None]
         assert (statistics[0, 0, : 3 * LEVELS] == parts["histogram"][0, 0].ravel()).all()
         sets = (np.arange(256) % 3).astype(np.int8)
-        path, folds = folder / f"{split}_{number:04d}.npz", (np.arange(256) % FOLDS).astype(np.int8)
+        path = folder / f"{split}_{number:04d}.npz"
         rows = {"statistics": statistics, "weights": weights.astype(np.float32)}
-        np.savez(path, **rows, curve_sets=sets, folds=folds)
+        np.savez(path, **rows, curve_sets=sets)
     return folder
 
 
@@ -93,19 +92,6 @@ def test_held_out_curves_can_be_left_out(shards, tmp_path):
     settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]
     assert settings["photographs"] == sum(n % 3 != CurveSet.HELD_OUT for n in range(256)) * 2 == 342
     assert settings["training"]["without_held_out"]
-
-
-def test_a_fold_of_scenes_can_be_left_out_and_validated_on(shards, tmp_path):
-    train(shards, tmp_path / "fold", replace(RECIPE, epochs=1, without_fold=1), SIZES)
-    settings = json.loads((tmp_path / "fold" / "run.json").read_text())["recipe"]
-    assert settings["photographs"] == sum(n % FOLDS != 1 for n in range(256)) * 2
-    train(shards, tmp_path / "all", replace(RECIPE, epochs=1), SIZES)
-    assert read_log(tmp_path / "fold") != read_log(tmp_path / "all")
-
-
-def test_absent_shards_are_named(tmp_path):
-    with pytest.raises(FileNotFoundError, match="no shards of the split train"):
-        read_shards(tmp_path, "train")
 
 
 def test_photographs_of_all_shards_are_read_in_order(shards):

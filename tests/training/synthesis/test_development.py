@@ -7,7 +7,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.synthesis.camera import apply_response
-from training.synthesis.camera_draws import MIXED, WINDOWS, CameraShares, FrameKind, Frames, draw_development
+from training.synthesis.camera_draws import KIND_FRACTIONS, WINDOWS, FrameKind, Frames, draw_development, draw_kind
 from training.synthesis.development import Development, ToneMapping, develop, hue_kept, looked_up, point_sampled
 
 CURVE = np.linspace(0, 1, 1024) ** 0.45
@@ -98,10 +98,8 @@ def test_glare_brightens_the_dark(light):
     assert veiled.min() > bare.min()
 
 
-def test_shares_are_fractions_of_the_kinds():
-    assert sum(getattr(MIXED, kind) for kind in FrameKind) == pytest.approx(1)
+def test_kinds_of_frames_have_their_fractions():
     rng = np.random.default_rng(0)
-    drawn = [MIXED.draw(rng) for _ in range(400)]
-    for kind in FrameKind:
-        assert np.mean([one is kind for one in drawn]) == pytest.approx(getattr(MIXED, kind), abs=0.08)
-        assert CameraShares.only(kind).draw(rng) is kind
+    drawn = [draw_kind(rng) for _ in range(400)]
+    for kind, fraction in KIND_FRACTIONS.items():
+        assert np.mean([one is kind for one in drawn]) == pytest.approx(fraction, abs=0.08)

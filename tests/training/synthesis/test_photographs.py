@@ -5,22 +5,13 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.curves import CurveSource
-from training.data.scenes import Scene
 from training.synthesis import augmentation
 from training.synthesis.augmentation import composited, recolor, relight
 from training.synthesis.camera import reference_luminance
 from training.synthesis.camera_draws import WINDOWS
-from training.synthesis.photographs import FOLDS, LEAST_FILLED, ONE_CHANNEL, PhotographSource
+from training.synthesis.photographs import LEAST_FILLED, ONE_CHANNEL, PhotographSource
 
 UNIFORM = np.linspace(0, 1, 1024)
-
-
-@pytest.fixture
-def scene():
-    """Smooth light over many stops, with texture."""
-    rng, (y, x) = np.random.default_rng(5), np.mgrid[:300, :500] / 100
-    light = np.exp(np.sin(3 * x) + np.cos(2 * y) + 0.3 * rng.standard_normal((300, 500)))
-    return Scene("made", (light[:, :, None] * [1.0, 0.8, 0.6]).astype(np.float32), False)
 
 
 @pytest.fixture
@@ -63,19 +54,6 @@ def test_most_photographs_of_gray_scenes_have_equal_channels_also_with_noise(sou
     photos = [photo for seed in range(20) for photo in source.draw(np.random.default_rng(seed))]
     is_equal = [np.ptp(photo.windows, axis=-1).max() == 0 for photo in photos]
     assert ONE_CHANNEL - 0.1 < np.mean(is_equal) < 0.95
-
-
-def test_a_photograph_shows_scenes_of_its_fold_only(scene):
-    """Scenes of one color each, by fold; the augmentation keeps which is the brightest channel as a rule."""
-    colors = np.eye(3, dtype=np.float32) * 0.9 + 0.1
-    scenes = [Scene(str(n), scene.pixels[:, :, :1] * colors[n % FOLDS], False) for n in range(2 * FOLDS)]
-    sets = (CurveSource(UNIFORM[None] ** 0.5, (), camera_fraction=0, plain_fraction=1),)
-    source = PhotographSource(scenes, sets, (1.0,), reference_luminance(scenes), cameras=1)
-    photos = [photo for seed in range(12) for photo in source.draw(np.random.default_rng(seed))]
-    assert {photo.fold for photo in photos} == set(range(FOLDS))
-    for photo in photos:
-        means = photo.windows.mean(axis=(1, 2))
-        assert np.ptp(means, axis=1).max() < 1 or (means.argmax(axis=1) == photo.fold).mean() >= 0.75
 
 
 def test_a_composited_window_shows_both_and_mixes_them_at_the_border():

@@ -10,7 +10,6 @@ from typing import Any
 
 from crfnet_core.files import atomic_write_text
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
-from training.evaluation.measure.figures import ERRORS
 from training.evaluation.report import paper
 from training.evaluation.report.document import Report, ReportRow, value
 
@@ -55,6 +54,9 @@ WIDTH = 120
 
 #: Figures that are shown with their interval, by the end of their names.
 WITH_INTERVAL = ("E_est mean", "shape mean", "partial mean", "difference", "correlation")
+
+#: Baselines that report.json has and these tables have not.
+HIDDEN = ("sRGB", "Rec.709", "geometric median curve", "oracle: EMoR, 1 component")
 
 ERROR_FIGURES = {
     "E_est": "E_est mean",
@@ -121,13 +123,13 @@ SECTIONS = (
         (
             Listed(("P4 both",), ERROR_FIGURES),
             Crossed(tuple(f"P4 {folder}{caution}" for folder in FOLDERS for caution in ("", ", with caution"))),
-            Crossed(("P4 both by kind", "P4 both by file")),
+            Crossed(("P4 both by kind",)),
         ),
     ),
     Section(
         "P4: differences",
         "The first model, as users ask it, less each other row.",
-        (Listed(("P4 both",), {error: f"{error} difference" for error in ERRORS}),),
+        (Listed(("P4 both",), {error: f"{error} difference" for error in ("E_est", "shape")}),),
     ),
     Section(
         "P4: several photographs of one body",
@@ -139,15 +141,15 @@ SECTIONS = (
         'Refused is the verdict "do not trust"; far off is an accepted answer with an E_est above 3'
         " or a shape error above 0.4 stop. Weights: the correlation over bodies of true and estimated EMoR weights.",
         (
-            Listed(("P4 both", "P4 both, with caution"), {name: name for name in ("refused", "far off")}),
+            Listed(("P4 both, with caution",), {name: name for name in ("refused", "far off")}),
             Listed(("P4 both",), {f"weight {k}": f"weight {k} correlation" for k in (1, 2, 3)}),
         ),
     ),
     Section(
         "P5: reliability of the uncertainty",
-        'Stated and found error, of E_est and then of the shape. "Gain" is 1 if rejecting the most uncertain answers'
-        " first is as good as rejecting the worst first, and 0 if it is as good as chance.",
-        tuple(Listed((f"P5 {error}",), STATED, ("P0", "P2", "P4 both")) for error in ("E_est", "shape")),
+        'Stated and found E_est. "Gain" is 1 if rejecting the most uncertain answers first is as good as rejecting the'
+        " worst first, and 0 if it is as good as chance.",
+        (Listed(("P5 E_est",), STATED, ("P0", "P2", "P4 both")),),
     ),
     Section(
         "P6: pictures that no response explains",
@@ -184,15 +186,21 @@ def markdown_table(header: Sequence[str], rows: Iterable[Sequence[str]]) -> str:
 def _table(report: Report, table: Listed | Crossed) -> str:
     """Return a table in Markdown, empty where the report has no such figures."""
     rows = [row for name in table.tables for row in report.table(name)]
-    return _listed(rows, table) if isinstance(table, Listed) else _crossed(rows, table, tuple(report.models))
+    models = tuple(report.models)
+    return _listed(rows, table, models) if isinstance(table, Listed) else _crossed(rows, table, models)
 
 
-def _listed(rows: Sequence[ReportRow], table: Listed) -> str:
-    """Return tables, one for each group, with a row for each estimator that has the first figure."""
-    first = next(iter(table.figures.values()))
+def _listed(rows: Sequence[ReportRow], table: Listed, models: tuple[str, ...]) -> str:
+    """Return tables, one for each group, with a row for each estimator that has the first figure.
+
+    Of models after the first, only the answers with the file's metadata are listed.
+    """
+    others = [f"{model}, {way}" for model in models[1:] for way in ("EXIF", "metadata")]
+    first, unlisted = next(iter(table.figures.values())), (*HIDDEN, *others)
     groups: dict[str, list[list[str]]] = {}
     for row in rows:
-        if first in row and (not table.groups or row["group"] in table.groups):
+        is_chosen = first in row and (not table.groups or row["group"] in table.groups)
+        if is_chosen and not row["estimator"].startswith(unlisted):
             cells = [row["estimator"], *(_cell(name, row.get(name)) for name in table.figures.values())]
             groups.setdefault(f"{_name(row)}: {_counts(row)}", []).append(cells)
     return "\n".join(markdown_table([place, *table.figures], cells) for place, cells in groups.items())

@@ -85,10 +85,10 @@ def body_rows(protocol: str, cases: Cases, ways: Sequence[str]) -> Iterator[Repo
             yield _row(f"{protocol} by body", first["body"], name, part, figures)
 
 
-def pooled_rows(table: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
+def pooled_rows(table: str, cases: Cases, models: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
     """Yield the figures of the bodies of which at least so many photographs were estimated together."""
     counts = Counter(row["body key"] for row in cases.first)
-    names = [name for way in ways for name in (way + POOLED, way)]
+    names = [name for model in models for name in (model + POOLED, model)]
     for group, least in POOLED_GROUPS.items():
         part = cases.part([number for number, row in enumerate(cases.first) if counts[row["body key"]] >= least])
         if len(part):

@@ -8,7 +8,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import bodies as module
-from training.data.real.bodies import measured_bodies, model_key
+from training.data.real.bodies import measured_bodies
 from training.data.real.file_origin import Editing
 from training.data.real.photographs import RealPhotograph
 
@@ -70,10 +70,6 @@ def test_folds_of_two_folders_are_not_the_same_fold(photographs):
     alike = replace(photographs["real"][2], fold="0")
     photographs["real"][2] = alike
     assert keys(without=alike) == ["nikon d90", "nikon d90 (second body)", "pixel 3", "pixel 4"]
-
-
-def test_a_model_is_known_without_what_stands_in_brackets(photographs):
-    assert [model_key(one) for one in photographs["real"]] == ["nikon d90", "nikon d90", "canon s45"]
 
 
 def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_path):

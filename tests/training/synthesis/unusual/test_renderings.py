@@ -5,7 +5,6 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.response.transfer_functions import srgb_encode
-from training.synthesis.unusual.encodings import camera_curve, reduced
 from training.synthesis.unusual.film_scan import Negative, dust_mask, grain
 from training.synthesis.unusual.filters import cross_processed, faded, split_toned
 from training.synthesis.unusual.tone_mapping import drago, guided_base, reinhard
@@ -31,10 +30,6 @@ def test_the_curve_of_filmic_rises_from_0_to_1(slope):
     values = filmic_sigmoid(slope)(np.linspace(0, 1, 1000))
     np.testing.assert_allclose(values[[0, -1]], [0, 1], atol=1e-6)
     assert (np.diff(values) > 0).all()
-
-
-def test_the_curve_of_a_camera_is_srgb_without_roll_off_and_contrast():
-    np.testing.assert_allclose(camera_curve(1, 0), srgb_encode(np.linspace(0, 1, 1024)), atol=1e-12)
 
 
 def test_global_operators_map_the_white_to_1():
@@ -81,8 +76,3 @@ def test_the_curves_of_a_filter_differ_between_channels_and_rise(curves, rng):
     assert drawn.shape == (3, 1024)
     assert (np.diff(drawn, axis=1) >= -1e-9).all()
     assert np.abs(drawn[0] - drawn[2]).max() > 0.01
-
-
-def test_reduced_averages_codes():
-    codes = np.arange(48, dtype=np.uint8).reshape(4, 4, 3)
-    np.testing.assert_allclose(reduced(codes, 2)[0, 0], codes[:2, :2].mean(axis=(0, 1)), atol=0.5)
