@@ -154,17 +154,6 @@ def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, m
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    "text",
-    ['{"a": 1}', '{"response": {"brightness": [0, 1e999]}}', f'{{"response": {{"brightness": [0, 1{"0" * 400}]}}}}'],
-)
-def test_a_document_without_a_response_is_refused(crfnet, frames, tmp_path, text):
-    (tmp_path / "other.json").write_text(text)
-    done = crfnet("calibrate", *frames, "--out", tmp_path / "out", "--compare", tmp_path / "other.json")
-    assert done.code == BAD_INPUT
-    assert "other.json: holds no response; give the JSON of an estimate or of a calibration" in done.err
-
-
 def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     (tmp_path / "eos20d.cube").write_text("mine")
     done = crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d")
