@@ -1,6 +1,6 @@
 """Constants that several modules share. Nothing is imported here, so that `crfnet --help` loads fast."""
 
-#: File name of the OpenColorIO config that is written beside the LUTs; Blender looks for the same name.
+#: File name of the OpenColorIO config next to the LUTs; Blender looks for the same name.
 CONFIG_NAME = "config.ocio"
 
 #: File names of the records in the output folder: of `crfnet estimate --each`, and of `crfnet linearize --each`.
@@ -31,12 +31,12 @@ MIDDLE_GRAY = 0.18
 #: standard output sensitivity), which is what sRGB makes of 0.18; code 118 of 8 bits.
 GRAY_BRIGHTNESS = 0.4614
 
-#: What may be said of a plate's primaries: the first, the default, goes by the file's tags; the others are the names in
+#: Names of a plate's primaries: the first, the default, goes by the file's tags; the others are the names in
 #: `crfnet_core.colorimetry.PHOTOGRAPHIC`.
 PRIMARIES = ("auto", "rec709", "p3", "adobe", "prophoto", "rec2020")
 
 #: The spaces of linear EXR files: linear Rec.709, which is the role scene_linear of the configs that we write (the
-#: default); the plate's own primaries; and those of ACES.
+#: default); the plate's own primaries; and the spaces of ACES.
 OUTPUT_SPACES = ("scene_linear", "plate", "ACEScg", "ACES2065-1")
 
 #: Estimation error (E_est) that gamma 2.2 usually makes: 3.14 on the 201 curves of DoRF, 3.65 on 22 camera bodies (P4).

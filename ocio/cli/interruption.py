@@ -26,7 +26,7 @@ class Interruption:
 
     @property
     def exit_code(self) -> int:
-        """What a shell expects of a process that a signal ended: 130 for Control-C."""
+        """The exit code of a process that a signal ended: 130 for Control-C."""
         return 128 + (self.signal or signal.SIGINT)
 
 

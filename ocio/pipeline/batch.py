@@ -32,7 +32,7 @@ NUMBER_BYTES = 8
 
 @dataclass(frozen=True, kw_only=True)
 class Batch(ABC):
-    """What many photographs have in common: the folder for everything, and how they are estimated and linearized."""
+    """Many photographs: the folder for everything, and how they are estimated and linearized."""
 
     out: Path
     options: EstimateOptions
@@ -138,8 +138,8 @@ class Task:
 def plan_tasks(batch: Batch, photographs: Mapping[Path, Path]) -> list[Task]:
     """Return a task for each photograph of `find_photographs`, after checking that it can be done; create nothing.
 
-    Two photographs of one name in one folder get files of different names: a.jpg and a.png those of `a` and `a_2`.
-    A photograph keeps the name that an earlier run has given it. Raise PlateError if a photograph or a config of
+    Two photographs of one name in one folder get files of different names: `a` and `a_2` for a.jpg and a.png.
+    A photograph keeps its name of an earlier run. Raise PlateError if a photograph or a config of
     another program would be replaced, there are results of other options, or the folder cannot be used.
     """
     records, digest = batch.records.read(), batch.digest()

@@ -54,18 +54,18 @@ def plate_document(report: PlateReport, estimate: ResponseEstimate | None) -> di
     }
 
 
-def lut_document(found: ResponseFile) -> dict[str, Any]:
+def lut_document(response: ResponseFile) -> dict[str, Any]:
     """Return the contents of a LUT file, ready for JSON."""
-    lut = found.table
+    lut = response.table
     first, last = lut.domain
     quarters = [channel.apply(np.array(QUARTERS)) for channel in lut.channels]
     return {
         "kind": "lut",
-        "file": found.path.name,
-        "response": found.words,
-        "direction": "forward" if found.was_forward else "inverse",
+        "file": response.path.name,
+        "response": response.words,
+        "direction": "forward" if response.was_forward else "inverse",
         "channels": len(lut.channels),
-        "converts": ["irradiance", "brightness"] if found.was_forward else ["brightness", "irradiance"],
+        "converts": ["irradiance", "brightness"] if response.was_forward else ["brightness", "irradiance"],
         "length": len(lut.values),
         "domain": [rounded(first), rounded(last)],
         "range": [rounded(lut.values[0].min()), rounded(lut.values[-1].max())],

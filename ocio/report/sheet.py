@@ -98,11 +98,9 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
     verdict = figure.text(0.058, 0.9, estimate.verdict, size=11, weight="bold", va="center", color=color)
     shape, kind = shape_error_words(estimate), estimate.likely_kind
     figures = [f"linear light off by {shape}" if shape else "", f"curve off by {curve_error_words(estimate)}"]
-    found = DOT.join(map(str, filter(None, [*figures, kind])))
-    beside = Annotation(
-        found, xy=(1, 0.5), xycoords=verdict, xytext=(12, 0), textcoords="offset points", va="center", color=INK
-    )
-    figure.add_artist(beside)
+    result = DOT.join(map(str, filter(None, [*figures, kind])))
+    place: dict[str, Any] = {"xytext": (12, 0), "textcoords": "offset points", "va": "center"}
+    figure.add_artist(Annotation(result, xy=(1, 0.5), xycoords=verdict, color=INK, **place))
     figure.text(0.058, 0.872, ellipsized(basis(estimate), LONGEST_LINE), va="center", color=QUIET)
     figure.text(0.972, 0.058, estimate.model, va="center", ha="right", color=QUIET)
     warning_line = ellipsized(DOT.join(map(str, estimate.warnings)), LONGEST_LINE)
@@ -110,7 +108,7 @@ def _draw_heading(figure: Figure, estimate: ResponseEstimate) -> None:
 
 
 def _draw_curve(axes: Axes, estimate: ResponseEstimate) -> None:
-    """Draw the response with its band beside gamma 2.2."""
+    """Draw the response with its band, and gamma 2.2."""
     irradiance = np.linspace(0, 1, SAMPLES)
     lower, upper = estimate.band
     gamma = ResponseCurve.gamma().brightness
@@ -140,15 +138,15 @@ def _picture_axes(figure: Figure, *, side_by_side: bool) -> tuple[Axes, Axes]:
 def _draw_photograph(axes: Axes, preview: Float32Array, estimate: ResponseEstimate, stride: int) -> None:
     """Show the first photograph with its windows; those whose estimate is far from the others are dashed."""
     _show(axes, preview, stride, f"{agreeing(estimate)}; others dashed")
-    for found in estimate.windows:
-        if found.photo == 0:
-            axes.add_patch(_outline(found.window, kept=found.kept, width=1.8, color="#000000"))
-            axes.add_patch(_outline(found.window, kept=found.kept, width=0.9, color="#ffffff"))
+    for window in estimate.windows:
+        if window.photo == 0:
+            axes.add_patch(_outline(window.window, is_kept=window.kept, width=1.8, color="#000000"))
+            axes.add_patch(_outline(window.window, is_kept=window.kept, width=0.9, color="#ffffff"))
 
 
-def _outline(window: Window, *, kept: bool, width: float, color: str) -> Rectangle:
+def _outline(window: Window, *, is_kept: bool, width: float, color: str) -> Rectangle:
     """Return the outline of a window, in pixels of the photograph."""
-    style = "solid" if kept else (0, (2, 2))
+    style = "solid" if is_kept else (0, (2, 2))
     corner = (window.x, window.y)
     return Rectangle(
         corner, window.extent, window.extent, fill=False, linewidth=width, linestyle=style, edgecolor=color

@@ -28,7 +28,7 @@ VERDICTS = {
 #: Difference from 0.18 by which 18 % gray lies where it should: 0.004 stop.
 GRAY_TOLERANCE = 0.0005
 
-#: What to do if a picture is not to be trusted and of such a family.
+#: Advice about a picture that is not to be trusted and of such a family.
 REMEDIES = {
     Family.LINEAR: "it seems to be linear already, so give it a linear color space",
     Family.LOG: "it seems to be log footage, so give it the color space of its log curve",
@@ -84,7 +84,7 @@ def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any],
 
     Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither;
     where the linear EXR keeps primaries that the config has no linear space of, it says that the config converts them.
-    `alpha` is that of the photograph's `FileMetadata`: the LUT takes colors that are not multiplied by it.
+    `alpha` is `FileMetadata.alpha` of the photograph: the LUT takes colors that are not multiplied by it.
     """
     primaries, linear = document["primaries"], document["output_space"]
     target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
@@ -140,8 +140,8 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
     """Return what a LUT file holds, from its `lut_document`."""
     rows = document["at_quarters"] if document["channels"] == 3 else [document["at_quarters"]]
     quarters = ", ".join(
-        f"{given} -> {' '.join(f'{value:.4f}' for value in found)}"
-        for given, found in zip(QUARTERS, zip(*rows, strict=True), strict=True)
+        f"{brightness} -> {' '.join(f'{value:.4f}' for value in values)}"
+        for brightness, values in zip(QUARTERS, zip(*rows, strict=True), strict=True)
     )
     low, high = document["domain"]
     bottom, top = document["range"]
@@ -190,12 +190,9 @@ def _verdict_words(estimate: ResponseEstimate, phrases: Phrases) -> str:
 
 
 def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:
-    """Return how far the answer is expected to be off, beside gamma 2.2; without stops if they are not known."""
-    shape, curve, gamma = (
-        shape_error_words(estimate),
-        curve_error_words(estimate, phrases),
-        f"{brightness_percent(GAMMA_ERROR):.0f} %",
-    )
+    """Return how far the answer is expected to be off, and gamma 2.2; without stops if they are not known."""
+    shape, curve = shape_error_words(estimate), curve_error_words(estimate, phrases)
+    gamma = f"{brightness_percent(GAMMA_ERROR):.0f} %"
     if not shape:
         return f"Expect the curve to be off by {curve}; gamma 2.2 is usually off by {gamma}."
     return (

@@ -1,25 +1,17 @@
 """What is said of an estimate: stops first, the kind of response, what it rests on; figures made by hand."""
 
 import dataclasses
-import json
 import math
 
 import pytest
 
 from crfnet import report
-from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.options import PlateOptions
-from crfnet.plates.light import PlateLight
-from crfnet.plates.linear import PlateReport
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.files import json_text
 from crfnet_core.network import ModelConfig, ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
-from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.posterior import Family, Verdict
-from crfnet_core.response.curve import ResponseCurve
 
 CANON = FileMetadata(width=3504, height=2336, make="Canon", model="Canon EOS 20D", file_format="TIFF")
 
@@ -134,12 +126,6 @@ def test_of_a_cameras_photograph_its_own_file_or_a_measurement_helps(estimate):
     assert first == "The estimate is not to be trusted: give the file that the camera wrote, or run crfnet calibrate."
 
 
-def test_several_photographs_are_told_by_the_first(estimate):
-    camera, scan = file_origin(CANON), file_origin(dataclasses.replace(CANON, make="", model=""))
-    assert report.basis(estimate(origins=(camera, camera))) == report.basis(estimate())
-    assert report.basis(estimate(origins=(camera, scan, camera))).endswith("lenses (the first of 3; 1 differs)")
-
-
 def test_who_says_what_took_the_photograph(estimate):
     unnamed = file_origin(dataclasses.replace(CANON, make="", model="", width=600, height=400))
     told = with_stated_device(unnamed, Device.PHONE)
@@ -176,19 +162,6 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
     assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")
 
 
-def test_the_document_is_json(estimate):
-    """With the names of enumerations as texts, and figures rounded."""
-    light = PlateLight.of(ColorTags(), inverse_response_lut(ResponseCurve.gamma()), PlateOptions())
-    plates = PlateReport(written=(), skipped=(), missing=(), light=light)
-    document = json.loads(json_text(report.plate_document(plates, estimate())))["estimate"]
-    assert document["family"] == {"words": "a camera's own rendering", "probability": 0.93}
-    assert document["families"] == dict.fromkeys(Family, 0) | {"phone": 0.03, "camera": 0.9, "film": 0.07}
-    assert (document["uncertainty_percent"], document["shape_uncertainty_stops"]) == (3.90625, 0.1)
-    (metadata,) = document["metadata"]
-    assert (metadata["device"], metadata["camera"], metadata["editor"]) == ("camera", "Canon EOS 20D", "")
-    assert metadata["words"] == list(file_origin(CANON).words)
-
-
 def test_a_model_is_told_by_every_figure(fixed_model):
     config = ModelConfig.read(fixed_model / "model.json")
     document = report.model_document(dataclasses.replace(config, accuracy={"P0": {"mean": 1.2, "median": 1.1}}))
@@ -196,9 +169,3 @@ def test_a_model_is_told_by_every_figure(fixed_model):
     assert lines[0] == "fixed: model"
     assert lines[-2:] == ["  accuracy, P0, mean: 1.2", "  accuracy, P0, median: 1.1"]
     assert "  output_names: locations, factors, log_odds" in lines
-
-
-def test_the_base_picture_of_an_hdr_photograph_is_said():
-    facts = report.PhotoFacts("IMG.HEIC", 4032, 3024, 8, has_gain_map=True)
-    assert str(facts) == "IMG.HEIC: 4032 x 3024, 8 bits; the base picture of an HDR photograph, without its gain map"
-    assert str(report.PhotoFacts("a.jpg", 4, 3, 8)) == "a.jpg: 4 x 3, 8 bits"

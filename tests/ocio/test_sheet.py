@@ -5,11 +5,9 @@ import dataclasses
 import numpy as np
 import pytest
 
-from crfnet.errors import PlateError
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
-from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.images import read_image
 
@@ -86,12 +84,6 @@ def test_any_estimate_can_be_drawn(photo, estimate, tmp_path, recwarn, verdict, 
     assert not recwarn.list
 
 
-def test_what_an_earlier_version_did_not_store_is_left_out(photo, estimate, tmp_path):
-    old = dataclasses.replace(estimate, shape_uncertainty=np.nan, families={}, prior="", origins=())
-    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, old)
-    assert (tmp_path / "a.png").stat().st_size > 10_000
-
-
 def test_no_line_leaves_the_sheet(photo, estimate, tmp_path):
     """The widest that is usual: the right margin stays white."""
     families = dict.fromkeys(Family, 0.0) | {Family.UNEXPLAINED: 0.62, Family.CAMERA: 0.38}
@@ -115,26 +107,3 @@ def test_matplotlibs_settings_are_left_alone(photo, estimate, tmp_path):
     before = dict(mpl.rcParams)
     sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
     assert dict(mpl.rcParams) == before
-
-
-def test_the_preview_is_not_changed(photo, estimate, tmp_path):
-    preview = photo.pixels.copy()
-    sheet.draw_sheet(tmp_path / "a.png", preview, estimate)
-    np.testing.assert_array_equal(preview, photo.pixels)
-
-
-def test_replaces_a_file_only_when_asked(photo, estimate, tmp_path):
-    (tmp_path / "a.png").write_text("mine")
-    with pytest.raises(PlateError, match="exists already"):
-        sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate)
-    sheet.draw_sheet(tmp_path / "a.png", photo.pixels, estimate, overwrite=True)
-    assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
-
-
-def test_gray_photographs_and_wide_steps(fixed_model, tmp_path, plate):
-    """A large gray photograph, point-sampled by the windows and by the preview."""
-    large = np.repeat(np.repeat(read_photo(plate).pixels[..., :1], 4, axis=0), 4, axis=1).repeat(3, axis=2)
-    gray = Photo(pixels=large, bit_depth=8, is_gray=True, path=plate)
-    estimate = estimate_response(gray, network=ResponseNetwork.load(fixed_model))
-    sheet.draw_sheet(tmp_path / "a.png", large[::4, ::4], estimate, stride=4)
-    assert (tmp_path / "a.png").exists()

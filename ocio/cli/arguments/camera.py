@@ -22,26 +22,16 @@ def add(commands: Commands) -> None:
     """Add `crfnet camera` and its five actions."""
     parser = add_command(commands, "camera", "keep measured responses of cameras, to use them again", EXAMPLES)
     actions = parser.add_subparsers(dest="action", required=True, metavar="ACTION", parser_class=Parser)
-    _add_add(actions)
+    addition = add_action(actions, "add", "keep a measured response")
+    addition.add_argument(
+        "--from-calibration", type=Path, required=True, metavar="FILE", help="the JSON that crfnet calibrate wrote"
+    )
+    addition.add_argument("--name", metavar="NAME", help="the camera's name (that of FILE)")
+    addition.add_argument("--overwrite", action="store_true", help="replace the camera of this name")
     add_action(actions, "list", "list your cameras and the ones that come with crfnet")
     for action, words in (("show", "show how good the response of a camera is"), ("remove", "remove a camera")):
         add_action(actions, action, words).add_argument("name", metavar="NAME", help="the camera")
-    _add_export(actions)
-
-
-def _add_add(actions: Commands) -> None:
-    """Add `crfnet camera add`."""
-    parser = add_action(actions, "add", "keep a measured response")
-    parser.add_argument(
-        "--from-calibration", type=Path, required=True, metavar="FILE", help="the JSON that crfnet calibrate wrote"
-    )
-    parser.add_argument("--name", metavar="NAME", help="the camera's name (that of FILE)")
-    parser.add_argument("--overwrite", action="store_true", help="replace the camera of this name")
-
-
-def _add_export(actions: Commands) -> None:
-    """Add `crfnet camera export`."""
-    parser = add_action(actions, "export", "write the response of a camera to a file")
-    parser.add_argument("name", metavar="NAME", help="the camera")
-    parser.add_argument("out", type=written_path, metavar="OUT", help="a LUT, or .json to hand the camera on")
-    parser.add_argument("--overwrite", action="store_true", help="replace a file that is already there")
+    export = add_action(actions, "export", "write the response of a camera to a file")
+    export.add_argument("name", metavar="NAME", help="the camera")
+    export.add_argument("out", type=written_path, metavar="OUT", help="a LUT, or .json to hand the camera on")
+    export.add_argument("--overwrite", action="store_true", help="replace a file that is already there")

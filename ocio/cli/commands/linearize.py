@@ -59,7 +59,7 @@ def _run_one(arguments: argparse.Namespace) -> list[str]:
 
 
 def _check_single(out: Path, sequence: PlateSource) -> None:
-    """Refuse the pattern of a sequence for a single file whose own name is none: the file would be called so."""
+    """Refuse the pattern of a sequence as the name of a single file, unless the plate is named after one, too."""
     plate = sequence.paths[0]
     if not sequence.numbers and FramePattern.parse(out) and FramePattern.parse(plate) is None:
         raise CommandError("pattern_for_file", path=out, plate=plate)

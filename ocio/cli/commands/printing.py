@@ -1,4 +1,4 @@
-"""What the subcommands print: lines, a JSON document, a progress bar."""
+"""The output of the subcommands: lines, a JSON document, a progress bar."""
 
 from __future__ import annotations
 
@@ -91,8 +91,8 @@ def _minute_lines(unit: str) -> Progress:
         before = done if before < 0 else before  # done in an earlier run, which says nothing of how long the rest takes
         if (now := time.monotonic()) >= due:
             seconds = (now - start) * (total - done) / (done - before) if done > before else 0.0
-            left = f", {tqdm.format_interval(seconds)} left" if seconds else ""
-            print(f"crfnet: {done} of {total} {unit}{left}", file=sys.stderr, flush=True)  # noqa: T201
+            rest = f", {tqdm.format_interval(seconds)} left" if seconds else ""
+            print(f"crfnet: {done} of {total} {unit}{rest}", file=sys.stderr, flush=True)  # noqa: T201
             due = now + LINE_SECONDS
 
     return show

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
-from crfnet.luts.files import WRITERS, read_lut
+from crfnet.luts.files import read_lut
 from crfnet.luts.response import response_of_lut
 from crfnet_core.library import CameraLibrary
 from crfnet_core.response.metrics import estimation_error
@@ -94,12 +94,6 @@ def test_an_estimate_uses_a_camera_that_is_asked_for(run, measured, photos, tmp_
     assert "known_cameras" not in document
 
 
-def test_the_sheet_is_drawn_with_a_camera(run, measured, photos, tmp_path):
-    pytest.importorskip("matplotlib")
-    run("estimate", photos[0], "--camera", "measured", "--out", tmp_path / "look")
-    assert (tmp_path / "look" / "IMG_0_sheet.png").stat().st_size > 10_000
-
-
 def test_a_camera_that_fits_is_offered_but_not_used(run, measured, photos, tmp_path):
     out = run("estimate", photos[0], "--out", tmp_path / "look", "--no-sheet")
     assert "to use it, add --camera measured (measured from 6 exposures, ISO 100)." in out
@@ -110,12 +104,6 @@ def test_a_camera_that_fits_is_offered_but_not_used(run, measured, photos, tmp_p
     assert "is known" not in quiet
 
 
-def test_each_photograph_gets_the_response_of_the_camera(run, measured, photos, tmp_path):
-    run("estimate", *photos, "--each", "--camera", "measured", "--out", tmp_path / "all", "--no-sheet")
-    luts = [read_lut(tmp_path / "all" / f"IMG_{n}.spi1d").values for n in range(2)]
-    assert np.array_equal(luts[0], luts[1])
-
-
 def test_plates_are_linearized_with_a_camera_as_with_its_exported_lut(run, crfnet, measured, photos, tmp_path):
     out = run("linearize", photos[0], "--camera", "measured", "--out", tmp_path / "a.exr", "--depth", "float")
     assert 'Response of the camera "measured".' in out
@@ -124,14 +112,6 @@ def test_plates_are_linearized_with_a_camera_as_with_its_exported_lut(run, crfne
     assert crfnet("linearize", photos[0], *lut, "--out", tmp_path / "b.exr", "--depth", "float").code == 0
     assert np.array_equal(read_image(tmp_path / "a.exr"), read_image(tmp_path / "b.exr"))
     assert crfnet("camera", "export", "measured", lut[1]).code == BAD_INPUT
-
-
-@pytest.mark.parametrize("suffix", WRITERS)
-def test_a_response_is_exported_in_every_format(run, crfnet, measured, tmp_path, suffix):
-    path = tmp_path / f"measured{suffix}"
-    assert f"Written: {path}." in run("camera", "export", "measured", path)
-    assert crfnet("info", path).code == 0
-    assert crfnet("camera", "export", "measured", path).code == BAD_INPUT
 
 
 def test_a_camera_is_handed_on_as_a_file(run, measured, library, tmp_path):

@@ -127,13 +127,6 @@ def test_any_exception_is_the_record_of_its_photograph(estimate, photographs, tm
     assert errors == {"a.jpg": "", "b.JPG": f"{photographs / 'b.JPG'}: RuntimeError (a bug of ours)"}
 
 
-def test_metadata_that_is_not_utf_8_stops_nothing(estimate, photographs, codes, tmp_path):
-    latin = write_image(photographs / "latin.jpg", codes, Make="Voigtlxnder", Model="Voigtlxnder R")
-    latin.write_bytes(latin.read_bytes().replace(b"Voigtlx", b"Voigtl\xe4"))
-    done = estimate(photographs, "--each", "--no-sheet", "--workers", "1")
-    assert (done.code, [record["error"] for record in records_in(tmp_path / "out")]) == (0, [""] * 4)
-
-
 def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
     """The second finds what the first has written meanwhile, and both end well."""
     arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]

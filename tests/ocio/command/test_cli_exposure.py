@@ -106,12 +106,6 @@ class TestResuming:
         assert crfnet(*same, *arguments, "--overwrite").code == 0
         assert crfnet(*same, *arguments).code == 0
 
-    def test_nor_with_another_lut(self, crfnet, frames, look, lut_file):
-        same = ("linearize", frames / "shot.####.jpg", "--out", frames / "l.####.exr")
-        assert crfnet(*same, "--lut", look / "plate.spi1d").code == 0
-        done = crfnet(*same, "--lut", lut_file)
-        assert (done.code, "is there already, with another LUT; repeat that" in done.err) == (BAD_INPUT, True)
-
     def test_a_lut_in_another_format_is_the_same(self, crfnet, frames, look):
         same = ("linearize", frames / "shot.####.jpg", "--out", frames / "l.####.exr")
         assert crfnet(*same, "--lut", look / "plate.spi1d", "--frames", "1").code == 0

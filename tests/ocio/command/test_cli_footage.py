@@ -35,13 +35,6 @@ def test_limited_range_is_answered_with_the_option_of_ffmpeg(crfnet, tmp_path):
     assert found["recognition"]["kind"] == "limited range"
 
 
-def test_an_ordinary_picture_has_no_recognition_in_its_document(crfnet, fixed_model, plate, tmp_path):
-    crfnet("estimate", plate, "--out", tmp_path, "--no-sheet", "--model", fixed_model)
-    found = json.loads((tmp_path / "plate.json").read_text(encoding="utf-8"))
-    assert found["recognition"] is None
-    assert found["photographs"][0]["has_gain_map"] is False
-
-
 @pytest.mark.parametrize("command", ["estimate", "linearize"])
 def test_a_frame_that_calls_itself_log_is_refused_and_nothing_is_written(crfnet, fixed_model, tmp_path, command):
     path = as_file(tmp_path / "scan.dpx", ordinary_picture(), dpx__Transfer="Printing density")

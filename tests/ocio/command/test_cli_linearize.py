@@ -30,12 +30,6 @@ def test_estimates_one_response_without_a_lut(crfnet, fixed_model, frames):
     np.testing.assert_array_equal(*pixels)
 
 
-def test_the_prior_and_the_metadata_count_here_too(crfnet, fixed_model, plate, tmp_path):
-    arguments = ("linearize", plate, "--out", tmp_path / "a.exr", "--model", fixed_model, "--json")
-    found = json.loads(crfnet(*arguments, "--prior", "any", "--ignore-metadata").out)["estimate"]
-    assert (found["prior"], found["metadata"]) == ("any", [])
-
-
 def test_goes_on_where_it_stopped(crfnet, look, frames):
     arguments = ("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d", "--json")
     out = ("--out", frames / "l.####.exr")

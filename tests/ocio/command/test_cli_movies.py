@@ -16,7 +16,7 @@ from crfnet.configs.files import load_config
 from crfnet.luts.files import read_lut
 from crfnet.movies.frames import WHITE, MovieFrames
 from crfnet_core.photograph.image_io import read_photo
-from tests.helpers.folders import listed, tree
+from tests.helpers.folders import listed
 from tests.helpers.movies import run_ffmpeg, write_movie
 from tests.helpers.plates import read_exr
 from tests.helpers.processes import start_interruptible
@@ -64,24 +64,6 @@ def test_some_frames_become_linear_plates(linearize, tmp_path):
     assert [Path(path).name for path in document["written"]] == [f"l.00{number}.exr" for number in ("05", 10, 15, 20)]
     assert document["missing"] == [25, 30]
     assert document["movie"].startswith("clip.mp4: H.264")
-
-
-@needs_av
-def test_a_run_goes_on_where_it_was_interrupted(linearize, tmp_path):
-    linearize()
-    complete = tree(tmp_path / "linear")
-    for number in (22, 23):
-        (tmp_path / "linear" / f"l.{number:04d}.exr").unlink()
-    assert len(json.loads(linearize("--json").out)["skipped"]) == 22
-    assert tree(tmp_path / "linear") == complete
-
-
-@needs_av
-def test_finished_frames_are_replaced_when_asked(linearize, tmp_path):
-    linearize("--frames", "1-2")
-    before = tree(tmp_path / "linear")
-    assert len(json.loads(linearize("--frames", "1-2", "--exposure", "1", "--overwrite", "--json").out)["written"]) == 2
-    assert tree(tmp_path / "linear") != before
 
 
 @needs_av
@@ -145,13 +127,6 @@ def test_the_line_for_the_whole_movie_is_right(crfnet, fixed_model, movie, tmp_p
     monkeypatch.chdir(tmp_path)
     assert crfnet(*line[1:]).code == 0
     assert len(listed(tmp_path / "linear")) == 24
-
-
-@needs_av
-def test_movies_and_photographs_together(crfnet, fixed_model, movie, plate, tmp_path):
-    done = crfnet("estimate", plate, movie, "--each", "--out", tmp_path / "look", "--model", fixed_model, "--no-sheet")
-    assert done.code == 0
-    assert {"plate_linear.exr", "clip_linear.exr"} <= set(listed(tmp_path / "look"))
 
 
 @pytest.mark.parametrize("command", ["estimate", "linearize"])
