@@ -6,7 +6,7 @@ from crfnet_core.photograph.metadata.devices import Device, camera_name, device_
 from crfnet_core.photograph.metadata.editors import editor_name
 
 #: Kind of device -> make -> models.
-CAMERAS = {
+CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
     Device.PHONE: {
         "Apple": ("iPhone 13 Pro",),
         "Google": ("Pixel 6",),
