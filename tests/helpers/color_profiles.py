@@ -8,6 +8,7 @@ from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from PIL import ExifTags, Image
 
 from crfnet_core.colorimetry import D50, Primaries, adaptation, xyz_of
 from tests.helpers.images import write_image
@@ -59,19 +60,8 @@ def write_tagged(path: Path, codes: NDArray[Any], icc: bytes, **attributes: Any)
     )
 
 
-def exif_segment(index: bytes, *, order: str = "<", space: int = 65535) -> bytes:
-    """Return an EXIF segment of JPEG with a ColorSpace and an InteroperabilityIndex."""
-    first = _directory([(0x8769, 4, 1, struct.pack(f"{order}I", 26))], order)
-    details = [(0xA001, 3, 1, struct.pack(f"{order}H", space)), (0xA005, 4, 1, struct.pack(f"{order}I", 56))]
-    interop = [(1, 2, 4, index.ljust(4, b"\0"))]
-    signature = {"<": b"II*\0", ">": b"MM\0*"}[order]
-    content = signature + struct.pack(f"{order}I", 8) + first + _directory(details, order)
-    return b"Exif\0\0" + content + _directory(interop, order)
-
-
-def _directory(entries: list[tuple[int, int, int, bytes]], order: str) -> bytes:
-    """Return a TIFF directory of values of up to four bytes."""
-    rows = b"".join(
-        struct.pack(f"{order}HHI", tag, kind, count) + value.ljust(4, b"\0") for tag, kind, count, value in entries
-    )
-    return struct.pack(f"{order}H", len(entries)) + rows + bytes(4)
+def exif_segment(index: str) -> bytes:
+    """Return an EXIF segment of JPEG with an uncalibrated ColorSpace and an InteroperabilityIndex."""
+    exif = Image.Exif()
+    exif.get_ifd(ExifTags.IFD.Exif).update({0xA001: 65535, 0xA005: {1: index}})
+    return exif.tobytes()

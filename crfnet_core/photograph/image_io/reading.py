@@ -75,7 +75,7 @@ def read_codes(path: str | os.PathLike[str]) -> CodeValues:
         if kind in HEIF_KINDS:
             return read_heif(path, kind)
         with _opened(path, kind) as file:
-            return _base_codes(path) if file.has_gain_map else file.codes()
+            return file.codes()
 
 
 def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
@@ -89,8 +89,6 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
         if kind in HEIF_KINDS:
             return read_heif(path, kind).metadata
         with _opened(path, kind) as file:
-            if file.has_gain_map:
-                return _base_codes(path).metadata
             checked_bit_depth(path, file.header, kind)
             return file.metadata()
 
@@ -104,11 +102,7 @@ class _OpenFile:
     source: Any
     header: Any
     jpeg: JpegFile | None
-
-    @property
-    def has_gain_map(self) -> bool:
-        """Whether OpenImageIO would make an HDR picture of an Ultra HDR JPEG."""
-        return self.kind == "JPEG" and str(self.header.format) == "half"
+    has_gain_map: bool = False
 
     @property
     def turn(self) -> Turn:
@@ -120,7 +114,8 @@ class _OpenFile:
         """Return the metadata of the upright picture."""
         jpeg = self.jpeg.metadata if self.jpeg else FileMetadata()
         metadata = metadata_of_header(self._upright_header(), self.kind, jpeg)
-        return replace(metadata, is_turned=self.turn != UPRIGHT)
+        has_gain_map = self.has_gain_map or metadata.has_gain_map
+        return replace(metadata, is_turned=self.turn != UPRIGHT, has_gain_map=has_gain_map)
 
     def codes(self) -> CodeValues:
         """Return the samples of the upright picture, as three channels and alpha on the file's own scale."""
@@ -193,7 +188,14 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
-        yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
+        if kind == "JPEG" and str(header.format) == "half":  # Ultra HDR, of which OpenImageIO makes linear light
+            with tempfile.TemporaryDirectory() as folder:
+                base = Path(folder, "base.jpg")
+                base.write_bytes(base_image(path))
+                with _opened(base, kind) as file:
+                    yield replace(file, path=path, has_gain_map=True)
+        else:
+            yield _OpenFile(path, kind, source, with_color_chunks(header, path) if kind == "PNG" else header, jpeg)
     finally:
         source.close()
 
@@ -232,12 +234,6 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
             return None
         values[top:bottom] = rows
     return values
-
-
-def _base_codes(path: Path) -> CodeValues:
-    """Return the standard image of an Ultra HDR JPEG."""
-    values = _codes_of_content(base_image(path), path)
-    return replace(values, metadata=replace(values.metadata, has_gain_map=True))
 
 
 def _codes_of_content(content: bytes | bytearray | memoryview, path: Path) -> CodeValues:

@@ -79,8 +79,3 @@ def test_names_that_are_not_utf8(tmp_path):
     header = linear_header(values.header, channels=3, depth="half", attributes={})
     assert header.getattribute("Make") == "Voigtl?nder"
     assert all(value.value.isprintable() for value in values.header.extra_attribs if isinstance(value.value, str))
-
-
-def test_lines_of_a_text_become_one(tmp_path):
-    path = write_image(tmp_path / "a.tif", np.zeros((4, 4, 3), np.uint8), Software="a\x1b[2J\nb\u202e")
-    assert read_metadata(path).software == "a?[2J b?"

@@ -24,21 +24,10 @@ PUBLISHED = {
 }
 
 #: The names of the curves in colour-science, which has no Blackmagic Film.
-COLOUR_SCIENCE = {
-    "ARRI LogC3": "ARRI LogC3",
-    "ARRI LogC4": "ARRI LogC4",
-    "Apple Log": "Apple Log Profile",
-    "Canon Log": "Canon Log",
-    "Canon Log 2": "Canon Log 2",
-    "Canon Log 3": "Canon Log 3",
-    "DJI D-Log": "D-Log",
-    "Fujifilm F-Log": "F-Log",
-    "Fujifilm F-Log2": "F-Log2",
-    "Nikon N-Log": "N-Log",
-    "Panasonic V-Log": "V-Log",
-    "RED Log3G10": "Log3G10",
-    "Sony S-Log2": "S-Log2",
-    "Sony S-Log3": "S-Log3",
+COLOUR_SCIENCE = {name: name for name in LOG_CURVES if name.startswith(("ARRI", "Canon"))} | {
+    **{"Apple Log": "Apple Log Profile", "DJI D-Log": "D-Log", "Fujifilm F-Log": "F-Log", "Fujifilm F-Log2": "F-Log2"},
+    **{"Nikon N-Log": "N-Log", "Panasonic V-Log": "V-Log", "RED Log3G10": "Log3G10"},
+    **{"Sony S-Log2": "S-Log2", "Sony S-Log3": "S-Log3"},
 }
 
 REFLECTANCE = np.concatenate([[0, 0.001, 0.005, 0.012, 0.18, 0.327, 0.329, 0.9, 1], np.geomspace(2, 50, 9)])
