@@ -9,7 +9,7 @@ from blender_addon.work.job import Anchor, ApplyMode, Plate
 
 
 def plate_of(name, *, is_sequence=True):
-    return Plate.of_file(
+    return Plate.from_file(
         Path("/shots") / name,
         is_sequence=is_sequence,
         datablock_name="Beach.001",

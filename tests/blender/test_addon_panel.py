@@ -77,7 +77,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
     assert ("Choose under" in words) == (mode == "ESTIMATE")
     assert ("overwrite" in properties) == (mode in ("BAKE", "EXPORT"))
     folders = [entry[3] for entry in drawn if entry[0] == "prop" and entry[2] == "folder"]
-    assert folders == ["Beside the plate"] * (mode in ("BAKE", "EXPORT"))
+    assert folders == ["Folder of the plate"] * (mode in ("BAKE", "EXPORT"))
 
 
 @pytest.mark.parametrize(

@@ -208,7 +208,8 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
 def _segment_attributes(picture: _Picture) -> list[tuple[str, Any, Any]]:
     """Return name, type and value of what OpenImageIO reads in EXIF, XMP and ICC profile.
 
-    A JPEG of one pixel carries them. So the names are those that a JPEG of the same camera gives. What does not fit into a JPEG's segments is left out.
+    A JPEG of one pixel carries them, so the names are those that a JPEG of the same camera gives. What does not fit
+    into a JPEG's segments is left out.
     """
     from PIL import Image
 
