@@ -59,11 +59,6 @@ def test_a_space_that_the_config_calls_linear_is_refused(check):
         check("scene_linear")
 
 
-def test_an_encoded_photograph_passes(check):
-    check("sRGB")
-    check("a space that no config has")
-
-
 def test_without_a_readable_config_the_name_decides(check, tmp_path):
     check("sRGB", config=tmp_path / "none.ocio")
     with pytest.raises(AddonError, match="ACEScg"):
@@ -94,16 +89,6 @@ def test_estimate_anyway_overrules_the_tag(make_job, tagged, estimate):
 
 def test_estimate_anyway_leaves_the_metadata_of_other_files_alone(make_job):
     assert len(run(make_job(mode=ApplyMode.ESTIMATE, is_forced=True)).estimate.origins) == 1
-
-
-def test_who_ignores_metadata_ignores_its_tags(make_job, tagged):
-    assert run(make_job(tagged, mode=ApplyMode.ESTIMATE, use_metadata=False)).estimate.origins == ()
-
-
-def test_a_png_that_calls_itself_linear_is_refused(make_job, tmp_path, codes):
-    path = write_image(tmp_path / "render.png", codes, colorInteropID="lin_ap1_scene")
-    with pytest.raises(PhotoError, match="is linear already"):
-        run(make_job(path, mode=ApplyMode.ESTIMATE))
 
 
 @pytest.fixture

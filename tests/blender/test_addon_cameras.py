@@ -36,13 +36,6 @@ def test_a_chosen_camera_is_the_answer_and_is_remembered(image, curve):
     assert any("6 exposures" in line for line in details)
 
 
-def test_without_one_the_response_is_estimated(image, curve):
-    from blender_addon.scene.stored_estimate import restored
-
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert restored(image).camera is None
-
-
 def test_a_camera_that_is_not_there_is_refused(image, curve):
     with pytest.raises(RuntimeError, match="choose another Camera under Advanced, or none"):
         bpy.ops.crf.estimate_response(image=image.name, camera="nobody")

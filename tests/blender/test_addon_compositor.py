@@ -122,15 +122,6 @@ def test_the_nodes_behind_make_room(tree, plates, in_frame):
     assert tuple(other.location) == (200, -400)
 
 
-def test_nodes_far_away_stay(tree, plates):
-    source, blur = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeBlur")
-    source.image = plates[0]
-    blur.location = (2000, 0)
-    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
-    apply(plates[0])
-    assert blur.location.x == 2000
-
-
 def test_the_panel_follows_the_group_to_the_plate(tree, plates, in_editor):
     from blender_addon.scene.plates import active_datablock
 

@@ -116,17 +116,3 @@ def test_changed_settings_are_known_until_they_are_applied(image):
     assert not is_to_be_applied(image)
     image.camera_response_settings.gray = 0.3  # the anchor is white
     assert not is_to_be_applied(image)
-
-
-def test_menus_have_the_operators(addon):
-    """So that Blender's search finds them."""
-    from blender_addon.ui.panel import MENUS, draw_menu_entries
-
-    from .test_addon_panel import Panel
-
-    for name in MENUS:
-        assert draw_menu_entries in getattr(bpy.types, name)._dyn_ui_initialize()
-    panel = Panel()
-    draw_menu_entries(panel, bpy.context)
-    drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
-    assert drawn == ["crf.estimate_response", "crf.apply_response"]

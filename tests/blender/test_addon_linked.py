@@ -40,11 +40,6 @@ def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked
     assert WHY in " ".join(labels(drawn_in(linked, in_editor)))
 
 
-def test_its_look_may_be_added_because_that_changes_only_the_comp(linked):
-    assert bpy.ops.crf.add_look(image=linked.name) == {"FINISHED"}
-    assert bpy.data.node_groups["Camera Look plate"]["camera_response_look_of"] == linked
-
-
 def test_its_linear_plate_may_be_looked_at(linked, in_editor, codes, estimate, plate_file):
     from .test_addon_image_tools import pixels_of
 

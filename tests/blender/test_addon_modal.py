@@ -161,12 +161,6 @@ def test_a_plate_that_is_removed_meanwhile(operator, interface, image):
     assert not bpy.data.node_groups
 
 
-def test_an_error_before_the_start_leaves_no_timer(operator, interface):
-    run = operator("nothing")
-    assert run.invoke(interface, None) == {"CANCELLED"}
-    assert interface.timers == interface.handlers == []
-
-
 def test_closing_blender_stops_the_run(operator, interface, image):
     run = operator(image.name, apply="NODES")
     run.invoke(interface, None)

@@ -89,12 +89,6 @@ def test_a_loaded_response_is_for_the_same_primaries(image, expected, tmp_path, 
     assert image["camera_response"]["primaries"] == before
 
 
-def test_packed_files_keep_their_tags(addon, image, expected, composited):
-    image.pack()
-    apply(image, "NODES")
-    assert np.abs(composited(group_node("Response").outputs[0])[..., :3] - expected).max() < 2e-6
-
-
 def test_plates_without_tags_have_no_matrix(addon, plate_file):
     image = bpy.data.images.load(str(plate_file))
     bpy.ops.crf.estimate_response(image=image.name, apply="NODES")

@@ -59,14 +59,6 @@ def why_not(operator: str = "estimate_response") -> str:
     return ""
 
 
-def script(**options: Any) -> float:
-    """Estimate as a script does, and return the time in seconds."""
-    with editors.context("IMAGE_EDITOR"):
-        start = time.monotonic()
-        bpy.ops.crf.estimate_response("EXEC_DEFAULT", True, **options)
-        return time.monotonic() - start
-
-
 def watch() -> None:
     """Note when the next run starts and ends."""
     _times.clear()
