@@ -17,7 +17,7 @@ import bpy
 from .work.errors import AddonError
 
 #: Packages that come as wheels with the add-on, and with Blender.
-_IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "platformdirs")
+_IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "PIL", "platformdirs")
 _IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 

@@ -55,10 +55,23 @@ def addon(fixed_model):
 
 @pytest.fixture
 def image(addon, plate_file):
-    """The bundled plate as an image, with its estimate."""
-    image = bpy.data.images.load(str(plate_file))
+    """The bundled plate as an image."""
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def estimated(image):
+    """The same image, with its estimate."""
     bpy.ops.crf.estimate_response(image=image.name)
     return image
+
+
+@pytest.fixture
+def tree(addon):
+    """The scene's compositor tree."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    return compositor_tree(bpy.context.scene)
 
 
 @pytest.fixture

@@ -5,6 +5,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 ACES = "cg-config-v1.0.0_aces-v1.3_ocio-v2.1"
 
 

@@ -9,11 +9,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def curve(monkeypatch, tmp_path):
     """The response of the stored camera "mine"."""
     from crfnet_core.library import CameraLibrary

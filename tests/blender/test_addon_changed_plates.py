@@ -11,6 +11,8 @@ from .test_addon_panel import drawn_in, labels
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 CHANGED = "The file has changed since the estimate"
 EARLIER = "Its nodes show the earlier file"
 UNSAVED = "Its nodes lack the unsaved changes"
@@ -18,13 +20,6 @@ GONE = "Its file is not found: find it with File, External Data."
 PAINTED = "Its nodes do not follow your painting: apply it again."
 TWICE = "Linearized twice"
 WITHOUT = "shows code values without the node group"
-
-
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    return compositor_tree(bpy.context.scene)
 
 
 @pytest.fixture

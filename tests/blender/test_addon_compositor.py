@@ -8,11 +8,8 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def tree(addon):
+def tree(tree):
     """The scene's compositor tree, empty."""
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
     tree.nodes.clear()
     return tree
 

@@ -9,11 +9,6 @@ from tests.helpers.images import read_image, write_image
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 @pytest.mark.parametrize("color_space", ["AgX Log", "Linear Rec.709"])
 def test_log_and_linear_color_spaces_are_warned_of(image, color_space):
     image.colorspace_settings.name = color_space

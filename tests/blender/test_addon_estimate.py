@@ -14,11 +14,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 EDITORS = {"IMAGE_EDITOR": "image", "CLIP_EDITOR": "clip"}
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 def stored(datablock):
     from blender_addon.scene.stored_estimate import restored
 

@@ -10,11 +10,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def untrusted(image, monkeypatch):
     """The image, whose estimates are not to be trusted."""
     from blender_addon.work import run
@@ -101,18 +96,3 @@ def test_a_packed_image_goes_beside_a_saved_blend(image, plate_file, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
     assert bpy.ops.crf.estimate_response(image=image.name, apply="BAKE") == {"FINISHED"}
     assert (tmp_path / "project" / "plate_linear.exr").is_file()
-
-
-def test_changed_settings_are_known_until_they_are_applied(image):
-    from blender_addon.ui.plate_settings import is_to_be_applied
-
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert not is_to_be_applied(image)  # nothing has been applied yet
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=0.3)
-    assert not is_to_be_applied(image)
-    image.camera_response_settings.exposure = 1
-    assert is_to_be_applied(image)
-    bpy.ops.crf.apply_response(image=image.name)
-    assert not is_to_be_applied(image)
-    image.camera_response_settings.gray = 0.3  # the anchor is white
-    assert not is_to_be_applied(image)

@@ -12,11 +12,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 FLOAT, HALF = 1e-6, 2**-11
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 def run(image, **choices):
     return bpy.ops.crf.estimate_response(image=image.name, **choices)
 

@@ -9,6 +9,8 @@ from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 
 def pixels_of(image):
     """The pixels of a float image, the top row first."""

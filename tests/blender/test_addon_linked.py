@@ -7,6 +7,8 @@ from .test_addon_panel import drawn_in, labels
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 WHY = "plate.png is linked from another file: make it local first"
 
 

@@ -7,11 +7,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def lut_file(tmp_path, true_response):
     """Write the inverse of a known response in a format; returns its file."""
     from crfnet.luts.files import write_lut

@@ -9,6 +9,8 @@ from tests.helpers.images import read_image, write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: Largest difference from the code values of the plate, white = 1.

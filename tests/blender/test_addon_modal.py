@@ -76,11 +76,6 @@ def operator(addon):
     return Driven
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 def drive(operator, interface, seconds=60):
     """Send timer events until the operator ends; return how it ended."""
     deadline = time.monotonic() + seconds

@@ -17,15 +17,6 @@ def images(addon, tmp_path, codes):
     return images
 
 
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
-    tree.nodes.clear()
-    return tree
-
-
 def copy(*names, is_clip=False, is_chosen=True):
     targets = [{"name": name, "is_clip": is_clip, "is_chosen": is_chosen} for name in names]
     return bpy.ops.crf.copy_response(image="one.png", targets=targets)

@@ -11,19 +11,11 @@ CODES = 1e-6
 
 
 @pytest.fixture
-def tree(addon):
+def tree(tree):
     """The scene's compositor tree, with nothing in it but an output."""
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
     for node in [node for node in tree.nodes if node.type not in ("GROUP_OUTPUT", "COMPOSITE")]:
         tree.nodes.remove(node)
     return tree
-
-
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
 
 
 @pytest.fixture

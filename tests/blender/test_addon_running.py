@@ -19,11 +19,6 @@ def interface(addon):
     running.stop()
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 class Waiting:
     """A job that waits for its end to be allowed, and reports the progress that it is told to."""
 

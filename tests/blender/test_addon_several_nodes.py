@@ -4,12 +4,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
-
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    return compositor_tree(bpy.context.scene)
+pytestmark = pytest.mark.usefixtures("estimated")
 
 
 def twice(image):
