@@ -28,7 +28,7 @@ def test_they_give_the_same_light(image, composited, rendered_anew, codes, tmp_p
         look = next(node for node in tree.nodes if node.type == "GROUP" and node != group)
         composited(look.outputs["Code Values"])
         expected = codes / 255
-    else:
+    elif bpy.app.version < (5, 0, 0):  # later, the file keeps its working space, linear Rec.709
         config.getProcessor("Linear Rec.709 (sRGB)", "ACEScg").getDefaultCPUProcessor().applyRGB(expected)
     (tmp_path / "aces.ocio").write_text(config.serialize())
     pixels, log = rendered_anew(tmp_path / "aces.ocio")
