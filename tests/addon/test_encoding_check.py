@@ -1,4 +1,4 @@
-"""Plates that are logarithmic or linear are refused, by colour space and by metadata."""
+"""Plates that are logarithmic or linear are refused, by color space and by metadata."""
 
 import dataclasses
 
@@ -43,7 +43,7 @@ def test_the_configs_encoding_counts_for_more_than_the_name(encoding, expected):
 
 @pytest.fixture
 def check(make_job, running_config, plate_file):
-    """Check a file, taken for one of a colour space of the running config."""
+    """Check a file, taken for one of a color space of the running config."""
 
     def run(color_space="sRGB", path=plate_file, config=running_config):
         plate = dataclasses.replace(make_job(path).plate, color_space=color_space)

@@ -101,7 +101,7 @@ def test_in_movies_it_is_straight(addon, codes, tmp_path, composited, monkeypatc
     """So Blender takes it whatever the setting, and hands frames of 8 bits on multiplied by it."""
     from blender_addon.scene.compositor import compositor_tree
 
-    alpha = np.maximum(codes[..., :1], 1)  # colours without coverage are not in a movie
+    alpha = np.maximum(codes[..., :1], 1)  # colors without coverage are not in a movie
     frames = [
         write_image(tmp_path / f"{number}.png", np.dstack([codes, alpha]), oiio__UnassociatedAlpha=1)
         for number in (1, 2)

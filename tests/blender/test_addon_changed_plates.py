@@ -1,4 +1,4 @@
-"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearise twice."""
+"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearize twice."""
 
 import os
 

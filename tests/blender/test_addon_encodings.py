@@ -1,4 +1,4 @@
-"""Plates that are logarithmic or linear are warned of, by their colour space or by what their file says."""
+"""Plates that are logarithmic or linear are warned of, by their color space or by what their file says."""
 
 import numpy as np
 import pytest
@@ -19,7 +19,7 @@ def test_log_and_linear_color_spaces_are_warned_of(image, color_space):
 
 
 def test_a_stored_response_is_not_applied_to_them_either(image):
-    """The plate may have got the colour space, or the response of another plate, after its estimate."""
+    """The plate may have got the color space, or the response of another plate, after its estimate."""
     bpy.ops.crf.estimate_response(image=image.name)
     image.colorspace_settings.name = "Linear Rec.709"
     with pytest.raises(RuntimeError, match="is logarithmic or linear, so it has no camera response"):

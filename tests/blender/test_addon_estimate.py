@@ -142,7 +142,7 @@ def test_a_packed_image(image, plate_file, estimate):
 
 @pytest.mark.parametrize("color_space", ["sRGB", "Non-Color"])
 def test_a_generated_image(addon, codes, estimate, tmp_path, color_space):
-    """Its pixels are code values, whatever its colour space, and it has no metadata."""
+    """Its pixels are code values, whatever its color space, and it has no metadata."""
     image = bpy.data.images.new("painted", 256, 256)
     image.colorspace_settings.name = color_space
     pixels = np.ones((256, 256, 4), np.float32)

@@ -26,7 +26,7 @@ def untrusted(image, monkeypatch):
 
 
 def scene_state():
-    """What others see of the scene: names of data, colour spaces, compositors."""
+    """What others see of the scene: names of data, color spaces, compositors."""
     return (
         {image.name: (image.colorspace_settings.name, image.source, image.filepath) for image in bpy.data.images},
         [clip.name for clip in bpy.data.movieclips],

@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from tests.helpers.images import read_image
+from tests.helpers.reference_exr import read_reference
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
@@ -20,7 +20,8 @@ def run(image, **choices):
 def test_bake(image, plate_file, codes, estimate, depth, limit):
     assert run(image, apply="BAKE", depth=depth, exposure=1) == {"FINISHED"}
     expected = 2 * estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(read_image(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
+    _, judged = read_reference(plate_file.with_name("plate_linear.exr"))
+    assert np.abs(judged - expected).max() < 2 * limit
     baked = bpy.data.images["plate_linear.exr"]
     assert baked.colorspace_settings.name == "Linear Rec.709"
     pixels = np.array(baked.pixels[:]).reshape(256, 256, -1)[::-1, :, :3]

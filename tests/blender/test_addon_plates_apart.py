@@ -1,4 +1,4 @@
-"""Every plate has its own response, nothing is linearised twice, and nothing that others see changes."""
+"""Every plate has its own response, nothing is linearized twice, and nothing that others see changes."""
 
 import numpy as np
 import pytest
