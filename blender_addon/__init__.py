@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Estimate Camera Response: from a photograph to its camera's response and the linear plate, inside Blender.
 
-ui           what the user sees: operators, panel, settings, preferences; gathers a job from Blender
-scene        what is read from and changed in Blender's data: plates, node groups, stored estimates
-work         what a job does in its own thread: estimate and write files; no module of it imports bpy
+ui           operators, panel, settings, preferences; gathers a job from Blender
+scene        Blender's data, read and changed: plates, node groups, stored estimates
+work         a job in its own thread: estimate and write files; no module of it imports bpy
 lazy_import  loads the modules that need the estimator, when they are first used
 build        builds the zips of the extension
 

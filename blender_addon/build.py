@@ -76,21 +76,11 @@ def main(argv: Sequence[str] | None = None) -> int:
 
 
 def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
-    """Write zips and our own wheel into a folder, each with its list of components; return the paths of the zips.
+    """Write zips and our own wheel, each with its list of components; return the paths of the zips.
 
-    Parameters
-    ----------
-    names : sequence of str
-        Which ones: keys of `ZIPS`.
-    out : Path
-        The folder for the zips; older zips of the same name are replaced.
-    cache : Path
-        The folder that keeps the downloads.
+    `names` are keys of `ZIPS`, `out` is the folder for the zips, and `cache` keeps the downloads.
 
-    Raises
-    ------
-    BuildError
-        If a wheel cannot be downloaded or has another SHA-256 than expected, or the version numbers disagree.
+    Raise BuildError if a wheel cannot be downloaded or has another SHA-256, or the version numbers disagree.
     """
     text = (ADDON / MANIFEST).read_text(encoding="utf-8")
     own_wheel = build_own_wheel(tomllib.loads(text)["version"], cache)
@@ -117,8 +107,8 @@ def build_addon(names: Sequence[str], *, out: Path, cache: Path) -> list[Path]:
 
 def shipped_files() -> list[Path]:
     """Return the files of this folder that go into every zip; the manifest, which differs, is not among them."""
-    found = {path for pattern in SHIPPED for path in ADDON.glob(pattern)}
-    return sorted(path for path in found if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
+    paths = {path for pattern in SHIPPED for path in ADDON.glob(pattern)}
+    return sorted(path for path in paths if path.relative_to(ADDON).as_posix() not in NOT_SHIPPED)
 
 
 def platform_wheels(wheels: Sequence[str], platform: str, pythons: Sequence[str] | None = None) -> list[str]:
@@ -140,14 +130,14 @@ def platform_manifest(text: str, platform: str, wheels: Sequence[str]) -> str:
     """
     for key, values in (("platforms", [platform]), ("wheels", wheels)):
         lines = "".join(f"    {json.dumps(value)},\n" for value in values)
-        text, found = re.subn(rf"^{key} = \[\n.*?^\]$", f"{key} = [\n{lines}]", text, flags=re.MULTILINE | re.DOTALL)
-        if found != 1:
-            raise BuildError(f"{MANIFEST}: needs one list `{key}` with one line per entry, found {found}")
+        text, count = re.subn(rf"^{key} = \[\n.*?^\]$", f"{key} = [\n{lines}]", text, flags=re.MULTILINE | re.DOTALL)
+        if count != 1:
+            raise BuildError(f"{MANIFEST}: needs one list `{key}` with one line per entry, found {count}")
     return text
 
 
 def build_own_wheel(version: str, cache: Path) -> Path:
-    """Build the wheel that holds `crfnet_core` and `crfnet`, beside the downloads, and return its path.
+    """Build the wheel that holds `crfnet_core` and `crfnet` in the folder of the downloads, and return its path.
 
     Its version ends in a hash of its sources, such as 0.1.0+1f3a5b7c: Blender keeps an installed wheel if another of
     the same name and version comes with a newer zip.
@@ -179,18 +169,18 @@ def fetch_wheel(name: str, cache: Path) -> Path:
     """Return the path of a wheel of wheels.sha256 in the cache; download it if it is absent or damaged."""
     expected = _expected_hashes().get(name)
     if expected is None:
-        raise BuildError(f"{name}: has no line in wheels.sha256; download it and add what sha256sum says")
-    kept = cache / name
-    if kept.is_file() and _sha256(kept) == expected:
-        return kept
+        raise BuildError(f"{name}: has no line in wheels.sha256; download it and add its SHA-256")
+    path = cache / name
+    if path.is_file() and _sha256(path) == expected:
+        return path
     cache.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory(dir=cache) as folder:
         _download(name, Path(folder))
-        found = _sha256(Path(folder, name))
-        if found != expected:
-            raise BuildError(f"{name}: the download has SHA-256 {found}, wheels.sha256 says {expected}")
-        Path(folder, name).replace(kept)
-    return kept
+        digest = _sha256(Path(folder, name))
+        if digest != expected:
+            raise BuildError(f"{name}: the download has SHA-256 {digest}, wheels.sha256 has {expected}")
+        Path(folder, name).replace(path)
+    return path
 
 
 def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:

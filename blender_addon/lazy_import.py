@@ -16,23 +16,15 @@ import bpy
 
 from .work.errors import AddonError
 
-#: What comes as wheels with the add-on, and what comes with Blender.
-_IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "platformdirs")
+#: Packages that come as wheels with the add-on, and with Blender.
+_IN_WHEELS = ("crfnet_core", "crfnet", "onnxruntime", "PIL", "platformdirs")
 _IN_BLENDER = ("OpenImageIO", "PyOpenColorIO", "numpy")
 
 
 def load(module: str) -> ModuleType:
-    """Return a module that imports the estimator, directly or through others.
+    """Return a module that imports the estimator: ``".work.run"`` is the add-on's own, ``"crfnet.report"`` is not.
 
-    Parameters
-    ----------
-    module : str
-        As for `importlib.import_module`: ``".work.run"`` is the add-on's own, ``"crfnet.configs.files"`` is not.
-
-    Raises
-    ------
-    AddonError
-        If a library cannot be imported; it says which one, and what to install.
+    Raise AddonError, with the remedy, if a library cannot be imported.
     """
     _expose_blenders_own()
     try:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What a completed job changes in Blender's data: after everything that can fail, and in Blender's thread only."""
+"""Change Blender's data as a completed job asks: after everything that can fail, and in Blender's thread only."""
 
 from __future__ import annotations
 
@@ -17,13 +17,10 @@ from .plates import Datablock, alpha_mode, datablock_of_plate
 
 
 def apply(context: bpy.types.Context, completed: CompletedJob) -> str:
-    """Store the estimate on its plate, apply it as the job asks, and return what was done, in words.
+    """Store the estimate on its plate, apply it as the job asks, and return the change in words.
 
-    Raises
-    ------
-    AddonError, CRFNetError
-        If the plate was removed, the compositor is linked from another file, or the config lacks a color space that
-        the nodes need; nothing is changed then.
+    Raise AddonError or CRFNetError, and change nothing, if the plate was removed, the compositor is linked from another
+    file, or the config lacks a color space that the nodes need.
     """
     job, datablock = completed.job, datablock_of_plate(completed.job.plate)
     if completed.is_applied and completed.files is None:
@@ -131,17 +128,14 @@ def _linear_clip(plate: bpy.types.MovieClip, baked: Baked) -> bpy.types.MovieCli
 
 
 def _path_like(plate: Datablock, path: str) -> str:
-    """Return a path relative to the .blend file if that of the plate is, else as it is."""
+    """Return a path relative to the .blend file if the plate's path is relative, else as it is."""
     return bpy.path.relpath(path) if plate.filepath.startswith("//") and bpy.data.filepath else path
 
 
 def shown_tree(context: bpy.types.Context) -> bpy.types.NodeTree:
     """Return the compositor tree that the node editor shows, or the scene's if no node editor is active.
 
-    Raises
-    ------
-    AddonError
-        If it is linked from another file, and so cannot be changed for good.
+    Raise AddonError if it is linked from another file, and so cannot be changed for good.
     """
     space = context.space_data
     is_editor = space is not None and space.type == "NODE_EDITOR" and space.tree_type == "CompositorNodeTree"

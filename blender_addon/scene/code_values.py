@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The code values of a plate for the compositor: a copy of its image or clip, which Blender does not linearize.
 
-The node group needs code values, but an Image node delivers what the image's colour space makes of them. So the nodes
-that are linearised read a copy whose colour space is Non-Color, and the plate itself stays as it is in every editor.
-Whatever colour space the plate gets later, the nodes are right.
+The node group needs code values, but an Image node delivers their conversion by the image's color space. So the nodes
+that are linearized read a copy whose color space is Non-Color, and the plate itself stays as it is in every editor.
+Whatever color space the plate gets later, the nodes are right.
 
-A file that is opened again is, for Blender, the first image in the order of names that reads it. So the name of a copy
-begins with that of its plate, and comes behind it.
+If a file is opened again, Blender returns the first image in the order of names that reads it. So the name of a copy
+begins with the name of its plate, and comes behind it.
 """
 
 from __future__ import annotations
@@ -22,7 +22,7 @@ from .node_links import LOOK, PLATE
 from .packed_images import has_own_file, is_painted
 from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state
 
-#: The custom property of a copy that says which state of the plate's file it has read: `plates.file_state`.
+#: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
 _READ = "camera_response_read"
 
 
@@ -47,10 +47,10 @@ def code_values(plate: Datablock) -> Datablock:
 
 
 def alpha_in_compositor(plate: Datablock) -> str:
-    """Return how the alpha of the code values is to be taken that the compositor gets, as by `Image.alpha_mode`.
+    """Return the alpha mode, as in `Image.alpha_mode`, of the code values that the compositor gets.
 
     Images and clips give them as stored. But Blender multiplies the frames of movies of 8 bits by alpha, even in
-    Non-Color, and hands on those of more bits as stored.
+    Non-Color; frames of more bits come as stored.
     """
     if plate.source != "MOVIE":
         return alpha_mode(plate) or "STRAIGHT"
@@ -58,7 +58,7 @@ def alpha_in_compositor(plate: Datablock) -> str:
 
 
 def _is_decoded_to_floats(movie: Datablock) -> bool:
-    """Return whether Blender decodes a movie to floats, as it does with those of more than 8 bits."""
+    """Return whether Blender decodes a movie to floats, as above 8 bits."""
     if isinstance(movie, bpy.types.Image):
         return movie.is_float
     try:
@@ -71,11 +71,10 @@ def _is_decoded_to_floats(movie: Datablock) -> bool:
 
 
 def outdated(plate: Datablock, state: str) -> str:
-    """Return that the nodes of a plate show it as it was earlier, and what to do; empty if they do not.
+    """Return that the nodes of a plate show an earlier state of its file, and what to do; else an empty text.
 
-    The state is that of the plate's file, see `plates.file_state`. A file that is not found is told first; of a
-    sequence, one frame may well be missing. Of an image that was painted in Blender and has no file nobody knows: see
-    `is_painted_copy_shown`. So only one of the two looks for the copies of a plate.
+    `state` is the present one, see `plates.file_state`. A missing file comes first; of a sequence, a frame may well be
+    missing. For painted images see `is_painted_copy_shown`: only one of the two looks for the copies of a plate.
     """
     if is_painted(plate):
         return ""
@@ -94,7 +93,7 @@ def outdated(plate: Datablock, state: str) -> str:
 def is_painted_copy_shown(plate: Datablock) -> bool:
     """Return whether nodes show an image that was painted in Blender as it was when it was applied.
 
-    Blender does not tell when it is painted on, and comparing all pixels takes too long for a panel.
+    Blender does not report painting, and comparing all pixels takes too long for a panel.
     """
     return is_painted(plate) and any(copy.users for copy in _copies(plate))
 
@@ -102,11 +101,11 @@ def is_painted_copy_shown(plate: Datablock) -> bool:
 def pack_with_plates() -> None:
     """Pack the copies of plates that have been packed since: their files may be gone when the scene is opened again.
 
-    Those of another file, which are linked, are left to the one who saves that.
+    Linked copies are left alone.
     """
     for plate in {copy.get(CODE_VALUES_OF) for copy in bpy.data.images} - {None}:
-        is_kept_packed = plate.packed_file and plate.library is None and not is_painted(plate)
-        if is_kept_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
+        is_packed = plate.packed_file and plate.library is None and not is_painted(plate)
+        if is_packed and not all(_is_alike(copy, plate) for copy in _copies(plate)):
             code_values(plate)
 
 
@@ -125,17 +124,14 @@ def note_files_as_read() -> None:
 
 
 def _copies(plate: Datablock) -> Iterator[Datablock]:
-    """Yield the copies of a plate, of which there is at most one unless the user has duplicated it.
-
-    A plate that was linked and made local may have one in the other file still, which cannot be changed.
-    """
+    """Yield the copies of a plate in its own file: one, unless the user has duplicated it."""
     for copy in _collection(plate):
         if copy.get(CODE_VALUES_OF) == plate and copy.library == plate.library:
             yield copy
 
 
 def _name_behind(name: str) -> str:
-    """Return the name of a plate's copy, which begins with that of the plate and comes behind it.
+    """Return the name of a plate's copy, which begins with the plate's name and comes behind it.
 
     A long name is cut, so that the end fits. The wide tilde then stands where the plate's name goes on, and comes
     behind the letters of all languages.

@@ -9,11 +9,12 @@ from pathlib import Path
 import bpy
 
 from .. import lazy_import
-from ..work.job import CONFIG_VARIABLES
 
-#: The name under which Blender looks for a config. It is
-#: `crfnet.defaults.CONFIG_NAME` again, because `crfnet` comes as a wheel, and the add-on has to start without it.
+#: The file name by which Blender looks for a config.
 CONFIG_NAME = "config.ocio"
+
+#: Environment variables that name Blender's config; Blender 4.5 knows the first only.
+CONFIG_VARIABLES = ("OCIO", "BLENDER_OCIO")
 
 
 def color_spaces() -> list[str]:
@@ -24,10 +25,7 @@ def color_spaces() -> list[str]:
 def data_space() -> str:
     """Return the name of the color space that leaves pixels as they are; in Blender's own config, "Non-Color".
 
-    Raises
-    ------
-    ConfigError
-        If the config of this session has none, or cannot be read.
+    Raise ConfigError if the config of this session has none, or cannot be read.
     """
     if "Non-Color" in color_spaces():
         return "Non-Color"
@@ -37,7 +35,7 @@ def data_space() -> str:
 def running_config() -> str:
     """Return the config that this Blender was started with: the environment's, the user's or Blender's own.
 
-    Blender 5.2 itself sets the variable OCIO to the config that it has found.
+    Blender 5.2 itself sets the variable OCIO to its config.
     """
     names = CONFIG_VARIABLES[::-1] if bpy.app.version >= (5, 0, 0) else CONFIG_VARIABLES[:1]
     user = Path(bpy.utils.user_resource("DATAFILES", path="colormanagement"), CONFIG_NAME)

@@ -77,7 +77,7 @@ def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeT
     linear, srgb_space, working = linear_rec709(), srgb(), working_space()
     group = made_for(plate, bpy.data.node_groups, LOOK)
     if group is None:
-        group = new_group(plate, f"Camera Look {name}", LOOK, "Stops that the linear plate was given; taken back here")
+        group = new_group(plate, f"Camera Look {name}", LOOK, "Exposure of the linear plate in stops, taken back here")
         codes = group.interface.new_socket(CODE_VALUES, in_out="OUTPUT", socket_type="NodeSocketColor")
         codes.description = "For the view transform Raw, and for files without color management"
         group.interface.items_tree["Image"].description = "For the view transform Standard on an sRGB display"

@@ -18,7 +18,7 @@ _USERS = {"IMAGE_EDITOR": "image_user", "CLIP_EDITOR": "clip_user"}
 
 
 def shown_number(movie: bpy.types.Image | bpy.types.MovieClip) -> int:
-    """Return the number of the frame that the active editor shows; outside of one, the scene's; from 1."""
+    """Return the number, from 1, of the frame that the active editor shows; outside an editor, of the scene's frame."""
     space = bpy.context.space_data
     user = getattr(space, _USERS.get(getattr(space, "type", ""), ""), None)
     number = user.frame_current if user else bpy.context.scene.frame_current
@@ -26,19 +26,10 @@ def shown_number(movie: bpy.types.Image | bpy.types.MovieClip) -> int:
 
 
 def codes_of_frame(movie: bpy.types.Image | bpy.types.MovieClip, number: int) -> Uint8Array | None:
-    """Return the code values of a frame, shape (H, W, 3 or 4), the top row first.
+    """Return the code values of a frame, shape (H, W, 3 or 4), the top row first; None above 8 bits.
 
-    Blender can be asked for a frame only where it scales one, so a copy is scaled to its own size and discarded.
-
-    Returns
-    -------
-    ndarray or None
-        None if Blender decodes the movie to floats, as it does above 8 bits: these pixels are not code values.
-
-    Raises
-    ------
-    AddonError
-        If Blender cannot decode the frame.
+    Blender decodes these movies to floats, which are not code values. It takes the number of a frame only where it
+    scales, so a copy is scaled to its own size and discarded. Raise AddonError if Blender cannot decode the frame.
     """
     image = None
     try:

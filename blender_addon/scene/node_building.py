@@ -14,15 +14,15 @@ if TYPE_CHECKING:
 #: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
-#: The distance between a group's node and its neighbours, and its width, in units of the node editor.
+#: The distance between a group's node and its neighbors, and its width, in units of the node editor.
 GAP, WIDTH = 60, 220
 
-#: Nodes that Blender 5.0 replaced by those of shaders.
+#: Nodes that Blender 5.0 replaced by shader nodes.
 _MATH, _COMBINE = (
     ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
 )
 
-#: The sockets of the nodes that separate and combine colours.
+#: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")
 
 #: Distances between the nodes of neighbouring columns and rows, in units of the node editor.
@@ -98,7 +98,7 @@ def map_uv(
 def convert_color_space(
     grid: NodeGrid, source: str, target: str, colors: bpy.types.NodeSocket, column: float
 ) -> bpy.types.NodeSocket:
-    """Return the socket of colours that are converted from one colour space to another."""
+    """Return the socket of colors that are converted from one color space to another."""
     node = grid.node("CompositorNodeConvertColorSpace", column)
     node.from_color_space = source
     node.to_color_space = target
@@ -107,19 +107,19 @@ def convert_color_space(
 
 
 def multiply_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
-    """Return the socket of colours that are multiplied by their alpha."""
+    """Return the socket of colors that are multiplied by their alpha."""
     return _alpha_node(grid, colors, column, "To Premultiplied", "STRAIGHT_TO_PREMUL")
 
 
 def divide_by_alpha(grid: NodeGrid, colors: bpy.types.NodeSocket, column: float) -> bpy.types.NodeSocket:
-    """Return the socket of colours that are divided by their alpha."""
+    """Return the socket of colors that are divided by their alpha."""
     return _alpha_node(grid, colors, column, "To Straight", "PREMUL_TO_STRAIGHT")
 
 
 def _alpha_node(
     grid: NodeGrid, colors: bpy.types.NodeSocket, column: float, kind: str, earlier_kind: str
 ) -> bpy.types.NodeSocket:
-    """Return the socket of an Alpha Convert node; the name of its kind in Blender 4.5 is another one."""
+    """Return the socket of an Alpha Convert node; its kind has another name in Blender 4.5."""
     node = grid.node("CompositorNodePremulKey", column)
     if IS_BLENDER_5:
         node.inputs["Type"].default_value = kind

@@ -49,21 +49,8 @@ SIZE = (LUT_LENGTH, 1) if IS_BLENDER_5 else (256, 256)
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
     """Return the plate's node group "Camera Response <name>"; one that exists already is updated.
 
-    Parameters
-    ----------
-    plate : Image or MovieClip
-        The plate. Every plate has a group of its own, which survives renaming, saving and appending.
-    name : str
-        The plate's name. If another plate's group has it, the folder of the plate is added.
-    curve : ResponseCurve
-        The plate's response.
-    exposure : float
-        The default of the Exposure socket, in stops.
-
-    Raises
-    ------
-    ConfigError
-        If the config has no linear Rec.709, the colour space to which the inverse response leads.
+    Every plate has a group of its own, which survives renaming, saving and appending. `exposure` is the default of its
+    Exposure socket, in stops. Raise ConfigError if the config has no linear Rec.709.
     """
     source = linear_rec709()
     group = made_for(plate, bpy.data.node_groups)
@@ -78,7 +65,7 @@ def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: flo
 
 
 def check_config() -> None:
-    """Raise a ConfigError unless the config of this session has the colour spaces that the node group needs."""
+    """Raise a ConfigError unless the config of this session has the color spaces that the node group needs."""
     linear_rec709(), data_space(), working_space()
 
 
@@ -98,18 +85,10 @@ def working_space() -> str:
 
 
 def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.types.NodeTree:
-    """Return a plate's new node group, which has sockets and no nodes.
+    """Return a plate's new node group, with sockets and without nodes.
 
-    Parameters
-    ----------
-    plate : Image or MovieClip
-        The plate.
-    title : str
-        The name of the group; if there is such a group already, the folder of the plate is added.
-    mark : str
-        The custom property by which the group is found again; its value is the plate.
-    exposure : str
-        The description of the Exposure socket.
+    If there is a group of this title, the folder of the plate is added to its name. The custom property `mark`, whose
+    value is the plate, finds it again. `exposure` is the description of the Exposure socket.
     """
     names = distinct_names(title, Path(bpy.path.abspath(plate.filepath)).parent.name)
     free = next(name for name in names if name not in bpy.data.node_groups)
@@ -154,9 +133,8 @@ def _add_nodes(
 
     A matrix comes behind the look-ups if the plate has other primaries than Rec.709.
 
-    The colours come as they are stored, whatever the alpha of the image, for an exception see `alpha_in_compositor`. If
-    alpha is "Premultiplied", they are divided by it; if it is "None", it is 1; and if it is "Channel Packed", they are
-    not multiplied by it.
+    The colors come as stored, but for an exception: see `alpha_in_compositor`. They are divided by an alpha that is
+    "Premultiplied", and not multiplied by one that is "Channel Packed"; if it is "None", alpha is 1.
     """
     grid = NodeGrid(group)
     start = grid.node("NodeGroupInput", -1)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which nodes lie behind a node, through reroutes, other nodes and node groups; what is linearised twice, or not."""
+"""Find the nodes behind a node, through reroutes, other nodes and node groups, and plates linearized twice or never."""
 
 from __future__ import annotations
 
@@ -29,8 +29,8 @@ def nodes_behind(node: bpy.types.Node) -> Iterator[bpy.types.Node]:
     """Yield every other node that the outputs of a node lead to, nearest first.
 
     Where the links enter a node group, the nodes in it follow; where they leave the tree of the node, the nodes behind
-    every node that holds this tree. A path that entered a tree does not leave it so, as other nodes that hold it, such
-    as those of another scene, are not behind this one; another path may, such as that through two nodes of one group.
+    every node that holds this tree. A path that entered a tree does not leave it, because other nodes that hold it,
+    such as in another scene, are not behind this one.
     """
     yielded, seen, waiting = {_key(node)}, set(), [(node, _Way.LINKED)]
     while waiting:
@@ -68,7 +68,7 @@ def holds_group_of(node: bpy.types.Node, plate: Datablock) -> bool:
 
 
 def linearized_twice(plate: Datablock) -> str:
-    """Return why a plate is linearised twice in a compositor of the file, and what to do; empty if it is not."""
+    """Return why a plate is linearized twice in a compositor of the file, and what to do; else an empty text."""
     for node in nodes_of(plate):
         groups = [other for other in nodes_behind(node) if linearizes(other)]
         if groups and shown_by_node(node) == plate and not plate.colorspace_settings.is_data:
@@ -79,9 +79,9 @@ def linearized_twice(plate: Datablock) -> str:
 
 
 def without_group(plate: Datablock) -> str:
-    """Return that a compositor of the file shows a plate's code values as they are, and what to do; empty if none does.
+    """Return that a compositor of the file shows a plate's code values, and what to do; else an empty text.
 
-    The node group has been muted or deleted, and the links around it were kept or made again.
+    The node group is muted, or it was deleted and the links around it were made again.
     """
     for node in nodes_of(plate):
         behind = list(nodes_behind(node))
@@ -96,7 +96,7 @@ def linearizes(node: bpy.types.Node) -> bool:
 
 
 def _title(node: bpy.types.Node) -> str:
-    """Return what stands in the head of a node."""
+    """Return the text in the head of a node."""
     return node.label or node.name
 
 
@@ -117,5 +117,5 @@ def _followers(node: bpy.types.Node, way: _Way) -> Iterator[tuple[bpy.types.Node
 
 
 def _key(node: bpy.types.Node) -> tuple[int, str]:
-    """Return what tells a node from all others."""
+    """Return a key that only this node has."""
     return node.id_data.as_pointer(), node.name

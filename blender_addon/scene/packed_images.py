@@ -32,18 +32,9 @@ def file_name(image: bpy.types.Image) -> Path:
 
 
 def content_of(image: bpy.types.Image) -> bytes | Uint8Array:
-    """Return what the file of a packed or painted image has to hold.
+    """Return the packed file, or the code values, shape (H, W, 3 or 4), of a painted image of 8 bits.
 
-    Returns
-    -------
-    bytes or ndarray, uint8, shape (H, W, 3 or 4)
-        The packed file byte for byte, or the code values of an 8-bit image, the top row first: these are its pixels,
-        whatever its color space.
-
-    Raises
-    ------
-    AddonError
-        If the image has no pixels.
+    Its pixels are code values, whatever its color space. Raise AddonError if the image has no pixels.
     """
     return codes_of_pixels(image) if is_painted(image) else image.packed_file.data
 

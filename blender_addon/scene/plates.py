@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Which image or clip is meant, and where its code values lie on disk."""
+"""Find the image or clip that the user means, and its code values on disk."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")
 #: Suffixes of photographs that the estimator reads and Blender does not, or only some versions of it.
 HEIF_SUFFIXES = (".heic", ".heif", ".hif", ".avif")
 
-#: What the panel of each editor asks for while there is no plate.
+#: The panel's request in each editor while there is no plate.
 OPEN_A_PLATE = {
     "IMAGE_EDITOR": "Open a photograph, sequence or movie first",
     "CLIP_EDITOR": "Open a sequence or movie first",
@@ -38,12 +38,12 @@ Datablock: TypeAlias = bpy.types.Image | bpy.types.MovieClip
 
 
 def is_in_editor(context: bpy.types.Context) -> bool:
-    """Return whether one of the `EDITORS` is active; it is not where a script runs, which names its plate."""
+    """Return whether one of the `EDITORS` is active; it is not where a script runs."""
     return context.area is not None and context.area.type in EDITORS
 
 
 def active_datablock(context: bpy.types.Context) -> Datablock | None:
-    """Return the image or clip that the editor shows; in the compositor, that of the active node.
+    """Return the image or clip that the editor shows; in the compositor, the active node's.
 
     While an editor shows the linear plate for comparison, or a plate's code values, it is the plate. If a plate's node
     group is active, it is the plate that the group linearizes.
@@ -61,15 +61,12 @@ def active_datablock(context: bpy.types.Context) -> Datablock | None:
 
 
 def compared_plate(image: bpy.types.Image | None) -> bpy.types.Image | None:
-    """Return the plate of which an image is the linear one that is only shown; None for any other image."""
+    """Return the plate that `image` previews in linear light, or None."""
     return None if image is None else image.get(COMPARED_PLATE)
 
 
 def datablock_of_node(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the plate of a compositor's Image or Movie Clip node; None for any other node.
-
-    Of a node that shows a plate's code values, it is the plate.
-    """
+    """Return the plate of a compositor's Image or Movie Clip node, which may show its code values; else None."""
     return plate_itself(shown_by_node(node))
 
 
@@ -85,7 +82,7 @@ def shown_by_node(node: bpy.types.Node | None) -> Datablock | None:
 
 
 def _plate_behind(node: bpy.types.Node | None) -> Datablock | None:
-    """Return the image or clip of a node; of a plate's node group that of the node that its Image input comes from."""
+    """Return the image or clip of a node; for a plate's node group, of the node at its Image input."""
     datablock, seen = datablock_of_node(node), {node}
     if datablock is not None or not _is_response_group(node):
         return datablock
@@ -106,13 +103,7 @@ def _is_response_group(node: bpy.types.Node | None) -> bool:
 
 
 def chosen_datablock(context: bpy.types.Context, image: str = "", clip: str = "") -> Datablock:
-    """Return the image or clip of the given name, or the active one if no name is given.
-
-    Raises
-    ------
-    AddonError
-        If there is no such image or clip, or none is active.
-    """
+    """Return the image or clip of a name, or the active one if both names are empty; raise AddonError if none is."""
     for name, collection, kind in ((image, bpy.data.images, "image"), (clip, bpy.data.movieclips, "clip")):
         if name:
             if name not in collection:
@@ -125,13 +116,7 @@ def chosen_datablock(context: bpy.types.Context, image: str = "", clip: str = ""
 
 
 def datablock_of_plate(plate: Plate) -> Datablock:
-    """Return the image or clip of a plate.
-
-    Raises
-    ------
-    AddonError
-        If it was removed while the job ran.
-    """
+    """Return the image or clip of a plate; raise AddonError if it was removed while the job ran."""
     for datablock in (*bpy.data.images, *bpy.data.movieclips):
         if datablock.session_uid == plate.uid:
             return datablock
@@ -207,12 +192,9 @@ def _obstacle_unsaved(datablock: Datablock) -> str:
 
 
 def plate_of(datablock: Datablock) -> Plate:
-    """Return the plate of an image or clip; it holds pixels that are only in memory: painted ones, a movie's frame.
+    """Return the plate of an image or clip, with pixels that are only in memory: painted ones, a movie's frame.
 
-    Raises
-    ------
-    AddonError
-        If no response can be estimated from it, or its file is not found.
+    Raise AddonError if no response can be estimated from it, or its file is not found.
     """
     if problem := obstacle(datablock):
         raise AddonError(problem)
@@ -239,7 +221,7 @@ def plate_of(datablock: Datablock) -> Plate:
 
 
 def name_of(datablock: Datablock) -> str:
-    """Return the name of a plate, whose file need not be found: that of the file without suffix and frame number."""
+    """Return the name of a plate: its file name without suffix and frame number. The file need not be there."""
     path = _path(datablock) if has_own_file(datablock) else file_name(datablock)
     return _plate(datablock, path, folder=None).name
 
@@ -247,24 +229,23 @@ def name_of(datablock: Datablock) -> str:
 def file_state(datablock: Datablock) -> str:
     """Return the name, the size in bytes and the time in seconds of a plate's file, a line each.
 
-    It is empty if the file is not found, or the plate has none of its own. Of a sequence it is one of the frames. The
-    folder does not count, so that a project can be moved.
+    It is empty if the file is not found, or the plate has none of its own; of a sequence, one frame counts. The folder
+    does not count, so that a project can be moved.
     """
     if not datablock.filepath or not has_own_file(datablock):
         return ""
     path = _path(datablock)
     try:
-        found = path.stat()
+        status = path.stat()
     except OSError:
         return ""
-    return f"{path.name}\n{found.st_size}\n{found.st_mtime:.0f}"
+    return f"{path.name}\n{status.st_size}\n{status.st_mtime:.0f}"
 
 
 def alpha_mode(datablock: Datablock) -> str:
-    """Return how Blender takes the alpha of an image; empty for movies, clips and what it does not show.
+    """Return how Blender takes the alpha of an image; empty where it has no such setting or ignores it.
 
-    For these, it has no such setting, or does not heed it. It divides by alpha only where it reads a file: what was
-    painted is never multiplied by it.
+    It divides by alpha only where it reads a file: painted pixels are never multiplied by it.
     """
     is_heeded = isinstance(datablock, bpy.types.Image) and datablock.source != "MOVIE" and is_shown(datablock)
     if not is_heeded:
@@ -279,7 +260,7 @@ def _path(datablock: Datablock) -> Path:
 
 def _plate(datablock: Datablock, path: Path, **details: Any) -> Plate:
     """Return the plate of an image or clip whose code values, or first frame, are in a file."""
-    return Plate.of_file(
+    return Plate.from_file(
         path,
         is_sequence=datablock.source == "SEQUENCE",
         datablock_name=datablock.name,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the panel shows of an estimate: the verdict in a word, the curve, warnings, and the details on request."""
+"""The panel's box of an estimate: the verdict in a word, the curve, warnings, and the details on request."""
 
 from __future__ import annotations
 
@@ -31,17 +31,17 @@ MEAN_OF_CAMERAS = ("Mean of cameras", "QUESTION", "Usable only as that: the pict
 LOADED_WORDS = ("Loaded", "FILE", "")
 COPIED_WORDS = ("Copied", "DUPLICATE", "It is right only if the same camera took both, with the same settings.")
 
-#: What the picture of the curve shows.
-CAPTION = "Code value by stops below white. Blue: 90 % band. Dashed: gamma 2.2."
+#: The axes and colors of the picture of the curve.
+CAPTION = "Code value (a line every 64) by stops below white (every 2). Blue: 90 % band. Dashed: gamma 2.2."
 
-#: The mean width of a letter of the interface, what the panel and a box take beside a line, and the width of an icon:
-#: pixels at a scale of 1.
+#: The mean width of a letter of the interface, the borders of the panel and a box, and the width of an icon: pixels at
+#: a scale of 1.
 _LETTER, _BORDER, _ICON = 6, 60, 20
 
 #: The least and the largest side of the picture of the curve, in units of the interface, which are as wide as an icon.
 _SMALLEST, _LARGEST = 9, 18
 
-#: The distance of lines that belong together, against that of buttons.
+#: The distance of lines that belong together, relative to the distance of buttons.
 _LINE = 0.75
 
 

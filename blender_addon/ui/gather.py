@@ -27,26 +27,11 @@ def gather_job(
     despite_verdict: bool = False,
     arguments: Mapping[str, Any],
 ) -> Job:
-    """Return the job of a plate.
+    """Return the job of a plate: to apply its stored estimate (`is_estimated`), or to estimate its response anew.
 
-    Parameters
-    ----------
-    datablock : Image or MovieClip
-        The plate, with its settings.
-    is_estimated : bool
-        Whether its stored estimate is applied; otherwise its response is estimated anew.
-    despite_verdict : bool
-        Whether the response is applied even if it is not to be trusted.
-    arguments : mapping
-        Settings that were given as arguments of the operator, which take precedence over those of the plate.
-
-    Raises
-    ------
-    AddonError
-        If no response can be estimated from the plate or a further photograph, a file is not found, no file of the
-        prior is chosen, or an estimate is to be applied and Apply As says to estimate only.
-    ConfigError
-        If the config lacks a color space that the nodes need.
+    `arguments` of the operator take precedence over the settings of the plate. Raise AddonError if no response can be
+    estimated from the plate, its file is not found, or an estimate is to be applied and Apply As is Estimate Only;
+    ConfigError if the config lacks a color space that the nodes need.
     """
     settings = datablock.camera_response_settings
     chosen = {name: arguments.get(name, getattr(settings, name)) for name in CHOICES}
@@ -89,7 +74,7 @@ def _check_mode(datablock: plates.Datablock, mode: ApplyMode) -> None:
 
 
 def _known_primaries(datablock: plates.Datablock, plate: Plate) -> Primaries | None:
-    """Return the stored primaries of a plate whose file is still that of the estimate, so that it need not be read."""
+    """Return the stored primaries of a plate; None if its file has changed since the estimate and has to be read."""
     is_same = not stored_estimate.is_file_changed(datablock, plate.file_state)
     return stored_estimate.primaries(datablock) if is_same and not stored_estimate.origin(datablock) else None
 
@@ -107,10 +92,7 @@ def _output(plate: Plate, chosen: Mapping[str, Any], *, despite_verdict: bool) -
 
 
 def _usual_folder(mode: ApplyMode, plate: Plate) -> Path | None:
-    """Return the folder for files if none was chosen for the plate.
-
-    It is that of the preferences, the plate or the .blend file, the first there is.
-    """
+    """Return the folder for files if none was chosen: of the preferences, the plate or the .blend file."""
     if mode in WITHOUT_FILES:
         return None
     return absolute(preferences().folder) or plate.folder or absolute("//" if bpy.data.filepath else "")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What happens when a .blend file is opened or saved, and at undo.
+"""Handlers for opening and saving a .blend file, and for undo.
 
 Before a file is saved and around undo, editors that show a linear plate for comparison go back to the plate, so that it
 is never saved. The code values of plates that were packed are packed, too.
@@ -27,7 +27,7 @@ def end_comparisons(*_arguments: Any) -> None:
 
 @bpy.app.handlers.persistent
 def note_files_as_read(_path: str = "") -> None:
-    """Take the code values of all plates for those of their present files, which Blender has just read."""
+    """Note that the code values of all plates are from their present files, which Blender has just read."""
     code_values.note_files_as_read()
 
 

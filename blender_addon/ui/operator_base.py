@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What operators share: when they can run, the plate that a script names, and how they report a problem."""
+"""The base of operators: when they can run, the plate that a script names, and how they report a problem."""
 
 from collections.abc import Callable
 from typing import TYPE_CHECKING, ClassVar
@@ -16,7 +16,7 @@ NO_ESTIMATE = "Estimate the camera response of a plate first"
 
 
 class ChosenPlate:
-    """An operator on one plate, and the arguments that name it; the panel leaves them empty, for the active one."""
+    """An operator on one plate, with the arguments that name it; they are empty for the active plate."""
 
     image: bpy.props.StringProperty(
         name="Image", description="Name of the image; empty for the active plate", options={"HIDDEN", "SKIP_SAVE"}
@@ -53,7 +53,7 @@ class ChosenPlate:
 
 
 def is_allowed(operator: type[bpy.types.Operator] | type[ChosenPlate], why_not: str) -> bool:
-    """Return whether there is no reason why an operator cannot run; its tooltip tells the reason."""
+    """Return whether an operator can run; its tooltip gives the reason if not."""
     if why_not:
         operator.poll_message_set(why_not)
     return not why_not

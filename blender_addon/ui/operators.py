@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The operators: gather a job, run it, apply what it found to the scene, report.
+"""The operators: gather a job, run it, apply its result to the scene, report.
 
 They have no panel "Adjust Last Operation" (REGISTER): it would show the arguments of the call instead of the plate's
 settings, and estimate the response anew, in the main thread, at every change.
@@ -23,12 +23,12 @@ if TYPE_CHECKING:
     from ..work.job import Job
     from ..work.run import CompletedJob
 
-#: What is reported of an estimate that is not applied because it is not to be trusted.
+#: The report on an estimate that is not applied because it is not to be trusted.
 WITHHELD = "not applied; to use it all the same, press Apply Anyway"
 
 
 class PlateOperator(ChosenPlate, PlateChoices):
-    """What "Estimate Camera Response" and "Apply Camera Response" share.
+    """The base of "Estimate Camera Response" and "Apply Camera Response".
 
     A script, and Blender in the background, calls `execute`, which returns when the job is done. The interface calls
     `invoke`, which starts the job in another thread, and then `modal` at every event. Either way, nothing in Blender's
@@ -70,7 +70,7 @@ class PlateOperator(ChosenPlate, PlateChoices):
         return {"RUNNING_MODAL"}
 
     def modal(self, context: bpy.types.Context, event: bpy.types.Event) -> set[str]:
-        """Show the progress; cancel the job on Esc; apply what it found when it has ended."""
+        """Show the progress; cancel the job on Esc; apply its result when it has ended."""
         if event.type == "ESC" and event.value == "PRESS":
             self._run.cancel()
             return {"RUNNING_MODAL"}

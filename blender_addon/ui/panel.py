@@ -97,7 +97,7 @@ def _draw_progress(layout: bpy.types.UILayout, run: running.Run) -> None:
 
 
 def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw what no longer fits the estimate: another file, nodes that show the earlier one, linearise twice or not."""
+    """Draw warnings: the file has changed, or nodes show an earlier one, linearize it twice or not at all."""
     state = plates.file_state(datablock)
     is_changed = stored_estimate.is_file_changed(datablock, state)
     warnings = (
@@ -106,8 +106,7 @@ def _draw_warnings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
         node_links.linearized_twice(datablock),
         node_links.without_group(datablock),
     )
-    if told := [warning for warning in warnings if warning]:
-        draw_paragraphs(layout, told, letters_of(context), icon="ERROR")
+    draw_paragraphs(layout, [each for each in warnings if each], letters_of(context), icon="ERROR")
     if code_values.is_painted_copy_shown(datablock):
         draw_text(layout, "Its nodes do not follow your painting: apply it again.", letters_of(context), icon="INFO")
 
@@ -131,7 +130,7 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
     if settings.apply == "BAKE":
         column.prop(settings, "depth")
     if settings.apply not in WITHOUT_FILES:
-        column.prop(settings, "folder", placeholder="Beside the plate")
+        column.prop(settings, "folder", placeholder="Folder of the plate")
         column.prop(settings, "overwrite")
     if stored_estimate.is_stored(datablock):
         _draw_apply(layout, context, datablock)
@@ -140,7 +139,7 @@ def _draw_settings(layout: bpy.types.UILayout, context: bpy.types.Context, datab
 
 
 def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw what has been applied, and the button that applies the estimate, or what to choose first."""
+    """Draw whether the estimate is applied, and the button that applies it, or the choice that comes first."""
     if datablock.camera_response_settings.apply == "ESTIMATE":
         draw_text(layout, "Choose under Apply As what to make of the response.", letters_of(context))
         return
@@ -157,7 +156,7 @@ def _draw_apply(layout: bpy.types.UILayout, context: bpy.types.Context, databloc
 
 
 def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup) -> None:
-    """Draw what few plates need, closed at first: the camera, what to expect, metadata, log or linear plates."""
+    """Draw settings that few plates need, closed at first."""
     header, body = layout.panel("CRF_advanced", default_closed=True)
     header.label(text="Advanced")
     if body is None:
@@ -171,7 +170,7 @@ def _draw_advanced(layout: bpy.types.UILayout, settings: bpy.types.PropertyGroup
 
 
 def _split_column(layout: bpy.types.UILayout) -> bpy.types.UILayout:
-    """Return a column whose properties stand beside their names, gray while a run goes by earlier settings."""
+    """Return a column of properties with their names at the left, gray while a run goes by earlier settings."""
     column = layout.column()
     column.enabled = running.current() is None
     column.use_property_split = True

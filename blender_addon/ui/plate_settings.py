@@ -23,13 +23,13 @@ DEPTHS = (
     ("float", "Float", "32-bit floats: exact"),
 )
 
-#: What kinds of responses to expect: `crfnet.defaults.PRIORS`.
+#: The kinds of responses to expect: `crfnet.defaults.PRIORS`.
 PRIORS = (
     ("camera", "Camera", "Today's phones, compact cameras and cameras with interchangeable lenses, mostly unedited"),
     ("any", "Any Source", "Also film scans, old video cameras and heavily edited pictures, as likely as cameras"),
 )
 
-#: What took the plate: as its file says, or one of `crfnet.defaults.DEVICES`.
+#: The device that took the plate: from its file, or one of `crfnet.defaults.DEVICES`.
 DEVICES = (
     ("file", "As the File Says", "Frames and pictures from web pages mostly say nothing: then choose, if you know"),
     ("phone", "Phone", "A phone or a tablet"),
@@ -38,8 +38,7 @@ DEVICES = (
     ("other", "Other Camera", "A camera of another kind, such as a drone, or of a kind that you do not know"),
 )
 
-#: Largest exposure in either direction, in stops. It is `crfnet.defaults.MAX_EXPOSURE` again, because it comes as a
-#: wheel, and the add-on has to start without it.
+#: Largest exposure in either direction, in stops: `crfnet.defaults.MAX_EXPOSURE`, without importing the wheel.
 MAX_EXPOSURE = 15
 
 #: The names of the ways to apply a response, by the order of their enumeration.
@@ -53,10 +52,10 @@ def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: st
     """Return the stored cameras that hold a text, those of the plate's model first; none without the wheels."""
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
+    cameras: list[tuple[str, str]] = []
     with suppress(AddonError):
-        found: list[tuple[str, str]] = lazy_import.load("crfnet_core.library").listed_cameras(text, models)
-        return found
-    return []
+        cameras = lazy_import.load("crfnet_core.library").listed_cameras(text, models)
+    return cameras
 
 
 class PlateChoices:
@@ -85,8 +84,7 @@ class PlateChoices:
     )
     folder: bpy.props.StringProperty(
         name="Folder",
-        description="Folder for new files. Empty: that of the preferences, else that of the plate, else that of the"
-        " .blend file",
+        description="Folder for new files. Empty: the folder of the preferences, of the plate or of the .blend file",
         subtype="DIR_PATH",
         options={"PATH_SUPPORTS_BLEND_RELATIVE"},
     )
@@ -112,7 +110,7 @@ class PlateChoices:
     )
     ignore_metadata: bpy.props.BoolProperty(
         name="Ignore Metadata",
-        description="Do not use what the file says of its camera and of programs that changed it",
+        description="Do not use the camera and the editing programs that the file names",
     )
 
 
@@ -121,7 +119,7 @@ CHOICES = ("apply", *PlateChoices.__annotations__)
 
 
 class CRF_PlateSettings(PlateChoices, bpy.types.PropertyGroup):
-    """The settings of one plate; until `apply` is set, it is that of the preferences."""
+    """The settings of one plate; until `apply` is set, the preferences count."""
 
     chosen: bpy.props.StringProperty(options={"HIDDEN"})
     apply: bpy.props.EnumProperty(
@@ -139,10 +137,7 @@ def remember_applied(datablock: bpy.types.ID) -> None:
 
 
 def is_applied(datablock: bpy.types.ID) -> bool:
-    """Return whether the estimate of a plate has been applied with its present settings.
-
-    Its nodes must still be there.
-    """
+    """Return whether the estimate of a plate is applied with its present settings; its nodes must still be there."""
     if APPLIED not in datablock[stored_estimate.KEY] or is_to_be_applied(datablock):
         return False
     return datablock.camera_response_settings.apply != "NODES" or compositor.is_linearized(datablock)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The add-on's preferences: choices that hold for every .blend file."""
+"""The add-on's preferences: choices for every .blend file."""
 
 from pathlib import Path
 
@@ -7,14 +7,14 @@ import bpy
 
 from ..work.errors import AddonError
 
-#: The name by which Blender knows the add-on: that of its root package.
+#: The name by which Blender knows the add-on: the name of its root package.
 ADDON = __package__.rpartition(".")[0]
 
 #: The uses of a response, as in `work.job.ApplyMode`.
 APPLY_MODES = (
     ("ESTIMATE", "Estimate Only", "Show the response and change nothing else", "VIEWZOOM", 0),
     ("NODES", "Nodes", "At once: a node group linearizes the plate in the compositor", "NODETREE", 1),
-    ("BAKE", "Bake", "Write linear EXR files beside the plate, and load them", "FILE_IMAGE", 2),
+    ("BAKE", "Bake", "Write linear EXR files next to the plate, and load them", "FILE_IMAGE", 2),
     (
         "EXPORT",
         "Export",
@@ -67,12 +67,7 @@ def preferences() -> CRF_AddonPreferences:
 def absolute(path: str) -> Path | None:
     """Return the path of a file or folder chosen in the interface, or None for an empty choice.
 
-    Blender writes ``//`` for the folder of the .blend file.
-
-    Raises
-    ------
-    AddonError
-        If there is no .blend file yet.
+    Blender writes ``//`` for the folder of the .blend file; raise AddonError if there is none yet.
     """
     if path.startswith("//") and not bpy.data.filepath:
         raise AddonError(f"{path} is relative to the .blend file: save that first, or choose another path")

@@ -30,16 +30,8 @@ _current: Run | None = None
 class Run:
     """A job in another thread, with its timer and the display of its progress.
 
-    Parameters
-    ----------
-    context : Context
-        Where the run starts: its window gets the timer, its workspace the text in the status bar.
-    name : str
-        The name of the plate.
-    function : callable
-        The job; see `BackgroundTask`.
-    doing : str
-        What the job does with the response, in a word that stands before the plate's name.
+    The window of the context gets the timer, its workspace the text in the status bar. `name` is the plate's,
+    `function` the job, see `BackgroundTask`, and `doing` a verb that stands before the plate's name.
     """
 
     def __init__(self, context: bpy.types.Context, name: str, function: Callable[..., Any], doing: str) -> None:
@@ -122,7 +114,7 @@ def stop() -> None:
 
 
 def set_status(workspace: bpy.types.WorkSpace, text: str | None) -> None:
-    """Set the text of the status bar in a workspace, which may have been left or removed meanwhile.
+    """Set the text of the status bar in a workspace, which may have been removed meanwhile.
 
     Blender goes by the workspace of the context, not by the one that the method belongs to.
     """

@@ -18,13 +18,8 @@ Returned = TypeVar("Returned")
 class BackgroundTask(Generic[Returned]):
     """One call of a function in a thread of its own.
 
-    The function must not touch Blender's data, which belongs to Blender's own thread. Cancelling takes effect when
-    the function next reports its progress.
-
-    Parameters
-    ----------
-    function : callable
-        Is called with a progress callback, which it calls with (done, total).
+    The function gets a progress callback, which it calls with (done, total); canceling takes effect there. It must not
+    touch Blender's data, which belongs to Blender's own thread.
     """
 
     def __init__(self, function: Callable[[Progress], Returned]) -> None:
@@ -63,26 +58,20 @@ class BackgroundTask(Generic[Returned]):
         self._thread.join(timeout)
 
     def result(self) -> Returned:
-        """Return what the function returned, or raise what it raised; the thread must have ended.
-
-        Raises
-        ------
-        CancelledError
-            If the function was cancelled.
-        """
+        """Return the result of the function, or raise its exception; the thread must have ended."""
         if self._raised is not None:
             raise self._raised
         (returned,) = self._returned
         return returned
 
     def _progress(self, done: int, total: int) -> None:
-        """Keep the progress, and stop the function if it was cancelled; runs in the function's thread."""
+        """Keep the progress, and stop the function if it was canceled; runs in the function's thread."""
         self.done, self.total = done, total
         if self.is_cancelled:
             raise CancelledError("Canceled; nothing was changed")
 
     def _run(self) -> None:
-        """Call the function and keep what it returns or raises, whatever that is, for the other thread."""
+        """Call the function and keep its result or its exception for the other thread."""
         try:
             self._returned.append(self._function(self._progress))
         except BaseException as raised:  # noqa: BLE001 - `result` raises it again

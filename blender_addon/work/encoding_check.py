@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuse plates whose colour space in Blender is logarithmic or linear: there is no response to estimate or to undo.
+"""Refuse plates whose color space in Blender is logarithmic or linear: there is no response to estimate or to undo.
 
-What the metadata of their files says is the estimator's to judge: `crfnet_core.photograph.metadata.color_tags`.
+The estimator judges the metadata of their files: `crfnet_core.photograph.metadata.color_tags`.
 """
 
 from __future__ import annotations
@@ -17,30 +17,15 @@ from crfnet_core.photograph.image_io import read_metadata
 from .errors import AddonError
 from .job import Job, Plate
 
-#: OpenColorIO's encodings of logarithmic and linear colour spaces.
+#: OpenColorIO's encodings of logarithmic and linear color spaces.
 _LOG_OR_LINEAR_ENCODINGS = ("log", "scene-linear", "display-linear")
 
-#: Names of logarithmic and linear colour spaces, for configs that give no encoding.
+#: Names of logarithmic and linear color spaces, for configs that give no encoding.
 _LOG_OR_LINEAR_NAME = re.compile(r"linear|^lin_|aces|adx\d|\blog|log\w?\d?\b", re.IGNORECASE)
 
 
 def check_is_encoded(plate: Plate, file: Path, config: str) -> None:
-    """Refuse a plate if its colour space says that it is logarithmic or linear.
-
-    Parameters
-    ----------
-    plate : Plate
-        The plate.
-    file : Path
-        Its file, or one of its frames.
-    config : str
-        The OpenColorIO config that defines the plate's colour space.
-
-    Raises
-    ------
-    AddonError
-        If the plate is logarithmic or linear.
-    """
+    """Raise AddonError if a plate's color space in a config is logarithmic or linear; `file` is one of its files."""
     if not _is_guess(plate, file) and is_log_or_linear(plate.color_space, _encoding(plate.color_space, config)):
         raise AddonError(
             f"{plate.name}: its color space, {plate.color_space}, is logarithmic or linear, so it has no camera"
@@ -54,19 +39,9 @@ def is_said_encoded(job: Job) -> bool:
 
 
 def holds_encoded_values(plate: Plate, config: str, *, is_forced: bool) -> bool:
-    """Return whether OpenEXR files of a plate that do not say what they hold are taken for encoded.
+    """Return whether untagged OpenEXR files of a plate are taken for encoded.
 
-    They are if the user has given them a colour space that is not linear, which Blender takes them for at first, or
-    has ticked Estimate Anyway.
-
-    Parameters
-    ----------
-    plate : Plate
-        The plate.
-    config : str
-        The OpenColorIO config that defines its colour space.
-    is_forced : bool
-        Whether Estimate Anyway is ticked.
+    They are if the user has given them a color space that is not linear, or has ticked Estimate Anyway.
     """
     return is_forced or not is_log_or_linear(plate.color_space, _encoding(plate.color_space, config))
 
@@ -77,21 +52,21 @@ def is_tagged(files: Iterable[Path]) -> bool:
 
 
 def is_log_or_linear(color_space: str, encoding: str = "") -> bool:
-    """Return whether a colour space is logarithmic or linear: by its encoding in the config, else by its name."""
+    """Return whether a color space is logarithmic or linear: by its encoding in the config, else by its name."""
     if encoding:
         return encoding in _LOG_OR_LINEAR_ENCODINGS
     return bool(_LOG_OR_LINEAR_NAME.search(color_space))
 
 
 def _is_guess(plate: Plate, file: Path) -> bool:
-    """Return whether the colour space is only Blender's guess: it takes every DPX file for linear."""
+    """Return whether the color space is only Blender's guess: it takes every DPX file for linear."""
     return file.suffix.lower() == ".dpx" and "linear" in plate.color_space.lower()
 
 
 def _encoding(color_space: str, config: str) -> str:
-    """Return the encoding of a colour space in a config; empty if the config gives none."""
+    """Return the encoding of a color space in a config; empty if the config gives none."""
     try:
-        found = load_config(config).getColorSpace(color_space)
+        space = load_config(config).getColorSpace(color_space)
     except ConfigError:
         return ""
-    return "" if found is None or found.isData() else found.getEncoding() or ""
+    return "" if space is None or space.isData() else space.getEncoding() or ""

@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """The errors of the add-on itself.
 
-They are no `crfnet_core.errors.CRFNetError`, because the add-on must be able to say that the estimator cannot be
-imported.
+They are not `crfnet_core.errors.CRFNetError`, because the add-on must report that the estimator cannot be imported.
 """
 
 from __future__ import annotations
@@ -11,7 +10,7 @@ import sys
 
 
 class AddonError(Exception):
-    """A problem that the user can solve; the message says in one line what was found and what to do."""
+    """A problem that the user can solve; the message is one line, with the remedy."""
 
 
 class CancelledError(AddonError):

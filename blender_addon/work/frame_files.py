@@ -46,13 +46,8 @@ class PlateFrames(FrameSequence):
 def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -> EncodedFrame:
     """Return the encoded samples of a frame as `crfnet.plates.frame_files.read_frame` does, but for its alpha.
 
-    It is taken as by Blender, which does not heed the file: as coverage by which the samples are multiplied (PREMUL) or
+    Alpha is taken as by Blender, which ignores the file: as coverage by which the samples are multiplied (PREMUL) or
     not (STRAIGHT); as data (CHANNEL_PACKED); or not at all (NONE), so that the frame has none.
-
-    Raises
-    ------
-    PhotoError, PlateError
-        See `read_frame`.
     """
     is_associated = None if alpha_mode == "" else alpha_mode == "PREMUL"
     frame = read_frame(path, is_encoded=is_encoded, is_associated=is_associated)
@@ -61,12 +56,9 @@ def read_plate_frame(path: Path, alpha_mode: str, *, is_encoded: bool = False) -
 
 
 def frames_of(plate: Plate) -> FrameSequence:
-    """Return the frames of a plate; the one shown of a movie, and an image without a file, have a name only.
+    """Return the frames of a plate; the shown frame of a movie, and an image without a file, have a name only.
 
-    Raises
-    ------
-    PlateError
-        If the plate has files, and they are not found.
+    Raise PlateError if the plate has files, and they are not found.
     """
     if plate.frame_count:
         return FrameSequence((plate.file.with_name(f"{plate.file.stem}.{plate.shown_frame:04d}.png"),))
@@ -80,15 +72,10 @@ def frames_of(plate: Plate) -> FrameSequence:
 
 
 def primaries_of(plate: Plate, sequence: FrameSequence, *, is_encoded: bool = False) -> Primaries:
-    """Return the primaries that a plate is encoded in, for its color space.
+    """Return the primaries that a plate is encoded in, by the tags of its first file; Rec.709 without them.
 
-    They are those that its file, or the first of its frames, is tagged with; Rec.709 if there are no tags, or none that
-    primaries can express, and for movies. For `is_encoded` see `encoding_check.is_said_encoded`.
-
-    Raises
-    ------
-    CRFNetError, AddonError
-        If the file cannot be read, or no temporary file can be written.
+    Movies have none. For `is_encoded` see `encoding_check.is_said_encoded`. Raise CRFNetError if the file cannot be
+    read, AddonError if no temporary file can be written.
     """
     if plate.frame_count:
         return REC709
@@ -118,10 +105,7 @@ def sample(sequence: FrameSequence) -> FrameSequence:
 def frame_reader(plate: Plate) -> Iterator[FrameReader]:
     """Yield a function that returns frames of a plate as files; temporary files are removed at the end.
 
-    Raises
-    ------
-    AddonError
-        If temporary files cannot be written, or the plate is a movie of more than 8 bits.
+    Raise AddonError if they cannot be written, or the plate is a movie of more than 8 bits.
     """
     if _has_own_files(plate):
         yield lambda sequence: sequence

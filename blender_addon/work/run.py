@@ -25,45 +25,24 @@ from .encoding_check import check_is_encoded, is_said_encoded, is_tagged
 from .errors import AddonError, CancelledError
 from .frame_files import frame_reader, frames_of, primaries_of, sample
 from .job import Anchor, ApplyMode, Job, Plate
-from .target_check import check_targets
 from .wording import is_loaded
 
-#: The modes in which Blender shows the frames of a sequence, and has to be told their numbers.
+#: The modes in which Blender shows the frames of a sequence, and needs their numbers.
 _SHOWING_FRAMES = (ApplyMode.NODES, ApplyMode.BAKE)
 
 
 @dataclass(frozen=True, eq=False)
 class CompletedJob:
-    """A job, what it found and what it wrote.
-
-    Parameters
-    ----------
-    job : Job
-        The job.
-    estimate : ResponseEstimate
-        The response of the plate.
-    stops : float
-        The stops to add after the inverse response.
-    frames : tuple of int
-        The frame numbers of a sequence or movie that Blender is to show; empty for a single file.
-    files : Baked, Exported or None
-        What was written; None for nodes, which need no file, and if the response is not applied.
-    primaries : Primaries
-        Those that the plate is encoded in.
-    problem : AddonError, CRFNetError or None
-        Why the response could be estimated, but not applied.
-    offers : tuple of (str, str)
-        After a new estimate, the stored cameras of the plate's make and model: their names, and what each is, in words.
-    """
+    """A job, its estimate and the files that it wrote."""
 
     job: Job
     estimate: ResponseEstimate
-    stops: float
-    frames: tuple[int, ...]
-    files: writers.Written | None
-    primaries: Primaries = REC709
-    problem: AddonError | CRFNetError | None = None
-    offers: tuple[tuple[str, str], ...] = ()
+    stops: float  # added after the inverse response
+    frames: tuple[int, ...]  # the numbers of the frames that Blender is to show; empty for a single file
+    files: writers.Written | None  # None for nodes, which need no file, and if the response is not applied
+    primaries: Primaries = REC709  # of the plate
+    problem: AddonError | CRFNetError | None = None  # the reason why the response was estimated, but not applied
+    offers: tuple[tuple[str, str], ...] = ()  # name and description of stored cameras of the plate's make and model
 
     @property
     def is_withheld(self) -> bool:
@@ -83,24 +62,14 @@ class CompletedJob:
 
 
 def run(job: Job, progress: Progress | None = None) -> CompletedJob:
-    """Return what a job found and wrote.
+    """Return a completed job; `progress` is called with (done, total) after every step, and its exception ends the job.
 
-    Parameters
-    ----------
-    job : Job
-        What to do.
-    progress : callable or None
-        Called with (done, total) after every step; what it raises ends the job.
-
-    Raises
-    ------
-    CRFNetError, AddonError
-        If the plate, the model or a folder cannot be used. If that shows only when a new estimate is being applied, it
-        is the `problem` of the completed job, so that the estimate is not lost. Files that the job has written are
-        removed again.
+    Raise CRFNetError or AddonError if the plate, the model or a folder cannot be used. An error while a new estimate is
+    being applied becomes the `problem` of the completed job, so that the estimate is not lost. Files that the job has
+    written are removed again.
     """
     sequence = cache(partial(frames_of, job.plate))  # looks for the frames at most once, and only if needed
-    check_targets(job, sequence)
+    writers.check_targets(job, sequence)
     if job.estimation.stored is not None:
         return _completed(_restored(job, job.estimation.stored, sequence), sequence, progress)
     estimated = _estimated(job, estimate_plate(job, sequence(), progress))
@@ -123,11 +92,11 @@ def _restored(job: Job, estimate: ResponseEstimate, sequence: Callable[[], Frame
     return CompletedJob(job, estimate, job.exposure.stops, (), None, primaries)
 
 
-def _estimated(job: Job, found: FileEstimate) -> CompletedJob:
+def _estimated(job: Job, result: FileEstimate) -> CompletedJob:
     """Return a job with its new estimate."""
-    primaries = plate_primaries(found.firsts[0].tags).primaries or REC709
-    offers = tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in found.offers)
-    return CompletedJob(job, found.estimate, job.exposure.stops, (), None, primaries, offers=offers)
+    primaries = plate_primaries(result.firsts[0].tags).primaries or REC709
+    offers = tuple((offer.name, f"{offer.name}: {offer.basis}") for offer in result.offers)
+    return CompletedJob(job, result.estimate, job.exposure.stops, (), None, primaries, offers=offers)
 
 
 def _completed(
@@ -180,6 +149,6 @@ def estimate_plate(job: Job, sequence: FrameSequence, progress: Progress | None 
 
 def _check_is_encoded(plate: Plate, file: Path, config: str) -> None:
     """Refuse a plate for the format of its file, which Estimate Anyway does not overrule, else for its color space."""
-    with suppress(OSError):  # told where the file is read
+    with suppress(OSError):  # reported where the file is read
         file_kind(file)
     check_is_encoded(plate, file, config)

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""The files of each way to apply a response, named as the `crfnet` command would name them."""
+"""The files of each way to apply a response, named as the `crfnet` command would name them.
+
+`check_targets` checks before the estimate that they can be written.
+"""
 
 from __future__ import annotations
 
@@ -14,7 +17,7 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.sources import find_config
 from crfnet.luts.lut1d import Lut1D
 from crfnet.options import OutputOptions, PlateOptions
-from crfnet.output_files import OutputFiles, plain_stem
+from crfnet.output_files import OutputFiles, check_folder, plain_stem
 from crfnet.pipeline import OutputPlan, deliver
 from crfnet.plates.frames import FrameSequence
 from crfnet.plates.light import PlateLight
@@ -26,20 +29,12 @@ from crfnet_core.types import Progress
 from .encoding_check import is_said_encoded
 from .errors import AddonError
 from .frame_files import PlateFrames, frame_reader
-from .job import ApplyMode, Job, Plate
+from .job import WITHOUT_FILES, ApplyMode, Job, Plate
 
 
 @dataclass(frozen=True)
 class Baked:
-    """Linear EXR files.
-
-    Parameters
-    ----------
-    files : tuple of Path
-        The files, in the order of their frames.
-    is_sequence : bool
-        Whether they are the frames of a sequence.
-    """
+    """Linear EXR files in the order of their frames, of a sequence or a single image."""
 
     files: tuple[Path, ...]
     is_sequence: bool
@@ -66,32 +61,45 @@ def write(
     *,
     primaries: Primaries = REC709,
 ) -> Written:
-    """Write the files of a job.
+    """Write the files of a job in the mode BAKE or EXPORT, with the inverse response and an exposure in stops.
 
-    Parameters
-    ----------
-    job : Job
-        In the mode BAKE or EXPORT; the others need no file.
-    lut : Lut1D
-        The inverse response.
-    stops : float
-        Stops added after the inverse response.
-    sequence : callable
-        Returns the frames of the plate; called only if they are written.
-    progress : callable or None
-        Called with (done, total) after every frame; what it raises ends the job.
-    primaries : Primaries
-        Those that the plate is encoded in, for its color space; a bake goes by the tags of each frame.
-
-    Raises
-    ------
-    CRFNetError, AddonError
-        If there is no folder, a file exists and may not be replaced, or a file cannot be written. New files are
-        removed again.
+    `sequence` returns the frames of the plate; `primaries` are for its color space, while a bake goes by the tags of
+    each frame. Raise CRFNetError or AddonError if there is no folder, a file exists and may not be replaced, or a file
+    cannot be written; new files are removed again, also if `progress` raises.
     """
     if job.output.mode is ApplyMode.BAKE:
         return bake(job, lut, stops, sequence(), progress)
     return export(job, lut, stops, primaries)
+
+
+def check_targets(job: Job, sequence: Callable[[], FrameSequence]) -> None:
+    """Check that the files of a job can be written; create nothing. `sequence` is called only for a bake.
+
+    Raise AddonError if the job has no folder, or a file exists and may not be replaced; CRFNetError if the folder
+    cannot be written to.
+    """
+    if job.output.mode in WITHOUT_FILES:
+        return
+    if job.output.mode is ApplyMode.BAKE and job.plate.frame_count:
+        raise AddonError(
+            f"{job.plate.name}: movies are not baked; choose Nodes and render, or open its frames as an image sequence"
+        )
+    folder = _folder(job)
+    check_folder(folder)
+    existing = [path for path in _targets(job, folder, sequence) if path.exists()]
+    if existing and not job.output.overwrite:
+        more = f" (and {len(existing) - 1} more)" if existing[1:] else ""
+        raise AddonError(
+            f"{existing[0].name} exists already in {folder}{more}; tick Overwrite or choose another Folder"
+        )
+
+
+def _targets(job: Job, folder: Path, sequence: Callable[[], FrameSequence]) -> tuple[Path, ...]:
+    """Return the files that a bake or an export writes."""
+    if job.output.mode is ApplyMode.BAKE:
+        return linear_targets(folder / baked_name(job.plate), sequence())
+    files = output_files(job.plate, folder)
+    return (*files.luts, files.config)
 
 
 def bake(job: Job, lut: Lut1D, stops: float, sequence: FrameSequence, progress: Progress | None = None) -> Baked:
@@ -153,7 +161,7 @@ def color_space(plate: Plate, files: OutputFiles, stops: float, primaries: Prima
 
 
 def baked_name(plate: Plate) -> str:
-    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as that of the plate."""
+    """Return the file name of the linear plate; of a sequence, with a placeholder as wide as the plate's."""
     stem = plain_stem(Path(plate.name + ".exr"))
     return f"{stem}_linear.exr" if plate.numbered is None else f"{stem}_linear.%0{plate.numbered[1]}d.exr"
 
@@ -166,5 +174,7 @@ def _photo(plate: Plate) -> Path:
 def _folder(job: Job) -> Path:
     """Return the folder for files; an AddonError if the job has none."""
     if job.output.folder is None:
-        raise AddonError(f"{job.plate.name}: has no folder of its own; choose one under Folder")
+        raise AddonError(
+            f"{job.plate.name}: has no folder of its own; choose one under Folder, or save the .blend file"
+        )
     return job.output.folder

@@ -43,7 +43,7 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
         use_metadata=True,
     ):
         return Job(
-            plate=Plate.of_file(
+            plate=Plate.from_file(
                 path,
                 is_sequence=is_sequence,
                 datablock_name=path.name,

@@ -21,22 +21,9 @@ def test_it_returns_what_the_function_returns():
     assert (task.result(), task.done, task.total, task.percent) == ("found", 1, 2, 50)
 
 
-def test_a_function_may_return_nothing():
-    assert ended(lambda progress: None).result() is None
-
-
 def test_it_raises_what_the_function_raises():
     with pytest.raises(ZeroDivisionError):
         ended(lambda progress: 1 / 0).result()
-
-
-def test_a_function_that_was_cancelled_before_its_start_stops_at_its_first_step():
-    task = BackgroundTask(lambda progress: progress(1, 2))
-    task.cancel()
-    task.start()
-    task.wait(10)
-    with pytest.raises(CancelledError, match=r"^Canceled; nothing was changed$"):
-        task.result()
 
 
 def test_a_function_is_cancelled_at_its_next_step():
@@ -57,11 +44,6 @@ def test_a_function_is_cancelled_at_its_next_step():
     assert 2 not in steps
     with pytest.raises(CancelledError):
         task.result()
-
-
-def test_there_is_no_progress_before_the_first_step():
-    task = BackgroundTask(lambda progress: None)
-    assert (task.percent, task.is_running, task.is_cancelled) == (0, False, False)
 
 
 def test_the_estimators_errors_are_expected_once_it_is_loaded():

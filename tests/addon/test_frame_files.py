@@ -62,10 +62,6 @@ def test_no_room_for_a_temporary_file_is_one_sentence(make_job, tmp_path, monkey
         pass
 
 
-def test_a_single_file_has_no_frame_numbers(make_job):
-    assert sample(frames_of(make_job().plate)).numbers == ()
-
-
 def test_frames_of_a_sequence_keep_their_numbers(make_job, sequence_file):
     assert sample(frames_of(make_job(sequence_file, is_sequence=True).plate)).numbers == (1, 2, 3, 5, 6, 7, 8, 9)
 

@@ -1,15 +1,14 @@
 """The plate of a file: its names, and the pattern of its frames."""
 
-import dataclasses
 from pathlib import Path
 
 import pytest
 
-from blender_addon.work.job import Anchor, ApplyMode, Plate
+from blender_addon.work.job import Plate
 
 
 def plate_of(name, *, is_sequence=True):
-    return Plate.of_file(
+    return Plate.from_file(
         Path("/shots") / name,
         is_sequence=is_sequence,
         datablock_name="Beach.001",
@@ -44,15 +43,3 @@ def test_a_file_that_is_no_frame_stands_for_itself(file, is_sequence):
     assert plate.name == Path(file).stem
     assert plate.file == Path("/shots") / file
     assert plate.pattern == file
-
-
-def test_a_job_cannot_be_changed(make_job):
-    job = make_job()
-    for part, name in ((job, "plate"), (job.plate, "name"), (job.exposure, "stops"), (job.output, "overwrite")):
-        with pytest.raises(dataclasses.FrozenInstanceError):
-            setattr(part, name, None)
-
-
-def test_modes_and_anchors_are_the_identifiers_of_the_interface():
-    assert [str(mode) for mode in ApplyMode] == ["ESTIMATE", "NODES", "BAKE", "EXPORT"]
-    assert [str(anchor) for anchor in Anchor] == ["WHITE", "GRAY"]

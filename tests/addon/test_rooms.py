@@ -12,24 +12,6 @@ ESTIMATOR = {"crfnet_core", "crfnet", "onnxruntime", "OpenImageIO", "PyOpenColor
 #: Modules of `work` that Blender imports when it enables the add-on.
 LIGHT = ("background", "curve_picture", "errors", "job", "wording")
 
-#: Modules of `ui` that Blender imports when it enables the add-on.
-REGISTERED = (
-    "estimate_box",
-    "handlers",
-    "image_editor.comparison",
-    "image_editor.image_tools",
-    "more.add_look",
-    "more.load_lut",
-    "more.other_plates",
-    "more.panel",
-    "operator_base",
-    "operators",
-    "panel",
-    "plate_settings",
-    "preferences",
-    "running",
-)
-
 IMPORT_WORK = """
 import importlib, pkgutil, sys
 sys.modules["bpy"] = None
@@ -71,32 +53,6 @@ def loaded_by(code, root):
     return set(done.stdout.split())
 
 
-def imports_at_start(path, module):
-    """Names of the modules that a module imports when it is imported itself, those for types excepted."""
-    for node in ast.parse(path.read_text(encoding="utf-8")).body:
-        if isinstance(node, ast.Import):
-            yield from (alias.name for alias in node.names)
-        elif isinstance(node, ast.ImportFrom):
-            parents = module.split(".")[: -node.level] if node.level else []
-            source = ".".join([*parents, *filter(None, [node.module])])
-            yield source
-            yield from (f"{source}.{alias.name}" for alias in node.names)
-
-
-def imported_with(module, folder):
-    """Names of everything that is imported together with a module of the add-on, itself included."""
-    seen, pending = set(), [module]
-    while pending:
-        name = pending.pop()
-        if name in seen:
-            continue
-        seen.add(name)
-        path = folder.parent.joinpath(*name.split(".")).with_suffix(".py")
-        if name.startswith(folder.name) and path.is_file():
-            pending += imports_at_start(path, name)
-    return seen
-
-
 def test_work_imports_neither_blender_nor_another_room(root):
     loaded = loaded_by(IMPORT_WORK, root)
     assert not [name for name in loaded if name.startswith(("blender_addon.ui", "blender_addon.scene"))]
@@ -118,17 +74,6 @@ def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):
 
 def test_what_blender_imports_of_work_at_its_start_is_light(root):
     assert not {name.partition(".")[0] for name in loaded_by(IMPORT_LIGHT, root)} & ESTIMATOR
-
-
-@pytest.mark.parametrize("module", REGISTERED)
-def test_what_is_registered_imports_no_estimator(addon_folder, module):
-    names = imported_with(f"blender_addon.ui.{module}", addon_folder)
-    assert "bpy" in names
-    assert not {name.partition(".")[0] for name in names} & ESTIMATOR
-    of_work = {name.split(".")[2] for name in names if name.startswith("blender_addon.work.")} & {
-        path.stem for path in (addon_folder / "work").glob("*.py")
-    }
-    assert of_work <= set(LIGHT)
 
 
 @pytest.mark.parametrize("room", ["ui", "ui/image_editor", "ui/more", "scene", "work"])

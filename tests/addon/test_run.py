@@ -14,7 +14,7 @@ from blender_addon.work.run import run
 from crfnet.errors import PlateError
 from crfnet.pipeline import estimates, loading
 from crfnet_core.colorimetry import DISPLAY_P3, REC709
-from crfnet_core.errors import CRFNetError, ModelError, PriorError
+from crfnet_core.errors import CRFNetError, ModelError
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.posterior import Verdict
 from tests.helpers.color_profiles import matrix_profile, write_tagged
@@ -57,13 +57,6 @@ def test_pixels_from_blender_have_no_metadata(make_job):
     assert run(painted).estimate.origins == ()
 
 
-def test_a_prior_that_is_absent_is_told_before_the_network_is_loaded(make_job, calls, tmp_path):
-    loads = calls(estimates, "load_network")
-    with pytest.raises(PriorError, match="no prior"):
-        run(make_job(prior=tmp_path / "none.json"))
-    assert loads == []
-
-
 def test_nodes_need_no_lut_and_no_file(make_job, calls, tmp_path):
     luts = calls(run_module, "response_lut")
     completed = run(make_job(mode=ApplyMode.NODES))
@@ -77,11 +70,6 @@ def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, se
     assert (len(scans), len(luts)) == (1, 1)
     assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
     assert len(completed.files.files) == 8
-
-
-def test_nodes_know_the_frames_of_a_sequence(make_job, sequence_file):
-    completed = run(make_job(sequence_file, is_sequence=True, mode=ApplyMode.NODES))
-    assert completed.frames == (1, 2, 3, 5, 6, 7, 8, 9)
 
 
 def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, monkeypatch):
@@ -115,10 +103,6 @@ def test_the_network_is_loaded_once(make_job, calls):
     assert len(loads) == 1
 
 
-def test_white_is_the_anchor_by_default(make_job):
-    assert run(make_job(mode=ApplyMode.NODES, stops=1.5)).stops == 1.5
-
-
 def test_a_gray_anchor_becomes_018(make_job):
     completed = run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.4, stops=1))
     assert completed.estimate.curve.inverse(0.4) * 2 ** (completed.stops - 1) == pytest.approx(0.18)
@@ -133,12 +117,6 @@ def test_a_gray_that_is_black_is_told_and_the_estimate_kept(make_job, plate_file
         run(make_job(mode=ApplyMode.NODES, anchor=Anchor.GRAY, gray=0.0, stored=completed.estimate))
 
 
-def test_estimate_only_writes_nothing(make_job, tmp_path):
-    completed = run(make_job(mode=ApplyMode.ESTIMATE, folder=tmp_path / "out"))
-    assert (completed.files, completed.frames, completed.is_applied, completed.is_withheld) == (None, (), False, False)
-    assert not (tmp_path / "out").exists()
-
-
 @pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
 def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
     run(make_job(mode=mode))
@@ -147,13 +125,6 @@ def test_existing_files_are_told_before_the_estimate(make_job, calls, mode):
         run(make_job(mode=mode))
     assert loads == []
     assert run(make_job(mode=mode, overwrite=True)).files is not None
-
-
-def test_a_missing_folder_is_told_before_the_estimate(make_job, calls):
-    loads = calls(estimates, "load_network")
-    with pytest.raises(AddonError, match="choose one under Folder"):
-        run(make_job(folder=None))
-    assert loads == []
 
 
 @pytest.mark.parametrize("mode", [ApplyMode.BAKE, ApplyMode.EXPORT])
@@ -197,12 +168,6 @@ def test_a_doubtful_estimate_is_one_with_warnings(make_job, tmp_path):
     completed = run(make_job(gray, mode=ApplyMode.NODES))
     assert completed.is_doubtful
     assert [warning.code for warning in completed.estimate.warnings] == ["gray"]
-
-
-def test_a_linear_plate_is_refused_unless_forced(make_job):
-    with pytest.raises(AddonError, match="is logarithmic or linear"):
-        run(make_job(color_space="lin_rec709_scene", mode=ApplyMode.NODES))
-    assert run(make_job(color_space="lin_rec709_scene", mode=ApplyMode.NODES, is_forced=True)).stops == 0
 
 
 def test_a_cancelled_job_ends_before_the_network_is_loaded(make_job, calls):

@@ -1,7 +1,6 @@
 """The files of a job: their names and contents; all of them or none."""
 
 import dataclasses
-import stat
 
 import numpy as np
 import pytest
@@ -44,13 +43,6 @@ def test_a_baked_plate_is_linear(make_job, tmp_path, codes):
     assert np.abs(read_image(baked.files[0]) - 2 * CURVE.inverse(codes / 255)).max() < 1e-5
 
 
-def test_baked_frames_keep_their_numbers(make_job, sequence_file, tmp_path):
-    baked = write(make_job(sequence_file, is_sequence=True))
-    assert baked.is_sequence
-    assert [path.name for path in baked.files] == [f"shot_linear.{n:04d}.exr" for n in (1, 2, 3, 5, 6, 7, 8, 9)]
-    assert all(path.is_file() for path in baked.files)
-
-
 @pytest.mark.parametrize("before", ["shot.1-2.", "shot.1-2x", "take#_", "a%02d_", "b$F4.", "[1-2]@@."])
 def test_the_name_before_the_frame_number_may_look_like_a_placeholder(make_job, tmp_path, codes, before):
     """Blender knows which number is that of the frame, so its name is not read as a pattern."""
@@ -62,13 +54,6 @@ def test_the_name_before_the_frame_number_may_look_like_a_placeholder(make_job, 
     assert frames_of(job.plate).numbers == (1, 2, 4)
     assert [path.name[-9:] for path in baked.files] == [".0001.exr", ".0002.exr", ".0004.exr"]
     assert np.abs(read_image(baked.files[2]) - CURVE.inverse(np.roll(codes, 4, 0) / 255)).max() < 1e-5
-
-
-@pytest.mark.parametrize("steps", [0, 1, 5])
-def test_a_cancelled_bake_leaves_nothing(make_job, sequence_file, tmp_path, steps):
-    with pytest.raises(CancelledError):
-        write(make_job(sequence_file, is_sequence=True), cancelled_after(steps))
-    assert not (tmp_path / "out").exists()
 
 
 def test_a_cancelled_bake_leaves_what_was_there(make_job, sequence_file, tmp_path):
@@ -187,15 +172,3 @@ def test_a_folder_is_needed_that_can_be_written(make_job, tmp_path, mode):
     (tmp_path / "file").write_text("")
     with pytest.raises(CRFNetError, match="is not a folder"):
         write(make_job(mode=mode, folder=tmp_path / "file" / "look"))
-
-
-def test_names_with_placeholders_of_configs_are_made_plain(make_job, tmp_path):
-    plate = dataclasses.replace(make_job().plate, name="50% gray")
-    assert writers.baked_name(plate) == "50_ gray_linear.exr"
-    assert writers.output_files(plate, tmp_path).lut.name == "50_ gray.spi1d"
-
-
-def test_baked_files_can_be_read_by_everybody(make_job):
-    """They are made as temporary files, which are private."""
-    (path,) = write(make_job()).files
-    assert path.stat().st_mode & stat.S_IRUSR

@@ -4,6 +4,8 @@ import contextlib
 import importlib.util
 import os
 import shutil
+import subprocess
+import sys
 import tempfile
 from pathlib import Path
 
@@ -13,6 +15,17 @@ from tests.helpers.images import read_image
 
 #: The user's folders, for this process and those that it starts.
 USER = Path(tempfile.mkdtemp(prefix="crf_blender_user_"))
+
+ANEW = """
+import sys
+import bpy
+import addon_utils
+assert addon_utils.enable("blender_addon", default_set=True)
+bpy.ops.wm.open_mainfile(filepath=sys.argv[1])
+{code}
+bpy.context.scene.render.filepath = sys.argv[2]
+bpy.ops.render.render(write_still=True)
+"""
 
 if importlib.util.find_spec("bpy") is not None:
     os.environ["BLENDER_USER_RESOURCES"] = str(USER)
@@ -42,10 +55,23 @@ def addon(fixed_model):
 
 @pytest.fixture
 def image(addon, plate_file):
-    """The bundled plate as an image, with its estimate."""
-    image = bpy.data.images.load(str(plate_file))
+    """The bundled plate as an image."""
+    return bpy.data.images.load(str(plate_file))
+
+
+@pytest.fixture
+def estimated(image):
+    """The same image, with its estimate."""
     bpy.ops.crf.estimate_response(image=image.name)
     return image
+
+
+@pytest.fixture
+def tree(addon):
+    """The scene's compositor tree."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    return compositor_tree(bpy.context.scene)
 
 
 @pytest.fixture
@@ -76,6 +102,26 @@ def composited(tmp_path):
             outputs = [node for node in tree.nodes if node.type == "COMPOSITE"]
         tree.links.new(socket, outputs[0].inputs[0])
         return rendered(scene, tmp_path / "rendered.exr", size)
+
+    return render
+
+
+@pytest.fixture
+def rendered_anew(tmp_path, root):
+    """Save the file, render it in a new Blender that is started with a config; return its pixels and what it printed.
+
+    Blender reads its config once, at start. The code runs there when the file has been opened.
+    """
+
+    def render(config, code=""):
+        blend, exr = tmp_path / "shot.blend", tmp_path / "anew.exr"
+        bpy.ops.wm.save_as_mainfile(filepath=str(blend))
+        paths = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
+        environment = {**os.environ, "PYTHONPATH": paths, "OCIO": str(config)}
+        command = [sys.executable, "-c", ANEW.format(code=code), str(blend), str(exr)]
+        done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
+        assert done.returncode == 0, done.stdout + done.stderr
+        return read_image(exr), done.stdout + done.stderr
 
     return render
 

@@ -96,32 +96,12 @@ def test_a_plate_that_is_baked_again_has_the_alpha_of_the_new_setting(addon, cod
         assert np.abs(pixels - expected(image, codes, alpha, mode)).max() < 1e-6
 
 
-def test_the_channel_is_beside_colors_of_half_floats_and_of_every_frame(addon, codes, alpha, tmp_path):
-    """The files are those of a plate without alpha, with a channel more, and the same in every run."""
-    for number in (1, 2):
-        stored = np.concatenate([np.roll(codes, number, 0), alpha], axis=2)
-        write_image(tmp_path / f"shot.{number:04d}.png", stored, oiio__UnassociatedAlpha=1)
-        write_image(tmp_path / f"none.{number:04d}.png", stored[..., :3])
-    for name in ("shot", "none"):
-        image = bpy.data.images.load(str(tmp_path / f"{name}.0001.png"))
-        image.source, image.alpha_mode = "SEQUENCE", "CHANNEL_PACKED"
-        bpy.ops.crf.estimate_response(image=image.name, apply="BAKE")
-    for number in (1, 2):
-        file = tmp_path / f"shot_linear.{number:04d}.exr"
-        packed, plain = read_image(file), read_image(tmp_path / f"none_linear.{number:04d}.exr")
-        np.testing.assert_array_equal(packed[..., :3], plain)
-        assert np.abs(packed[..., 3:] - alpha / 255).max() < 1e-3
-    first = file.read_bytes()
-    bpy.ops.crf.apply_response(image="shot.0001.png", apply="BAKE", overwrite=True)
-    assert file.read_bytes() == first
-
-
 @pytest.mark.parametrize("kind", ["image", "clip"])
 def test_in_movies_it_is_straight(addon, codes, tmp_path, composited, monkeypatch, kind):
     """So Blender takes it whatever the setting, and hands frames of 8 bits on multiplied by it."""
     from blender_addon.scene.compositor import compositor_tree
 
-    alpha = np.maximum(codes[..., :1], 1)  # colours without coverage are not in a movie
+    alpha = np.maximum(codes[..., :1], 1)  # colors without coverage are not in a movie
     frames = [
         write_image(tmp_path / f"{number}.png", np.dstack([codes, alpha]), oiio__UnassociatedAlpha=1)
         for number in (1, 2)
@@ -161,15 +141,3 @@ def test_what_was_painted_is_not_multiplied_by_alpha_whatever_the_setting(
     color = codes[40, 100] / 255
     light = np.where(color > 0.04045, ((color + 0.055) / 1.055) ** 2.4, color / 12.92) * (alpha[40, 100] / 255)
     assert np.abs(composited(as_it_is.outputs["Image"])[40, 100, :3] - light).max() < 0.01  # of 8 bits
-
-
-def test_a_changed_setting_waits_to_be_applied(addon, plate_file):
-    from blender_addon.ui.plate_settings import is_applied
-
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
-    assert is_applied(image)
-    image.alpha_mode = "NONE"
-    assert not is_applied(image)
-    bpy.ops.crf.apply_response(image=image.name)
-    assert is_applied(image)

@@ -9,11 +9,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def curve(monkeypatch, tmp_path):
     """The response of the stored camera "mine"."""
     from crfnet_core.library import CameraLibrary
@@ -34,13 +29,6 @@ def test_a_chosen_camera_is_the_answer_and_is_remembered(image, curve):
     assert image.camera_response_settings.camera == "mine"
     _, details, _ = panel_paragraphs(image)
     assert any("6 exposures" in line for line in details)
-
-
-def test_without_one_the_response_is_estimated(image, curve):
-    from blender_addon.scene.stored_estimate import restored
-
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert restored(image).camera is None
 
 
 def test_a_camera_that_is_not_there_is_refused(image, curve):

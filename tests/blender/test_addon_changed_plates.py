@@ -1,4 +1,4 @@
-"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearise twice."""
+"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearize twice."""
 
 import os
 
@@ -11,6 +11,8 @@ from .test_addon_panel import drawn_in, labels
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 CHANGED = "The file has changed since the estimate"
 EARLIER = "Its nodes show the earlier file"
 UNSAVED = "Its nodes lack the unsaved changes"
@@ -18,13 +20,6 @@ GONE = "Its file is not found: find it with File, External Data."
 PAINTED = "Its nodes do not follow your painting: apply it again."
 TWICE = "Linearized twice"
 WITHOUT = "shows code values without the node group"
-
-
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    return compositor_tree(bpy.context.scene)
 
 
 @pytest.fixture
@@ -71,12 +66,6 @@ class TestAnotherFile:
         bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
         assert told(image) == []
 
-    def test_a_file_that_was_written_anew_is_told(self, image, told, plate_file, codes):
-        other_file(plate_file.parent, codes, plate_file.name)
-        time = plate_file.stat().st_mtime + 60
-        os.utime(plate_file, (time, time))
-        assert told(image) == [CHANGED]
-
     def test_nodes_show_the_earlier_file_until_they_are_applied(self, image, told, tmp_path, codes, tree, composited):
         from blender_addon.scene import stored_estimate
 
@@ -117,11 +106,6 @@ class TestAnotherFile:
         assert told(image) == []
         apply_nodes(image)
 
-    def test_images_without_a_file_and_earlier_estimates_say_nothing(self, image, told, plate_file):
-        del image["camera_response"]["file_state"]
-        plate_file.write_bytes(b"another")
-        assert told(image) == []
-
     def test_packed_images_say_nothing(self, addon, plate_file, told):
         image = bpy.data.images.load(str(plate_file))
         image.pack()
@@ -159,16 +143,6 @@ class TestPacked:
         assert np.abs(composited(group_of(opened).outputs[0]) - expected).max() < 1e-6
         assert expected[..., :3].max() > 0.5
 
-    def test_a_file_that_changed_before_the_scene_was_opened_is_in_the_nodes(
-        self, image, told, plate_file, codes, tmp_path
-    ):
-        apply_nodes(image)
-        scene = str(tmp_path / "shot.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=scene)
-        write_image(plate_file, (255 - codes)[:-10])
-        bpy.ops.wm.open_mainfile(filepath=scene)
-        assert told(bpy.data.images["plate.png"]) == [CHANGED]
-
 
 def group_of(tree):
     (node,) = (node for node in tree.nodes if node.type == "GROUP")
@@ -205,25 +179,6 @@ class TestPainted:
         image.pack()
         apply_nodes(image)
         assert told(image) == []
-
-    @pytest.mark.parametrize("kind", ["file", "packed", "painted"])
-    def test_the_panel_looks_for_the_copies_once(self, image, told, codes, monkeypatch, kind):
-        from blender_addon.scene import code_values
-
-        plate = painted(codes) if kind == "painted" else image
-        if kind == "packed":
-            image.pack()
-        bpy.ops.crf.estimate_response(image=plate.name, apply="NODES")
-        asked, copies = [], code_values._copies
-        monkeypatch.setattr(code_values, "_copies", lambda plate: asked.append(plate) or copies(plate))
-        assert told(plate) == ([PAINTED] if kind == "painted" else [])
-        assert asked == [plate]
-
-    def test_nothing_is_told_of_nodes_that_are_gone(self, image, told, tree, tmp_path, codes):
-        apply_nodes(image)
-        tree.nodes.clear()
-        image.filepath = str(other_file(tmp_path, codes))
-        assert told(image) == [CHANGED]
 
 
 class TestWithoutTheGroup:

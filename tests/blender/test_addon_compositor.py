@@ -8,11 +8,8 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def tree(addon):
+def tree(tree):
     """The scene's compositor tree, empty."""
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
     tree.nodes.clear()
     return tree
 
@@ -120,15 +117,6 @@ def test_the_nodes_behind_make_room(tree, plates, in_frame):
     assert blur.location_absolute.x >= group.location_absolute.x + group.width
     assert view.location_absolute.x - blur.location_absolute.x == pytest.approx(distance)
     assert tuple(other.location) == (200, -400)
-
-
-def test_nodes_far_away_stay(tree, plates):
-    source, blur = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeBlur")
-    source.image = plates[0]
-    blur.location = (2000, 0)
-    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
-    apply(plates[0])
-    assert blur.location.x == 2000
 
 
 def test_the_panel_follows_the_group_to_the_plate(tree, plates, in_editor):

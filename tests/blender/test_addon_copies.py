@@ -4,6 +4,8 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 from .test_addon_changed_plates import apply_nodes  # noqa: E402 - after the skip
 
 

@@ -10,11 +10,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def untrusted(image, monkeypatch):
     """The image, whose estimates are not to be trusted."""
     from blender_addon.work import run
@@ -31,7 +26,7 @@ def untrusted(image, monkeypatch):
 
 
 def scene_state():
-    """What others see of the scene: names of data, colour spaces, compositors."""
+    """What others see of the scene: names of data, color spaces, compositors."""
     return (
         {image.name: (image.colorspace_settings.name, image.source, image.filepath) for image in bpy.data.images},
         [clip.name for clip in bpy.data.movieclips],
@@ -101,32 +96,3 @@ def test_a_packed_image_goes_beside_a_saved_blend(image, plate_file, tmp_path):
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
     assert bpy.ops.crf.estimate_response(image=image.name, apply="BAKE") == {"FINISHED"}
     assert (tmp_path / "project" / "plate_linear.exr").is_file()
-
-
-def test_changed_settings_are_known_until_they_are_applied(image):
-    from blender_addon.ui.plate_settings import is_to_be_applied
-
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert not is_to_be_applied(image)  # nothing has been applied yet
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=0.3)
-    assert not is_to_be_applied(image)
-    image.camera_response_settings.exposure = 1
-    assert is_to_be_applied(image)
-    bpy.ops.crf.apply_response(image=image.name)
-    assert not is_to_be_applied(image)
-    image.camera_response_settings.gray = 0.3  # the anchor is white
-    assert not is_to_be_applied(image)
-
-
-def test_menus_have_the_operators(addon):
-    """So that Blender's search finds them."""
-    from blender_addon.ui.panel import MENUS, draw_menu_entries
-
-    from .test_addon_panel import Panel
-
-    for name in MENUS:
-        assert draw_menu_entries in getattr(bpy.types, name)._dyn_ui_initialize()
-    panel = Panel()
-    draw_menu_entries(panel, bpy.context)
-    drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
-    assert drawn == ["crf.estimate_response", "crf.apply_response"]

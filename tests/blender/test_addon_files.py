@@ -1,66 +1,15 @@
 """Bake and export: files judged by their pixels, the exported config in a Blender started with it."""
 
-import json
-import os
-import subprocess
-import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
 
-from tests.helpers.images import read_image
+from tests.helpers.reference_exr import read_reference
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 FLOAT, HALF = 1e-6, 2**-11
-
-# Run in a process of its own: Blender reads its config once, at start.
-SCRIPT = """
-import json, sys
-import bpy
-bpy.utils.expose_bundled_modules()
-import addon_utils
-
-job = json.loads(sys.argv[-1])
-assert addon_utils.enable("blender_addon", default_set=True)
-bpy.ops.wm.open_mainfile(filepath=job["blend"])
-image = bpy.data.images[job["image"]]
-image.colorspace_settings.name = "CRF plate"
-from blender_addon.scene.compositor import compositor_tree
-tree = compositor_tree(bpy.context.scene)
-output = next(node for node in tree.nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
-for node in list(tree.nodes):
-    if node != output:
-        tree.nodes.remove(node)
-node = tree.nodes.new("CompositorNodeImage")
-node.image = image
-tree.links.new(node.outputs["Image"], output.inputs[0])
-render = bpy.context.scene.render
-render.resolution_x = render.resolution_y = 256
-render.resolution_percentage = 100
-render.use_sequencer, render.dither_intensity = False, 0
-render.compositor_device, render.compositor_precision = "CPU", "FULL"
-if hasattr(render.image_settings, "media_type"):
-    render.image_settings.media_type = "IMAGE"
-render.image_settings.file_format = "OPEN_EXR"
-render.image_settings.color_depth, render.image_settings.color_mode = "32", "RGB"
-render.filepath = job["linear"]
-bpy.ops.render.render(write_still=True)
-views = []
-for view in ("Standard", "AgX", "Filmic"):
-    try:
-        bpy.context.scene.view_settings.view_transform = view
-        views.append(view)
-    except TypeError:
-        pass
-print("FOUND " + json.dumps({"space": image.colorspace_settings.name, "views": views}))
-"""
-
-
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
 
 
 def run(image, **choices):
@@ -71,7 +20,8 @@ def run(image, **choices):
 def test_bake(image, plate_file, codes, estimate, depth, limit):
     assert run(image, apply="BAKE", depth=depth, exposure=1) == {"FINISHED"}
     expected = 2 * estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(read_image(plate_file.with_name("plate_linear.exr")) - expected).max() < 2 * limit
+    _, judged = read_reference(plate_file.with_name("plate_linear.exr"))
+    assert np.abs(judged - expected).max() < 2 * limit
     baked = bpy.data.images["plate_linear.exr"]
     assert baked.colorspace_settings.name == "Linear Rec.709"
     pixels = np.array(baked.pixels[:]).reshape(256, 256, -1)[::-1, :, :3]
@@ -137,28 +87,22 @@ def test_a_path_relative_to_the_scene_needs_a_saved_scene(addon, plate_file, tmp
     assert not (tmp_path / "renders").exists()
 
 
-def test_a_blender_that_is_started_with_the_exported_config(image, plate_file, tmp_path, codes, estimate, root):
-    """It has the plate's color space, and AgX and Filmic as before; the user's own folder stays as it is."""
-    config = tmp_path / "look" / "config.ocio"
-    assert run(image, apply="EXPORT", folder=str(config.parent)) == {"FINISHED"}
+def test_a_blender_that_is_started_with_the_exported_config(
+    image, plate_file, composited, rendered_anew, tmp_path, codes, estimate
+):
+    """It has the plate's color space, and AgX as before; the user's own folder stays as it is."""
+    from blender_addon.scene.compositor import compositor_tree
+
+    assert run(image, apply="EXPORT", folder=str(tmp_path / "look")) == {"FINISHED"}
     assert not Path(bpy.utils.user_resource("DATAFILES", path="colormanagement")).exists()
-    image.use_fake_user = True
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-    assert restarted(tmp_path, root, config) == {"space": "CRF plate", "views": ["Standard", "AgX", "Filmic"]}
-    expected = estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(read_image(tmp_path / "linear.exr") - expected).max() < 1e-5
-
-
-def restarted(folder, root, config):
-    """Open the saved file in a new Blender, started with a config, and return the color space and the views there."""
-    job = {"blend": str(folder / "shot.blend"), "image": "plate.png", "linear": str(folder / "linear.exr")}
-    paths = os.pathsep.join(filter(None, [str(root), os.environ.get("PYTHONPATH")]))
-    environment = {**os.environ, "PYTHONPATH": paths, "OCIO": str(config)}
-    command = [sys.executable, "-c", SCRIPT, json.dumps(job)]
-    done = subprocess.run(command, env=environment, capture_output=True, text=True, timeout=300, check=False)
-    assert done.returncode == 0, done.stdout + done.stderr
-    assert "error" not in done.stderr.lower(), done.stderr
-    return json.loads(next(line for line in done.stdout.splitlines() if line.startswith("FOUND "))[6:])
+    node = compositor_tree(bpy.context.scene).nodes.new("CompositorNodeImage")
+    node.image = image
+    composited(node.outputs["Image"])
+    code = 'bpy.data.images["plate.png"].colorspace_settings.name = "CRF plate"\n'
+    code += 'bpy.context.scene.view_settings.view_transform = "AgX"'
+    pixels, log = rendered_anew(tmp_path / "look" / "config.ocio", code)
+    assert "error" not in log.lower(), log
+    assert np.abs(pixels[..., :3] - estimate(plate_file).curve.inverse(codes / 255)).max() < 1e-5
 
 
 def test_the_environments_config_is_the_base(image, tmp_path, monkeypatch):

@@ -7,7 +7,7 @@ from tests.helpers.images import read_image, write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
-from .test_addon_movies import load, stored_curve  # noqa: E402 - after the skip
+from .test_addon_movies import stored_curve  # noqa: E402 - after the skip
 
 
 @pytest.mark.parametrize("suffix", ["bmp", "jp2"])
@@ -31,23 +31,3 @@ def save_jpeg_2000(source, target):
     settings = scene.render.image_settings
     settings.file_format, settings.color_mode, settings.quality = "JPEG2000", "RGB", 100
     image.save_render(str(target), scene=scene)
-
-
-@pytest.mark.parametrize("kind", ["image", "clip"])
-def test_a_sequence_of_such_a_format(addon, tmp_path, codes, kind):
-    for number in (7, 9, 10):
-        write_image(tmp_path / f"shot.{number:04d}.bmp", np.roll(codes, number, axis=0))
-    datablock = load(kind, tmp_path / "shot.0007.bmp")
-    if kind == "image":
-        datablock.source = "SEQUENCE"
-    bpy.ops.crf.estimate_response(**{kind: datablock.name}, apply="BAKE", depth="float")
-    expected = stored_curve(datablock).inverse(np.roll(codes, 10, axis=0) / 255)
-    assert np.abs(read_image(tmp_path / "shot_linear.0010.exr") - expected).max() < 1e-6
-
-
-def test_a_packed_image_of_such_a_format(addon, tmp_path, codes):
-    image = bpy.data.images.load(str(write_image(tmp_path / "other.bmp", codes)))
-    image.pack()
-    bpy.ops.crf.estimate_response(image=image.name, apply="BAKE", depth="float", folder=str(tmp_path))
-    expected = stored_curve(image).inverse(codes / 255)
-    assert np.abs(read_image(tmp_path / "other_linear.exr") - expected).max() < 1e-6

@@ -1,4 +1,4 @@
-"""HEIC and AVIF, which Blender cannot show: the estimator reads them, as plates and as further photographs."""
+"""HEIC and AVIF, which Blender cannot show: the estimator reads them."""
 
 import numpy as np
 import pytest

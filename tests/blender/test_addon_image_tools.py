@@ -9,6 +9,8 @@ from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 
 def pixels_of(image):
     """The pixels of a float image, the top row first."""
@@ -45,24 +47,6 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
         show(after=False)
         assert space.image == image
     assert names() == before
-
-
-@pytest.mark.parametrize("is_packed", [False, True])
-def test_16_bits_and_alpha(addon, tmp_path, estimate, in_editor, is_packed):
-    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 4)).astype(np.uint16)
-    path = write_image(tmp_path / "deep.png", samples, oiio__UnassociatedAlpha=1)
-    image = bpy.data.images.load(str(path))
-    if is_packed:
-        image.pack()
-    bpy.ops.crf.estimate_response(image=image.name)
-    expected = estimate(path).curve.inverse(samples[..., :3] / 65535)
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        show(after=True)
-        found = pixels_of(space.image)
-        show(after=False)
-    alpha = samples[..., 3:] / 65535
-    assert np.abs(found - np.concatenate([expected * alpha, alpha], axis=2)).max() < 1e-5
 
 
 def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):
@@ -108,24 +92,6 @@ def test_it_never_reaches_the_file(image, in_editor, tmp_path, occasion):
     assert names() == ["plate.png"]
     if occasion != "undo":
         assert space.image.name == "plate.png"
-
-
-def test_the_switch_is_drawn_in_the_image_editor_only(image, in_editor):
-    from blender_addon.ui.panel import ResponsePanel
-
-    from .test_addon_panel import Panel, operators
-
-    for editor in ("IMAGE_EDITOR", "CLIP_EDITOR"):
-        panel = Panel()
-        with in_editor(editor) as space:
-            if editor == "IMAGE_EDITOR":
-                space.image = image
-            else:
-                space.clip = bpy.data.movieclips.load(image.filepath)
-                bpy.ops.crf.estimate_response()
-            ResponsePanel.draw(panel, bpy.context)
-        switch = [text for name, text in operators(panel.layout.drawn) if name == "crf.compare"]
-        assert switch == (["Plate", "Linear"] if editor == "IMAGE_EDITOR" else [])
 
 
 def test_gray_is_the_mean_of_a_few_pixels():

@@ -7,6 +7,8 @@ from .test_addon_panel import drawn_in, labels
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 WHY = "plate.png is linked from another file: make it local first"
 
 
@@ -38,11 +40,6 @@ def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked
             bpy.ops.crf.pick_gray("INVOKE_DEFAULT")
     assert state(linked) == before
     assert WHY in " ".join(labels(drawn_in(linked, in_editor)))
-
-
-def test_its_look_may_be_added_because_that_changes_only_the_comp(linked):
-    assert bpy.ops.crf.add_look(image=linked.name) == {"FINISHED"}
-    assert bpy.data.node_groups["Camera Look plate"]["camera_response_look_of"] == linked
 
 
 def test_its_linear_plate_may_be_looked_at(linked, in_editor, codes, estimate, plate_file):

@@ -7,11 +7,6 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
 @pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
-@pytest.fixture
 def lut_file(tmp_path, true_response):
     """Write the inverse of a known response in a format; returns its file."""
     from crfnet.luts.files import write_lut
@@ -112,13 +107,3 @@ def test_other_files_are_refused_and_change_nothing(image, tmp_path):
         with pytest.raises(RuntimeError, match="Error"):
             load(image, wrong)
     assert "camera_response" not in image
-
-
-def test_a_path_relative_to_a_scene_that_was_not_saved_is_refused(image, lut_file, monkeypatch):
-    """Blender would take it for one relative to the folder where it was started."""
-    path = lut_file()
-    monkeypatch.chdir(path.parent)
-    bpy.ops.wm.read_homefile(use_empty=True)
-    opened = bpy.data.images.load(str(path.with_name("plate.png")))
-    with pytest.raises(RuntimeError, match=r"is relative to the \.blend file: save that first"):
-        load(opened, f"//{path.name}")

@@ -9,6 +9,8 @@ from tests.helpers.images import read_image, write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: Largest difference from the code values of the plate, white = 1.
@@ -72,15 +74,6 @@ def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
     expected = curve.forward(inverse_response_lut(curve).apply(samples / 65535))
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - expected).max() < ROUND_TRIP
     assert np.abs(expected - samples / 65535).max() < 2 / 65535
-
-
-def test_it_undoes_it_under_alpha(look, composited, tmp_path, codes):
-    alpha = np.random.default_rng(1).integers(1, 256, (256, 256, 1)).astype(np.uint8)
-    path = write_image(tmp_path / "cut_out.png", np.concatenate([codes, alpha], axis=2), oiio__UnassociatedAlpha=1)
-    _, node = look(path)
-    pixels = composited(node.outputs["Code Values"])
-    assert np.abs(pixels[..., 3:] - alpha / 255).max() < 1e-6
-    assert np.abs(pixels[..., :3] - codes / 255 * (alpha / 255)).max() < ROUND_TRIP
 
 
 @pytest.mark.skipif(not IS_BLENDER_5, reason="the working space is the config's before Blender 5.0")
@@ -168,29 +161,3 @@ def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
 def test_it_says_why_it_cannot_be_added(image, in_editor, editor, why):
     with in_editor(editor), pytest.raises(RuntimeError, match=why):
         bpy.ops.crf.add_look()
-
-
-def test_it_waits_for_the_end_of_a_run(image, in_editor, monkeypatch):
-    from blender_addon.ui import running
-
-    monkeypatch.setattr(running, "why_busy", lambda: "The camera response of shot is running")
-    with in_editor("NODE_EDITOR"), pytest.raises(RuntimeError, match="shot is running"):
-        bpy.ops.crf.add_look(image=image.name)
-
-
-def test_it_is_in_the_panel_of_the_compositor_only(look, plate_file, in_editor):
-    from blender_addon.ui.panel import ResponsePanel
-    from tests.blender.test_addon_panel import Panel, operators
-
-    image, _ = look(plate_file)
-    for editor in ("NODE_EDITOR", "IMAGE_EDITOR"):
-        panel = Panel()
-        with in_editor(editor) as space:
-            if editor == "NODE_EDITOR":
-                space.node_tree = scene_tree()  # its active node is the look, which leads back to the plate
-            else:
-                space.image = image
-            assert bpy.ops.crf.add_look.poll() == (editor == "NODE_EDITOR")
-            ResponsePanel.draw(panel, bpy.context)
-        names = [name for name, *_ in operators(panel.layout.drawn)]
-        assert ("crf.add_look" in names) == (editor == "NODE_EDITOR")

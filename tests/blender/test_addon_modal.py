@@ -76,11 +76,6 @@ def operator(addon):
     return Driven
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 def drive(operator, interface, seconds=60):
     """Send timer events until the operator ends; return how it ended."""
     deadline = time.monotonic() + seconds
@@ -159,12 +154,6 @@ def test_a_plate_that_is_removed_meanwhile(operator, interface, image):
     assert drive(run, interface) == {"CANCELLED"}
     assert "removed meanwhile" in run.reports[0][1]
     assert not bpy.data.node_groups
-
-
-def test_an_error_before_the_start_leaves_no_timer(operator, interface):
-    run = operator("nothing")
-    assert run.invoke(interface, None) == {"CANCELLED"}
-    assert interface.timers == interface.handlers == []
 
 
 def test_closing_blender_stops_the_run(operator, interface, image):

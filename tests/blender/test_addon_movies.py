@@ -129,23 +129,6 @@ def test_a_movie_is_not_baked(movie, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
-def test_the_estimate_is_that_of_the_frame(addon, movie, movie_folder):
-    from blender_addon.scene.stored_estimate import restored
-    from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
-    from crfnet_core.network import DEFAULT_MODEL
-
-    if not DEFAULT_MODEL.is_dir():
-        pytest.skip("the packaged model is not there")
-    addon.model = ""
-    clip = load("clip", movie("rgb.mkv"))
-    bpy.context.scene.frame_set(7)
-    bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES")
-    photo = read_photo(movie_folder / "0007.png")
-    expected = estimate_response([photo], network=ResponseNetwork.load(), options=AnalysisOptions(use_metadata=False))
-    assert restored(clip).photos == ("rgb.0007.png",)
-    np.testing.assert_allclose(restored(clip).weights, expected.weights, atol=1e-3)
-
-
 def test_nodes_linearize_a_movie(movie, codes, composited):
     image = load("image", movie("rgb.mkv"))
     assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}

@@ -58,43 +58,6 @@ def test_exposure_is_a_socket_in_stops(load, composited, plate_file, codes, esti
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 3 * CODES
 
 
-@pytest.mark.parametrize("depth", ["uint8", "uint16"])
-def test_alpha(load, composited, tmp_path, codes, estimate, depth):
-    alpha = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
-    stored = np.concatenate([codes, alpha], axis=2).astype(depth) * (257 if depth == "uint16" else 1)
-    path = write_image(tmp_path / "cut_out.png", stored.astype(depth), oiio__UnassociatedAlpha=1)
-    _, group = load(path)
-    curve = estimate(path).curve
-    expected = curve.inverse(codes / 255) * (alpha / 255)
-    pixels = composited(group.outputs[0])
-    assert np.abs(pixels[..., 3:] - alpha / 255).max() < CODES
-    assert np.abs(pixels[..., :3] - expected).max() < CODES
-
-
-@pytest.mark.parametrize(("mode", "has_alpha"), [("NONE", False), ("CHANNEL_PACKED", True)])
-@pytest.mark.parametrize("depth", ["uint8", "uint16"])
-def test_alpha_that_is_none_or_no_coverage(addon, composited, tmp_path, codes, estimate, depth, mode, has_alpha):
-    alpha = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
-    stored = np.concatenate([codes, alpha], axis=2).astype(depth) * (257 if depth == "uint16" else 1)
-    path = write_image(tmp_path / "packed.png", stored.astype(depth), oiio__UnassociatedAlpha=1)
-    image = bpy.data.images.load(str(path))
-    image.alpha_mode = mode
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
-    (group,) = (node for node in scene_tree().nodes if node.type == "GROUP")
-    pixels = composited(group.outputs[0])
-    assert np.abs(pixels[..., 3:] - (alpha / 255 if has_alpha else 1)).max() < CODES
-    assert np.abs(pixels[..., :3] - estimate(path).curve.inverse(codes / 255)).max() < CODES
-
-
-def test_saved_and_opened_again(load, composited, tmp_path, plate_file, codes, estimate):
-    load(plate_file)
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
-    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
-    expected = estimate(plate_file).curve.inverse(codes / 255)
-    assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
-
-
 @pytest.mark.skipif(not IS_BLENDER_5, reason="the working space is the config's before Blender 5.0")
 @pytest.mark.parametrize("space", ["ACEScg", "Linear Rec.2020"])
 def test_another_working_space(load, composited, plate_file, codes, estimate, space):
@@ -129,13 +92,6 @@ def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate
         assert group.inputs["Exposure"].default_value == exposure
         assert [g.name for g in bpy.data.node_groups if g.name.startswith("Camera")] == ["Camera Response plate"]
         assert len([image for image in bpy.data.images if image.name.endswith("LUT")]) == 1
-
-
-def test_a_new_compositor_hands_the_render_through(load, plate_file):
-    load(plate_file)
-    output = next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
-    source = output.inputs[0].links[0].from_node
-    assert source.type == "R_LAYERS" or source.inputs[0].links[0].from_node.type == "R_LAYERS"
 
 
 def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):

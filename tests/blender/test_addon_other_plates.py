@@ -17,15 +17,6 @@ def images(addon, tmp_path, codes):
     return images
 
 
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
-    tree.nodes.clear()
-    return tree
-
-
 def copy(*names, is_clip=False, is_chosen=True):
     targets = [{"name": name, "is_clip": is_clip, "is_chosen": is_chosen} for name in names]
     return bpy.ops.crf.copy_response(image="one.png", targets=targets)
@@ -134,10 +125,3 @@ def test_the_list_offers_other_plates_and_ticks_selected_nodes(images, tree, in_
         assert _selected(bpy.context) == [images[2]]
     with in_editor("IMAGE_EDITOR"):
         assert _selected(bpy.context) == []
-
-
-def test_it_is_in_the_panel_of_a_plate_with_a_response(images, in_editor):
-    from tests.blender.test_addon_panel import drawn_in, operators
-
-    assert "crf.copy_response" in [name for name, *_ in operators(drawn_in(images[0], in_editor))]
-    assert "crf.copy_response" not in [name for name, *_ in operators(drawn_in(images[1], in_editor))]

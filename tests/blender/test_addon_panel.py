@@ -7,6 +7,8 @@ from tests.helpers.images import write_image
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
+pytestmark = pytest.mark.usefixtures("estimated")
+
 
 class Layout:
     """Stands for a layout; records what is drawn and set, and knows what a real layout can draw."""
@@ -77,7 +79,7 @@ def test_it_draws_every_mode(image, in_editor, mode):
     assert ("Choose under" in words) == (mode == "ESTIMATE")
     assert ("overwrite" in properties) == (mode in ("BAKE", "EXPORT"))
     folders = [entry[3] for entry in drawn if entry[0] == "prop" and entry[2] == "folder"]
-    assert folders == ["Beside the plate"] * (mode in ("BAKE", "EXPORT"))
+    assert folders == ["Folder of the plate"] * (mode in ("BAKE", "EXPORT"))
 
 
 @pytest.mark.parametrize(
@@ -185,17 +187,6 @@ def test_a_missing_library_is_told_before_there_is_a_plate(addon, in_editor, mon
         ResponsePanel.draw(panel, bpy.context)
         assert not bpy.ops.crf.estimate_response.poll()
     assert " ".join(labels(panel.layout.drawn)) == "onnxruntime is missing: install the add-on again"
-
-
-def test_the_icon_is_drawn_once_per_estimate(image):
-    from blender_addon.ui import estimate_box
-    from blender_addon.work.curve_picture import SIZE
-
-    estimate_box.curve_icon(image)
-    estimate_box.curve_icon(image)
-    (preview,) = estimate_box._previews.values()
-    assert tuple(preview.image_size) == (SIZE, SIZE)
-    assert np.ptp(preview.image_pixels_float[:]) > 0.5
 
 
 def test_the_preferences_come_first_until_a_plate_is_set(addon):

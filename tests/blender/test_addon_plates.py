@@ -47,17 +47,6 @@ def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
     assert active(group) is None
 
 
-def test_other_nodes_stand_for_no_plate(compositor):
-    _, tree, active = compositor
-    (source,) = (node for node in tree.nodes if node.type == "IMAGE")
-    blur, other = tree.nodes.new("CompositorNodeBlur"), tree.nodes.new("CompositorNodeGroup")
-    other.node_tree = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
-    tree.links.new(source.outputs["Image"], blur.inputs["Image"])
-    assert active(blur) is None
-    assert active(other) is None
-    assert active(None) is None
-
-
 def test_a_gif_is_called_a_gif(addon, tmp_path):
     (tmp_path / "few.gif").write_bytes(b"GIF89a")
     image = bpy.data.images.load(str(tmp_path / "few.gif"))

@@ -8,11 +8,6 @@ import pytest
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 def stored(datablock):
     from blender_addon.scene.stored_estimate import restored
 

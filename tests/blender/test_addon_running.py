@@ -19,11 +19,6 @@ def interface(addon):
     running.stop()
 
 
-@pytest.fixture
-def image(addon, plate_file):
-    return bpy.data.images.load(str(plate_file))
-
-
 class Waiting:
     """A job that waits for its end to be allowed, and reports the progress that it is told to."""
 
@@ -92,7 +87,7 @@ def test_where_drawing_is_slow_the_progress_is_drawn_more_seldom(waiting, interf
 
 
 def test_one_run_at_a_time(waiting, image):
-    for name in ("estimate_response", "apply_response", "copy_response", "load_lut"):
+    for name in ("estimate_response", "apply_response", "copy_response", "load_lut", "add_look"):
         operator = getattr(bpy.ops.crf, name)
         assert not operator.poll()
         with pytest.raises(RuntimeError, match="plate is running"):
@@ -106,22 +101,6 @@ def test_one_run_at_a_time(waiting, image):
     run.end()
     assert bpy.ops.crf.estimate_response.poll()
     assert not bpy.ops.crf.cancel_run.poll()
-
-
-def test_disabling_the_addon_cancels_the_run(waiting, interface):
-    import addon_utils
-
-    from blender_addon.ui import running
-
-    run, _ = waiting
-    addon_utils.disable("blender_addon")
-    try:
-        assert run.task.is_cancelled
-        assert running.current() is None
-        assert interface.timers == []
-        assert interface.status[-1] is None
-    finally:
-        addon_utils.enable("blender_addon")
 
 
 def test_the_panel_shows_the_progress_and_cancels(waiting, in_editor, image):

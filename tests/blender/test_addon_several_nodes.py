@@ -4,12 +4,7 @@ import pytest
 
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
-
-@pytest.fixture
-def tree(addon):
-    from blender_addon.scene.compositor import compositor_tree
-
-    return compositor_tree(bpy.context.scene)
+pytestmark = pytest.mark.usefixtures("estimated")
 
 
 def twice(image):
@@ -97,23 +92,3 @@ def test_what_the_second_of_two_chained_nodes_holds_is_behind_what_the_first_hol
     assert set(nodes_behind(behind)) == {end, first, second, start}
     tree.links.remove(second.inputs["B"].links[0])
     assert set(nodes_behind(before)) == {end, first, second}
-
-
-def test_code_values_are_linearized_in_the_second_of_two_chained_nodes(image, tree):
-    from blender_addon.scene.node_links import without_group
-
-    apply_nodes(image)
-    (group,) = groups(tree)
-    source = next(link.from_node for link in tree.links if link.to_node == group)
-    mine, *_ = chained_groups(tree)
-    start, shown, linearized, end = (
-        mine.nodes.new(kind)
-        for kind in ("NodeGroupInput", "CompositorNodeImage", "CompositorNodeGroup", "NodeGroupOutput")
-    )
-    shown.image, linearized.node_tree = source.image, group.node_tree
-    mine.links.new(shown.outputs["Image"], end.inputs["A"])
-    mine.links.new(start.outputs["B"], linearized.inputs["Image"])
-    mine.links.new(linearized.outputs["Image"], end.inputs["B"])
-    assert without_group(image) == ""
-    mine.links.remove(linearized.inputs["Image"].links[0])
-    assert "without the node group" in without_group(image)

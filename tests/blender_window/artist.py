@@ -32,19 +32,7 @@ RUN, MOMENT = 300, 60
 
 
 class Artist:
-    """Works in the Image Editor of a Blender.
-
-    Parameters
-    ----------
-    blender : Blender
-        The running Blender.
-    scale : float
-        The scale of the interface.
-    theme : {"dark", "light"}
-        The theme.
-    keep : callable
-        Keeps a picture under a name: what is shown when waiting was in vain.
-    """
+    """Works in the Image Editor of a running Blender; `keep` stores the picture when waiting was in vain."""
 
     def __init__(self, blender: Blender, *, scale: float, theme: str, keep: Callable[[Picture, str], Any]) -> None:
         self.blender, self.call, self.value = blender, blender.call, blender.value

@@ -22,7 +22,7 @@ from tests.helpers.images import read_image, write_image
 PLATE = Path(__file__).resolve().parent.parent / "data" / "plate.jpg"
 
 #: Plates whose estimate and linear values are compared with those of the add-on.
-COMPARED = ("plate.jpg", "a/IMG_0001.jpg", "b/IMG_0001.jpg")
+COMPARED = ("plate.jpg",)
 
 #: Size of the large plate, 12 megapixels.
 LARGE = (4000, 3000)
@@ -33,8 +33,7 @@ def make_plates(folder: Path) -> None:
 
     ``plate.jpg`` and ``a/IMG_0001.jpg`` are the bundled photograph, ``b`` and ``c`` have others of the same name with
     another response. ``numbers`` and ``shot`` are sequences, ``limited.png`` is the photograph in the codes
-    16 to 235 of video, which no camera's response explains, ``known.jpg`` names a camera that was measured, and
-    ``large.jpg`` has 12 megapixels.
+    16 to 235 of video, which no camera's response explains, and ``large.jpg`` has 12 megapixels.
     """
     for name in ("a", "b", "c", "numbers", "shot"):
         (folder / name).mkdir(parents=True, exist_ok=True)
@@ -49,7 +48,6 @@ def make_plates(folder: Path) -> None:
         write_image(folder / "numbers" / f"{number:04d}.jpg", frame, Compression="jpeg:95")
         write_image(folder / "shot" / f"shot.{1000 + number}.jpg", frame, Compression="jpeg:95")
     write_image(folder / "limited.png", np.rint(16 + 219 / 255 * codes).astype(np.uint8))
-    write_image(folder / "known.jpg", codes, Compression="jpeg:95", Make="Canon", Model="Canon EOS 20D")
     make_photograph(folder / "large.jpg", *LARGE)
 
 

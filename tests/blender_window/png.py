@@ -1,4 +1,4 @@
-"""Write PNG files with the standard library: lossless, with a palette where it holds all colours, deflate level 9."""
+"""Write PNG files with the standard library: lossless, with a palette where it holds all colors, deflate level 9."""
 
 from __future__ import annotations
 
@@ -8,14 +8,14 @@ from pathlib import Path
 
 from tests.blender_window.screen import Picture
 
-#: The largest number of colours that a palette holds.
+#: The largest number of colors that a palette holds.
 MOST_COLORS = 256
 
 
 def write_png(path: Path, picture: Picture) -> Path:
-    """Write a picture and return the path; with at most `MOST_COLORS` colours it is stored with a palette.
+    """Write a picture and return the path; with at most `MOST_COLORS` colors it is stored with a palette.
 
-    Interfaces have few colours and long runs of one, so most of them shrink to a few per cent.
+    Interfaces have few colors and long runs of one, so most of them shrink to a few per cent.
     """
     pixels = [picture.rgb[at : at + 3] for at in range(0, len(picture.rgb), 3)]
     palette = sorted(set(pixels))

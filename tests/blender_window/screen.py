@@ -36,19 +36,11 @@ class Box:
 
 @dataclass(frozen=True)
 class Picture:
-    """Pixels of the screen.
-
-    Parameters
-    ----------
-    width, height : int
-        Size in pixels.
-    rgb : bytes
-        Red, green and blue of every pixel, one byte each, the top row first.
-    """
+    """Pixels of the screen."""
 
     width: int
     height: int
-    rgb: bytes
+    rgb: bytes  # one byte each, the top row first
 
     def cropped(self, box: Box) -> Picture:
         """Return the pixels inside a box, which must lie inside the picture."""
@@ -72,13 +64,7 @@ class Picture:
 
 
 class Screen:
-    """A running Xvfb; use it in a `with` statement, or call `close`.
-
-    Parameters
-    ----------
-    width, height : int
-        Size in pixels.
-    """
+    """A running Xvfb of a size in pixels; use it in a `with` statement, or call `close`."""
 
     def __init__(self, width: int, height: int) -> None:
         self.width, self.height = width, height

@@ -25,18 +25,9 @@ START, ANSWER = 300, 600
 
 
 class Blender:
-    """A running Blender; use it in a `with` statement, or call `quit`.
+    """A running Blender, whose window fills a screen; use it in a `with` statement, or call `quit`.
 
-    Parameters
-    ----------
-    program : str
-        Blender's executable.
-    screen : Screen
-        Where its window is; it fills the screen.
-    home : Path
-        The user's home; Blender keeps everything in its folder ``blender``.
-    file : Path, optional
-        The .blend file to open.
+    Everything that it stores is in the folder ``blender`` of `home`; `file` is a .blend file to open.
     """
 
     def __init__(self, program: str, screen: Screen, home: Path, file: Path | None = None) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 
-from tests.blender_window.artist import APPLY, CANCEL, ESTIMATE
+from tests.blender_window.artist import CANCEL, ESTIMATE
 from tests.blender_window.base import WindowTest
 
 #: Fraction of the sidebar's pixels that may differ where nothing is to be drawn: the highlight of a button.
@@ -23,20 +23,6 @@ class TestRunning(WindowTest):
         artist.call("plates.choose", name, **settings)
         artist.settle()
         return artist, name
-
-    def test_the_redo_panel_shows_what_was_done_or_is_not_there(self):
-        folder = self.folder / "look"
-        settings = {"apply": "EXPORT", "anchor": "GRAY", "gray": 0.4, "exposure": 1.0, "folder": str(folder)}
-        artist, _ = self.start_with("plate.jpg", **settings)
-        artist.run()
-        artist.settle()
-        artist.screen.key("F9")
-        time.sleep(1)
-        self.keep(artist.picture(), "redo_panel")
-        shown = artist.call("runs.last_registered")
-        for name, value in settings.items() if shown is not None else ():
-            with self.subTest(name):
-                (self.assertAlmostEqual if isinstance(value, float) else self.assertEqual)(shown[name], value)
 
     def test_the_panel_shows_the_estimate_although_the_mouse_rests(self):
         artist, _ = self.start_with("plate.jpg", apply="EXPORT", folder=str(self.folder / "look"))
@@ -86,24 +72,6 @@ class TestRunning(WindowTest):
         artist.screen.click(*artist.find(CANCEL, row=row))
         artist.wait_for_end()
         self.assertIsNone(artist.call("plates.stored", name))
-
-    def test_frames_that_were_opened_as_tiles_are_explained_or_read(self):
-        artist = self.start()
-        frames = self.plate("shot")
-        names = tuple(sorted(path.name for path in frames.iterdir()))
-        name = artist.open(frames / names[0], names=names, sequence=True)
-        self.keep(artist.picture(), "tiles")
-        self.assertEqual(artist.value(f"bpy.data.images[{name!r}].source"), "TILED")
-        if not artist.call("runs.can_run"):
-            self.assertIn("Image Sequence", artist.call("runs.why_not"))
-
-    def test_apply_is_offered_once_there_is_an_estimate(self):
-        artist, _ = self.start_with("plate.jpg", apply="EXPORT", folder=str(self.folder / "look"))
-        with self.assertRaises(LookupError):
-            artist.find(APPLY)
-        artist.run()
-        artist.settle()
-        artist.find(APPLY)
 
     def assert_status_bar_is(self, artist, before, name):
         """Assert that the status bar becomes what it was, once the report of the operator has gone."""

@@ -37,14 +37,7 @@ _ROWS = 16
 def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str) -> None:
     """Show the linear plate in an editor that shows the plate.
 
-    Parameters
-    ----------
-    space : SpaceImageEditor
-        The editor.
-    pixels : ndarray, float32, shape (H, W, 4)
-        The linear plate, multiplied by alpha, the bottom row first.
-    color_space : str
-        The name of its colour space.
+    Its pixels, shape (H, W, 4), in a color space, are multiplied by alpha; the bottom row comes first.
     """
     plate = space.image
     height, width = pixels.shape[:2]
@@ -81,20 +74,11 @@ def end_all() -> None:
 
 
 def code_values(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32Array:
-    """Return the code values of an image, those of the frame that an editor shows.
+    """Return the code values of an image, of the frame that an editor shows: float32, shape (H, W, 3 or 4), in [0, 1].
 
-    Returns
-    -------
-    ndarray, float32, shape (H, W, 3 or 4)
-        In [0, 1], the bottom row first, colours not multiplied by alpha. Of an image whose alpha Blender takes for no
-        coverage, the colours alone.
-
-    Raises
-    ------
-    AddonError
-        If Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels are not code values.
-    CRFNetError
-        If its file cannot be read, or does not hold encoded values.
+    The bottom row comes first, and colors are not multiplied by alpha, which is left out where Blender does not take it
+    for coverage. Raise AddonError if Blender cannot read the image, or it is a movie of more than 8 bits, whose pixels
+    are not code values; CRFNetError if its file cannot be read, or does not hold encoded values.
     """
     width, height = image.size
     # Where Blender decodes HEIC, its codes are others by a few; of a sequence, it has the frame that it read last.
@@ -157,23 +141,9 @@ def _codes_of_file(image: bpy.types.Image, user: bpy.types.ImageUser) -> Float32
 def linear_pixels(
     codes: Float32Array, curve: ResponseCurve, stops: float, matrix: Float64Array | None = None
 ) -> Float32Array:
-    """Return the linear plate of code values.
+    """Return the linear plate, float32, shape (H, W, 4), in linear Rec.709 and multiplied by alpha.
 
-    Parameters
-    ----------
-    codes : ndarray, float32, shape (H, W, 3 or 4)
-        Code values, as `code_values` returns them.
-    curve : ResponseCurve
-        The plate's response.
-    stops : float
-        Stops added after the inverse response.
-    matrix : ndarray, float64, shape (3, 3), or None
-        From the plate's linear RGB to linear Rec.709; None if they are the same.
-
-    Returns
-    -------
-    ndarray, float32, shape (H, W, 4)
-        In linear Rec.709, multiplied by alpha.
+    `codes` are as `code_values` returns them; the matrix, shape (3, 3), leads from the plate's linear RGB to Rec.709.
     """
     table = (curve.inverse(np.arange(_LARGEST + 1) / _LARGEST) * 2**stops).astype(np.float32)
     linear = np.empty((*codes.shape[:2], 4), np.float32)
@@ -190,7 +160,7 @@ def linear_pixels(
 
 
 def _image_editors() -> Iterator[bpy.types.SpaceImageEditor]:
-    """Yield all Image Editors, those of other workspaces included."""
+    """Yield the Image Editors of all workspaces."""
     for screen in bpy.data.screens:
         for area in screen.areas:
             yield from (space for space in area.spaces if space.type == "IMAGE_EDITOR")

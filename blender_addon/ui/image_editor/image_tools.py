@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Tools for images: look at the plate before and after, pick gray in it, make a sequence of what is taken for tiles."""
+"""Tools for images: compare the plate before and after, pick gray in it, make a sequence of supposed UDIM tiles."""
 
 from __future__ import annotations
 
@@ -21,7 +21,7 @@ if TYPE_CHECKING:
 #: Half the side of the square of pixels whose mean is picked.
 REACH = 2
 
-#: What the status bar says while gray is picked.
+#: The text in the status bar while gray is picked.
 PICK_HINT = "Click on something gray in the plate  |  Esc to cancel"
 
 
@@ -70,7 +70,7 @@ class CRF_OT_pick_gray(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether an Image Editor shows a plate that may be changed, and tell why if not."""
+        """Return whether an Image Editor shows a plate that may be changed, and set the tooltip if not."""
         return _is_image_editor(context) and is_allowed(cls, running.why_busy() or why_unchangeable(context))
 
     def invoke(self, context: bpy.types.Context, _event: bpy.types.Event) -> set[str]:
@@ -124,7 +124,7 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
 
     @classmethod
     def poll(cls, context: bpy.types.Context) -> bool:
-        """Return whether the plate is made of tiles and may be changed, and tell why if not."""
+        """Return whether the plate is made of tiles and may be changed, and set the tooltip if not."""
         return plates.is_tiled(plates.active_datablock(context)) and is_allowed(cls, why_unchangeable(context))
 
     def execute(self, context: bpy.types.Context) -> set[str]:
@@ -133,26 +133,16 @@ class CRF_OT_read_as_sequence(bpy.types.Operator):
         image.source = "SEQUENCE"
         user = space.image_user if space.type == "IMAGE_EDITOR" else space.edit_tree.nodes.active
         if hasattr(user, "frame_duration"):  # not the plate's node group
-            with suppress(*expected_errors()):  # told where a response is estimated
+            with suppress(*expected_errors()):  # reported where a response is estimated
                 frames = lazy_import.load(".work.frame_files").frames_of(plates.plate_of(image)).numbers
                 compositor.FrameTiming.from_scene_start(frames).set_on(user)
         return {"FINISHED"}
 
 
 def mean_around(codes: Float32Array, place: tuple[float, float]) -> float:
-    """Return the mean brightness of red, green and blue in a square of pixels.
+    """Return the mean brightness of red, green and blue in a square of pixels of code values, shape (H, W, 3 or more).
 
-    Parameters
-    ----------
-    codes : ndarray, float32, shape (H, W, 3 or more)
-        Code values in [0, 1].
-    place : tuple of float
-        The centre of the square: from (0, 0), the corner of the first row and column, to (1, 1).
-
-    Raises
-    ------
-    AddonError
-        If the place is outside the picture.
+    Its center is from (0, 0), the corner of the first row and column, to (1, 1). Raise AddonError if it lies outside.
     """
     height, width = codes.shape[:2]
     column, row = int(place[0] * width // 1), int(place[1] * height // 1)

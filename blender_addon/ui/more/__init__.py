@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""What the sub-panel "More" offers beside the estimate.
+"""The sub-panel "More" and its operators.
 
 panel         the sub-panel
 add_look      "Add Camera Look" in the compositor

@@ -12,7 +12,7 @@ from .other_plates import CRF_OT_copy_response
 
 
 def draw_more(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
-    """Draw what can be done with the response of a plate beside applying it to this plate."""
+    """Draw further uses of the response of a plate, and the button that loads one."""
     header, body = layout.panel("CRF_more", default_closed=True)
     header.label(text="More")
     if body is None:

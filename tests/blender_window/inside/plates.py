@@ -34,11 +34,6 @@ def open_image(path: str, *, names: tuple[str, ...] = (), finds_tiles: bool = Tr
     return image.name
 
 
-def show_image(name: str) -> None:
-    """Show an image in the Image Editor."""
-    editors.area("IMAGE_EDITOR").spaces.active.image = bpy.data.images[name]
-
-
 def choose(name: str, **settings: Any) -> None:
     """Set settings of the panel on an image."""
     for setting, value in settings.items():
@@ -50,19 +45,6 @@ def stored(name: str) -> dict[str, Any] | None:
     """Return the stored estimate of an image; None if it has none."""
     entries = bpy.data.images[name].get(KEY)
     return None if entries is None else entries.to_dict()
-
-
-def window_sides(name: str) -> list[list[float]]:
-    """Return where the middle of the left side of each analysed window that agrees with the others is on the screen."""
-    image, region = bpy.data.images[name], editors.region("IMAGE_EDITOR", "WINDOW")
-    places, agrees = image[KEY]["window_places"], image[KEY]["window_kept"]
-    found = []
-    for index in (index for index, kept in enumerate(agrees) if kept):
-        x, y, step, _ = places[4 * index : 4 * index + 4]
-        middle = y + (226 * step + 1) / 2
-        view = region.view2d.view_to_region(x / image.size[0], 1 - middle / image.size[1], clip=False)
-        found.append([region.x + view[0], editors.window().height - region.y - view[1]])
-    return found
 
 
 def state() -> dict[str, Any]:
@@ -87,25 +69,6 @@ def plate_nodes(name: str) -> list[bpy.types.Node]:
     file = bpy.path.abspath(bpy.data.images[name].filepath)
     shown = [node for node in tree().nodes if node.type == "IMAGE" and node.image]
     return [node for node in shown if bpy.path.abspath(node.image.filepath) == file]
-
-
-def groups_behind(name: str) -> list[str]:
-    """Return the names of the node groups that the light of an image goes through, whatever stands in between."""
-    found, waiting = [], plate_nodes(name)
-    while waiting:
-        node = waiting.pop()
-        found += [node.node_tree.name] if node.type == "GROUP" else []
-        waiting += [link.to_node for socket in node.outputs for link in socket.links]
-    return found
-
-
-def put_between(name: str, kind: str) -> None:
-    """Put a node, such as ``NodeReroute``, between a plate and what it is linked to."""
-    (plate,) = plate_nodes(name)
-    node = tree().nodes.new(kind)
-    for target in [link.to_socket for link in plate.outputs["Image"].links]:
-        tree().links.new(node.outputs[0], target)
-    tree().links.new(plate.outputs["Image"], node.inputs[0])
 
 
 def last_socket(name: str) -> bpy.types.NodeSocket:
@@ -139,23 +102,6 @@ def render(name: str, path: str) -> str:
     settings.filepath = path
     bpy.ops.render.render(write_still=True)
     return path
-
-
-def decoded(name: str, path: str) -> str:
-    """Write the pixels of an image, decoded by its color space to scene-linear light, to a float EXR file."""
-    scene, image = bpy.context.scene, bpy.data.images[name]
-    if bpy.app.version >= (5, 0, 0):
-        made = bpy.data.node_groups.new("Decoded", "CompositorNodeTree")
-        made.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
-        scene.compositing_node_group, output = made, made.nodes.new("NodeGroupOutput")
-    else:
-        scene.use_nodes = True
-        scene.node_tree.nodes.clear()
-        output = scene.node_tree.nodes.new("CompositorNodeComposite")
-    node = tree().nodes.new("CompositorNodeImage")
-    node.image = image
-    tree().links.new(node.outputs["Image"], output.inputs[0])
-    return render(name, path)
 
 
 def largest_difference(path: str, expected: str) -> float:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import time
-from typing import Any
 
 import bpy
 import editors
@@ -49,24 +48,6 @@ def can_run(operator: str = "estimate_response") -> bool:
         return getattr(bpy.ops.crf, operator).poll()
 
 
-def why_not(operator: str = "estimate_response") -> str:
-    """Return what Blender says if an operator of the add-on cannot be started in the Image Editor."""
-    with editors.context("IMAGE_EDITOR"):
-        try:
-            getattr(bpy.ops.crf, operator)("EXEC_DEFAULT")
-        except RuntimeError as problem:
-            return str(problem)
-    return ""
-
-
-def script(**options: Any) -> float:
-    """Estimate as a script does, and return the time in seconds."""
-    with editors.context("IMAGE_EDITOR"):
-        start = time.monotonic()
-        bpy.ops.crf.estimate_response("EXEC_DEFAULT", True, **options)
-        return time.monotonic() - start
-
-
 def watch() -> None:
     """Note when the next run starts and ends."""
     _times.clear()
@@ -90,16 +71,6 @@ def has_started() -> bool:
 def ended() -> float | None:
     """Return when the run that is watched ended, by `time.monotonic`; None before that."""
     return _times.get("ended")
-
-
-def last_registered() -> dict[str, Any] | None:
-    """Return the properties of the add-on's last operator as the redo panel shows them; None if it shows none of it."""
-    registered = [found for found in bpy.context.window_manager.operators if "REGISTER" in found.bl_options]
-    if not registered or not registered[-1].bl_idname.startswith("CRF_OT"):
-        return None
-    properties = registered[-1].properties
-    names = [found.identifier for found in properties.bl_rna.properties if found.identifier != "rna_type"]
-    return {name: getattr(properties, name) for name in names}
 
 
 def quit() -> None:
