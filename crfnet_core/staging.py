@@ -48,7 +48,7 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
     CRFNetError
         As `error`, if a file cannot take its name. Errors of the block name the files as they will be called.
     """
-    _remove_abandoned(folder.absolute())
+    remove_abandoned(folder.absolute())
     temporary, locked = _new_folder(folder)
     try:
         yield temporary
@@ -64,6 +64,18 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
             shutil.rmtree(temporary, ignore_errors=True)
 
 
+@lru_cache(maxsize=256)
+def remove_abandoned(folder: Path) -> None:
+    """Remove the temporary folders of killed runs; each process looks once."""
+    for temporary in folder.glob(f"{_PREFIX}*"):
+        with suppress(OSError):
+            with (temporary / _LOCK).open("ab") as file:
+                lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
+                _put_back(temporary, folder)
+            if not _earlier_files(temporary):
+                shutil.rmtree(temporary, ignore_errors=True)
+
+
 def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
     """Return a new temporary folder and the locked file in it."""
     while True:
@@ -75,18 +87,6 @@ def _new_folder(folder: Path) -> tuple[Path, IO[Any]]:
             if (temporary / _LOCK).exists():
                 return temporary, file
             file.close()
-
-
-@lru_cache(maxsize=256)
-def _remove_abandoned(folder: Path) -> None:
-    """Remove the temporary folders of killed runs; each process looks once."""
-    for temporary in folder.glob(f"{_PREFIX}*"):
-        with suppress(OSError):
-            with (temporary / _LOCK).open("ab") as file:
-                lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
-                _put_back(temporary, folder)
-            if not _earlier_files(temporary):
-                shutil.rmtree(temporary, ignore_errors=True)
 
 
 def _renamed(fact: object, temporary: Path, folder: Path) -> object:

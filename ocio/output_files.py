@@ -11,6 +11,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from crfnet_core.files import cut_to_bytes
+from crfnet_core.staging import remove_abandoned
 
 from .defaults import CONFIG_NAME
 from .errors import PlateError
@@ -148,9 +149,13 @@ def check_config_folder(folder: Path) -> None:
 
 @contextmanager
 def output_folder(folder: Path) -> Iterator[None]:
-    """Make `folder` for a block; if the block fails, remove again those folders that were made and are empty."""
+    """Make `folder` for a block, without the remains of killed runs.
+
+    If the block fails, those folders that were made and are empty are removed again.
+    """
     made = [path for path in (folder, *folder.parents) if not path.exists()]
     folder.mkdir(parents=True, exist_ok=True)
+    remove_abandoned(folder.absolute())
     try:
         yield
     except BaseException:

@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 
 from crfnet_core.errors import CRFNetError, PhotoError
-from crfnet_core.staging import _remove_abandoned, staged_files
+from crfnet_core.staging import remove_abandoned, staged_files
 
 
 def content(folder):
@@ -172,7 +172,7 @@ def test_temporary_folders_of_killed_runs_are_removed_and_those_of_others_are_no
         write(tmp_path, ["a.txt"])
         assert (temporary / "file").exists()
         process.send_signal(signal.SIGKILL if os.name != "nt" else signal.SIGTERM)
-    _remove_abandoned.cache_clear()
+    remove_abandoned.cache_clear()
     write(tmp_path, ["b.txt"])
     assert content(tmp_path) == {"a.txt": "new", "b.txt": "new"}
 

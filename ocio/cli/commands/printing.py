@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import shlex
+import shutil
 import sys
+import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping
 from contextlib import contextmanager
@@ -28,9 +31,15 @@ NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'c
 
 
 def prepare_matplotlib() -> bool:
-    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do."""
+    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do.
+
+    Its list of fonts, which it writes into the home of the user, goes into a temporary folder.
+    """
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     if find_spec("matplotlib") is not None:
+        if "MPLCONFIGDIR" not in os.environ:
+            os.environ["MPLCONFIGDIR"] = folder = tempfile.mkdtemp(prefix="crfnet-matplotlib-")
+            atexit.register(shutil.rmtree, folder, ignore_errors=True)
         return True
     print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
     return False
