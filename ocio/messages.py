@@ -125,8 +125,6 @@ SENTENCES: Mapping[str, str] = {
     "other_options": "{path}: has {photo} with other options or another response; give the same, or choose another"
     " folder",
     "photographs_failed": "{failed} of {count} photographs failed; the first: {problem}",
-    "photographs_failed_of_many": "{failed} of {count} photographs failed and the others are written; the first:"
-    " {problem}",
     "process_died": "a process died, perhaps for lack of memory; run the same again",
     "reader_failed": "{path}: {kind} ({reason})",
     "unreadable": "{path}: {reason}",

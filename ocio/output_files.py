@@ -7,7 +7,7 @@ import os
 import re
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from pathlib import Path
 
 from crfnet_core.files import cut_to_bytes
@@ -64,15 +64,12 @@ class OutputFiles:
 
     def in_folder(self, folder: Path) -> OutputFiles:
         """Return the same files in another folder."""
-        return replace(
-            self,
-            luts=tuple(folder / path.name for path in self.luts),
-            config=folder / self.config.name,
-            linear=tuple(folder / path.name for path in self.linear),
-            sheet=self.sheet and folder / self.sheet.name,
-            report=folder / self.report.name,
-            forward=tuple(folder / path.name for path in self.forward),
+        luts, linear, forward = (
+            tuple(folder / path.name for path in paths) for paths in (self.luts, self.linear, self.forward)
         )
+        config, report = folder / self.config.name, folder / self.report.name
+        sheet = self.sheet and folder / self.sheet.name
+        return OutputFiles(luts, config, linear, sheet, report, self.color_space, forward)
 
 
 def plain_stem(photo: Path) -> str:

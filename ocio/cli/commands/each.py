@@ -35,6 +35,5 @@ def run_each(arguments: argparse.Namespace, names: Iterable[str | Path], batch: 
     more = ["", f"Written to {batch.out}. All results, one JSON line each: {batch.records.path}"]
     print_result(document, [*lines, *more], as_json=arguments.json)
     if failed := [record for record in records if record.error]:
-        code = "photographs_failed_of_many" if len(failed) < len(records) else "photographs_failed"
-        raise PlateError(code, failed=len(failed), count=len(records), problem=failed[0].error)
+        raise PlateError("photographs_failed", failed=len(failed), count=len(records), problem=failed[0].error)
     return [record.verdict for record in records]

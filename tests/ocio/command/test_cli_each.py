@@ -71,7 +71,7 @@ def test_a_bad_photograph_does_not_stop_the_others(estimate, photographs, tmp_pa
     (photographs / "bad.jpg").write_bytes(b"no photograph")
     done = estimate(photographs, *QUICK)
     assert done.code == BAD_INPUT
-    assert "1 of 4 photographs failed and the others are written; the first: " in done.err
+    assert "1 of 4 photographs failed; the first: " in done.err
     assert done.err.count("\n") == 1
     assert sum(", expected error " in line for line in done.out.splitlines()) == 3
     assert [bool(record["error"]) for record in records_in(tmp_path / "out")] == [False, False, True, False]

@@ -69,7 +69,7 @@ def test_names_that_are_no_text_fail_alone(estimate, photographs, tmp_path):
     for _ in range(2):
         done = estimate(photographs, *QUICK)
         assert done.code == BAD_INPUT
-        assert "3 of 6 photographs failed and the others are written; the first: " in done.err
+        assert "3 of 6 photographs failed; the first: " in done.err
         assert "a?.jpg: the name is not valid Unicode; rename it" in done.err
         assert done.err.count("\n") == 1
         errors = {record["photograph"]: record["error"] for record in records_in(tmp_path / "out")}
@@ -160,7 +160,7 @@ def test_a_subfolder_that_cannot_be_read_is_named_and_tried_again(estimate, phot
     done = estimate(photographs, *QUICK)
     assert done.code == BAD_INPUT
     said = f"{photographs / 'day 2'}: cannot be read (Permission denied); check its permissions"
-    assert f"1 of 4 photographs failed and the others are written; the first: {said}" in done.err
+    assert f"1 of 4 photographs failed; the first: {said}" in done.err
     assert [record["error"] for record in records_in(tmp_path / "out")] == ["", "", "", said]
     locked.clear()
     done = estimate(photographs, *QUICK, "--json")
