@@ -150,8 +150,3 @@ def test_p2_refuses_a_model_that_may_know_its_curves(model, tmp_path, held_out):
     settings = Settings(tmp_path, (replace(model, held_out_curves=held_out),), ("p2",))
     with pytest.raises(CRFNetError, match="does not list the held-out curves"):
         Evaluation(settings, replace(bundled_test_set(), held_out=(1, 5))).run()
-
-
-def test_two_models_of_one_name_are_refused(model, tmp_path):
-    with pytest.raises(CRFNetError, match="different names, found fixed_model, fixed_model"):
-        Evaluation(Settings(tmp_path, (model, model)), bundled_test_set()).run()

@@ -70,14 +70,6 @@ def test_every_body_counts_once():
     assert resampling.mean(np.array([0.0, 0.0, 0.0, 1.0])).value == pytest.approx(0.5)
 
 
-def test_weighted_quantiles_are_those_of_repeated_values(rng):
-    values, counts = rng.uniform(0, 1, 25), rng.integers(0, 4, 25)
-    repeated = np.sort(np.repeat(values, counts))
-    weights = np.stack([np.ones(25), counts.astype(float)])
-    quantile = Resampling(weights).quantiles(values, 0.9)[1]
-    assert quantile == repeated[int(np.ceil(0.9 * len(repeated))) - 1]
-
-
 def test_figures_are_those_of_the_metrics(rng):
     model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
     parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))

@@ -36,9 +36,3 @@ def test_a_thumbnail_is_every_fourth_sample(scene):
         thumbnail, window = resampling.thumbnail(), resampling.window()
         assert thumbnail.shape == (57, 57, 3)
         assert np.median(np.abs(thumbnail - window[::4, ::4])[2:-2, 2:-2] / thumbnail[2:-2, 2:-2]) < 0.02
-
-
-def test_beyond_its_sides_a_scene_is_mirrored(scene):
-    light = AffineResampling(scene, np.eye(2), np.array([0.0, 250.0])).window()
-    np.testing.assert_allclose(light[112], light[114], atol=1e-4)
-    assert light.min() >= 0
