@@ -72,14 +72,6 @@ def test_drawn_cameras_give_windows_that_repeat_with_the_seed_and_leave_the_ligh
         np.testing.assert_array_equal(exposed, before)
 
 
-def test_gray_light_makes_a_gray_photograph(light):
-    gray = np.repeat(light[:, :227, :227, :1], 3, axis=-1)
-    for seed in range(4):
-        rng = np.random.default_rng(seed)
-        windows = develop(gray, CURVE, draw_development(FrameKind.NATIVE, rng), rng)
-        assert (windows == windows[..., :1]).all()
-
-
 def test_kinds_of_frames_have_their_fractions():
     rng = np.random.default_rng(0)
     drawn = [draw_kind(rng) for _ in range(400)]

@@ -38,15 +38,6 @@ def test_demosaicing_keeps_what_was_measured_and_finds_smooth_light_again(planes
         np.testing.assert_allclose(found[inside], plane[inside], atol=2e-3)
 
 
-def test_gradient_correction_finds_gray_detail_better_than_bilinear_means():
-    detail = np.random.default_rng(1).random((1, 64, 64), dtype=np.float32)
-    errors = {
-        method: np.mean([np.abs(plane - detail).mean() for plane in demosaiced(detail, method)])
-        for method in Demosaicing
-    }
-    assert errors[Demosaicing.GRADIENT_CORRECTED] < 0.8 * errors[Demosaicing.BILINEAR]
-
-
 def test_the_matrix_undoes_crosstalk_and_clips_what_it_makes_negative(planes):
     sensor = Sensor(crosstalk=0.4)
     for recorded, plane in zip(sensor.record(planes, np.random.default_rng(0)), planes, strict=True):
