@@ -12,7 +12,6 @@ from training.evaluation.report.summary import (
     difference_figures,
     error_figures,
     of_scenes,
-    rejection_curve,
     reliability_figures,
     verdict_figures,
     weight_figures,
@@ -105,10 +104,6 @@ def test_an_uncertainty_gains_what_it_foretells(rng, sign, least, most):
     assert figures["rank correlation"] == pytest.approx(sign)
     assert least - 1e-9 <= figures["gain"] <= most + 1e-9
     assert figures["band coverage"] == pytest.approx(0.9)
-
-
-def test_rejection_removes_the_most_doubtful_first():
-    np.testing.assert_allclose(rejection_curve(np.array([1.0, 3.0, 2.0]), np.array([1, 3, 2])), [2, 1.5, 1])
 
 
 def test_answers_that_are_far_off_and_called_usable_are_counted():
