@@ -72,14 +72,6 @@ def test_held_out_curves_stand_in_the_configuration(exported):
     assert config.training_commit == "unknown"
 
 
-def test_matrices_are_kept_in_half_precision(exported):
-    graph = onnx.load(exported / "model" / "model.onnx").graph
-    matrices = [tensor for tensor in graph.initializer if len(tensor.dims) > 1 and max(tensor.dims) >= CONFIG.width]
-    kept = {tuple(tensor.dims): tensor.data_type for tensor in matrices}
-    assert len(kept) > 5
-    assert set(kept.values()) == {onnx.TensorProto.FLOAT16}
-
-
 def test_a_training_starts_from_an_exported_folder(exported):
     expected, net = load_network(exported / "run").net, PhotographNet(CONFIG)
     start_from(net, exported / "model")

@@ -5,7 +5,6 @@ import pytest
 pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.network import MODELS, ModelConfig
-from training import provenance
 from training.provenance import data_record, read_run, record_making, record_run, training_commit
 
 RECIPE = {"epochs": 3, "sizes": {"width": 8}}
@@ -58,12 +57,6 @@ def test_a_run_on_other_data_is_refused(shards):
     (shards / "a.npz").write_text("altered")
     with pytest.raises(SystemExit, match="holds a run of another data"):
         record(shards)
-
-
-def test_a_changed_working_tree_shows_in_the_commit(shards, monkeypatch):
-    answers = {"rev-parse": "f" * 40, "status": " M training/scenes.py"}
-    monkeypatch.setattr(provenance, "_git", lambda command, *_: answers[command])
-    assert training_commit(record(shards)) == "f" * 40 + "-dirty"
 
 
 def test_the_packaged_models_carry_a_record_that_agrees_with_model_json():

@@ -70,12 +70,6 @@ def test_the_network_has_the_papers_parameters():
     assert counts == [3_864_203, 3_864_203 + 190 * (23 * 23 * 512 + 1)]
 
 
-def test_the_network_begins_with_the_mean_response():
-    outputs = CRFNet()(torch.rand(2, 3, 227, 227))
-    assert outputs.shape == (2, 11)
-    assert not outputs.any()
-
-
 def test_the_stages_measure_what_they_say():
     curves = EmorBasis.load().reconstruct(np.eye(3, 11))
     classify = StageTask("classify", curves, squared=False, device=CPU)

@@ -25,13 +25,6 @@ def all_records(count=201):
     return "".join(record(f"power{n}", UNIFORM, UNIFORM ** (0.3 + n / 200)) for n in range(count))
 
 
-def test_blank_lines_other_line_ends_and_broken_rows_do_no_harm():
-    text = record("a", [0, 0.5, 1], [0, 0.7, 1]).replace("   5", "\n   5") + "\n\n" + record("b", [0, 1], [0, 1])
-    curves = parse_dorf(text.replace("\n", "\r\n"))
-    assert [curve.name for curve in curves] == ["a", "b"]
-    assert curves[0].irradiance.tolist() == [0, 0.5, 1]
-
-
 def test_uniform_samples_are_kept_and_others_resampled():
     same, other = parse_dorf(record("same", UNIFORM, UNIFORM**2) + record("other", [0, 0.25, 1], [0, 0.75, 1]))
     assert same.resampled() is same.brightness

@@ -9,12 +9,10 @@ from crfnet_core.response.metrics import shape_error
 from training.data.curves import CurveSource
 from training.data.families import (
     DEVELOPED_HEADROOM,
-    LINEAR_POWERS,
     SHOULDER,
     ResponseFamilies,
     developed,
     edited,
-    nearly_linear,
     with_headroom,
 )
 
@@ -66,11 +64,3 @@ def test_developed_responses_have_more_headroom_and_the_same_shape():
         camera, program = (ResponseCurve.from_samples(row) for row in (first, second))
         assert np.log2(camera.inverse(0.5) / program.inverse(0.5)) == pytest.approx(DEVELOPED_HEADROOM, abs=0.01)
         assert shape_error(camera, program) < 0.01
-
-
-def test_nearly_linear_responses_are_powers_near_1():
-    drawn = nearly_linear(200, np.random.default_rng(0))
-    powers = np.log(drawn[:, 512]) / np.log(UNIFORM[512])
-    assert powers.min() >= LINEAR_POWERS[0]
-    assert powers.max() <= LINEAR_POWERS[1]
-    np.testing.assert_allclose(drawn, UNIFORM ** powers[:, None], atol=1e-9)

@@ -6,7 +6,7 @@ pytest.importorskip("rawpy", reason="importing photographs needs the train extra
 from crfnet_core.errors import PhotoError
 from tests.helpers.images import read_image, write_image
 from tests.helpers.linear_pictures import chart, manifest, ramp, write_dng, write_float
-from training.data.import_scenes import COLUMNS, import_scene, main
+from training.data.import_scenes import import_scene, main
 from training.data.linear_files import linear_scene
 from training.data.scenes import read_scene, split_scenes
 
@@ -40,29 +40,12 @@ def test_a_file_of_the_folder_itself_is_refused(tmp_path, out):
         import_scene(out / "ramp.exr", out, overwrite=True)
 
 
-def test_the_manifest_keeps_what_it_holds(tmp_path, out):
-    out.mkdir(parents=True)
-    text = ",".join(COLUMNS) + '\nold.exr,photograph,600,400,elsewhere,CC0,"one, two"\n'
-    (out / "manifest.csv").write_text(text)
-    import_scene(write_dng(tmp_path / "new.dng", chart(ramp(1.0))), out)
-    expected = text + "new.exr,photograph,320,256,imported: new.dng,not stated,sensor white = 1\n"
-    assert (out / "manifest.csv").read_text() == expected
-
-
 def test_another_manifest_is_refused(tmp_path, out):
     out.mkdir(parents=True)
     (out / "manifest.csv").write_text("name,split\na.exr,train\n")
     with pytest.raises(PhotoError, match=r"needs the columns file, kind, width, .*, and no more; found name, split"):
         import_scene(write_dng(tmp_path / "new.dng", chart(ramp(1.0))), out)
     assert [path.name for path in out.iterdir()] == ["manifest.csv"]
-
-
-def test_two_files_of_one_name_are_refused(tmp_path, out, capsys):
-    (tmp_path / "other").mkdir()
-    files = [write_dng(folder / "same.dng", chart(ramp(1.0))) for folder in (tmp_path, tmp_path / "other")]
-    assert main([*map(str, files), "--out", str(out)]) == 2
-    assert capsys.readouterr().err.count("2 of these files would become same.exr") == 2
-    assert not out.exists()
 
 
 def bad_files(folder):

@@ -4,8 +4,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.metrics import shape_error
-from training.data.in_camera import KINDS, InCameraResponses, log_irradiance, response_of
+from training.data.in_camera import KINDS, InCameraResponses, log_irradiance
 from training.data.real.bodies import Body
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -29,12 +28,6 @@ def bodies():
 def middle(curves):
     """The exponent of powers of irradiance, from the middle of the range."""
     return np.log(curves[..., 512]) / np.log(UNIFORM[512])
-
-
-def test_a_response_comes_back_from_its_logarithms():
-    curve = ResponseCurve.gamma(2.2)
-    again = ResponseCurve.from_samples(response_of(log_irradiance(curve)))
-    assert shape_error(curve, again) < 0.01
 
 
 def test_kinds_have_their_own_centers_and_spread(bodies):

@@ -3,7 +3,6 @@ import pytest
 
 pytest.importorskip("rawpy", reason="importing photographs needs the train extra")
 
-from crfnet_core.errors import PhotoError
 from tests.helpers.images import read_image
 from tests.helpers.linear_pictures import SWATCH, chart, manifest, ramp, swatch_means, write_dng, write_float
 from training.data.import_scenes import import_scene, main
@@ -87,19 +86,8 @@ def test_exr_is_scaled_by_a_power_of_two_without_negative_values(tmp_path):
     assert notes == ["scale=2^-7", "4.6e-06 negative samples set to 0", "1 px clipped at 65000 after scale"]
 
 
-def test_gray_exr_has_three_equal_channels(tmp_path, out):
-    import_scene(write_float(tmp_path / "gray.exr", np.full((240, 240, 1), 0.18), names="Y"), out)
-    np.testing.assert_array_equal(read_image(out / "gray.exr"), np.full((240, 240, 3), np.float16(0.18), np.float32))
-
-
 def test_a_panorama_keeps_the_rows_around_its_horizon(tmp_path, out):
     light = np.ones((300, 600, 3)) * np.arange(1, 301)[:, None, None]
     row = import_scene(write_float(tmp_path / "sky.hdr", light), out, kind="panorama")
     assert (row.kind, row.width, row.height) == ("panorama band", 600, 240)
     assert read_image(out / "sky.exr")[0, 0, 0] == pytest.approx(31 / 1024, rel=0.01)
-
-
-def test_a_photograph_is_no_panorama(tmp_path):
-    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
-    with pytest.raises(PhotoError, match="320 x 256 is no whole panorama"):
-        linear_scene(path, is_panorama=True)

@@ -13,7 +13,6 @@ from training.data.manifest import (
     main,
     manifest_rows,
     read_manifest,
-    training_digest,
 )
 from training.data.splits import SPLITS_FILE
 
@@ -94,14 +93,6 @@ def test_an_absent_file_of_a_table_is_named(data, tmp_path, capsys):
     assert main(["--data", str(data), "--manifest", str(tmp_path / "new.csv")]) == 2
     assert "pano00.exr: is absent" in capsys.readouterr().err
     assert not (tmp_path / "new.csv").exists()
-
-
-def test_the_digest_of_the_training_data_follows_scenes_and_curves_only(data):
-    before = training_digest(data)
-    (data / "real" / "input" / "one.jpg").write_text("another")
-    assert training_digest(data) == before
-    (data / "linear" / "pano01.exr").write_text("another")
-    assert training_digest(data) != before
 
 
 def test_the_committed_manifest_splits_the_scenes_as_splits_json():

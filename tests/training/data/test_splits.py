@@ -16,10 +16,6 @@ def powers(*exponents):
     return np.stack([UNIFORM**p for p in exponents])
 
 
-def test_near_curves_share_a_group_and_far_ones_do_not():
-    assert curve_groups(powers(0.5, 1.0, 0.51, 0.3, 1.01)).tolist() == [0, 1, 0, 2, 1]
-
-
 def test_no_group_is_wider_than_its_diameter():
     curves = powers(*np.linspace(0.3, 1.5, 60))
     groups = curve_groups(curves)

@@ -5,7 +5,6 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.response.curve import LEAST_SLOPE, ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
-from training.data.curves import geometric_median
 from training.data.families import with_headroom
 from training.data.scenes import LUMINANCE
 from training.evaluation.baselines import (
@@ -43,11 +42,6 @@ def test_the_nearest_power_of_an_s_curve_is_the_least_of_a_grid():
     true = ResponseCurve.from_samples(UNIFORM**0.4 * (2 - UNIFORM**0.4))
     grid = [np.linalg.norm(true.brightness - UNIFORM**p) for p in np.linspace(0.05, 2, 2000)]
     assert estimation_error(true, nearest_power(true)) == pytest.approx(min(grid), abs=2e-3)
-
-
-def test_the_geometric_median_ignores_an_outlier():
-    curves = np.stack([UNIFORM**p for p in (0.5, 0.5, 0.5, 3.0)])
-    np.testing.assert_allclose(geometric_median(curves), UNIFORM**0.5, atol=1e-3)
 
 
 def test_the_mean_in_log_irradiance_of_two_powers_is_the_power_between():

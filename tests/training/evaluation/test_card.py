@@ -57,9 +57,3 @@ def test_a_report_on_the_bundled_test_set_is_refused(measured, tmp_path):
     write_report(tmp_path / "report.json", report)
     with pytest.raises(CRFNetError, match="not a whole evaluation on the data"):
         model_card.checked_report(tmp_path / "report.json", ModelConfig.read(folder / "model.json"))
-
-
-def test_a_report_of_another_version_is_refused(tmp_path, measured):
-    (tmp_path / "report.json").write_text('{"settings": {}, "P0": {}}')
-    with pytest.raises(CRFNetError, match="not a report of this version"):
-        model_card.checked_report(tmp_path / "report.json", ModelConfig.read(measured[0] / "model.json"))

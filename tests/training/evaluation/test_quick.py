@@ -137,21 +137,8 @@ def test_mistakes_are_one_line(tmp_path, arguments, message):
     assert "\n" not in str(leaving.value)
 
 
-def test_p2_measures_the_held_out_curves_alone(model, tmp_path):
-    test_set = replace(bundled_test_set(), held_out=(1, 5))
-    settings = Settings(tmp_path, (replace(model, held_out_curves=(1, 5, 7)),), ("p2",), photographs=4, workers=1)
-    Evaluation(settings, test_set).run()
-    rows = [json.loads(line) for line in (tmp_path / "photographs.jsonl").read_text().splitlines()[1:]]
-    assert {row["curve"] for row in rows} == {1, 5}
-
-
 @pytest.mark.parametrize("held_out", [(), (1,)])
 def test_p2_refuses_a_model_that_may_know_its_curves(model, tmp_path, held_out):
     settings = Settings(tmp_path, (replace(model, held_out_curves=held_out),), ("p2",))
     with pytest.raises(CRFNetError, match="does not list the held-out curves"):
         Evaluation(settings, replace(bundled_test_set(), held_out=(1, 5))).run()
-
-
-def test_two_models_of_one_name_are_refused(model, tmp_path):
-    with pytest.raises(CRFNetError, match="different names, found fixed_model, fixed_model"):
-        Evaluation(Settings(tmp_path, (model, model)), bundled_test_set()).run()

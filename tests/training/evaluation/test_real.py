@@ -20,7 +20,6 @@ from training.data.response_bank import COUNTS
 from training.evaluation.measure.real import (
     bank_without_fold,
     mean_of_other_bodies,
-    pooled_groups,
     ways_of,
     without_exif,
 )
@@ -243,13 +242,6 @@ def test_several_photographs_of_a_body_are_pooled(measured_once):
         report.row(table, name, "2 to 4 photographs")["shape mean"][0] for name in (WAYS[0], f"{WAYS[0]}, pooled")
     )
     assert pooled == pytest.approx(single, abs=0.02)  # the same photograph twice
-
-
-def test_at_most_four_photographs_are_pooled_from_all_over_the_list(data):
-    first = real_photographs(data)["real_bodies"][0]
-    many = [replace(first, name=str(number)) for number in range(8)]
-    assert [[one.name for one in group] for group in pooled_groups(many)] == [["0", "2", "5", "7"]]
-    assert pooled_groups(many[:1]) == []
 
 
 def test_the_bank_of_a_photograph_knows_nothing_of_its_fold(data):

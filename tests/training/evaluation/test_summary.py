@@ -12,7 +12,6 @@ from training.evaluation.report.summary import (
     difference_figures,
     error_figures,
     of_scenes,
-    rejection_curve,
     reliability_figures,
     verdict_figures,
     weight_figures,
@@ -70,14 +69,6 @@ def test_every_body_counts_once():
     assert resampling.mean(np.array([0.0, 0.0, 0.0, 1.0])).value == pytest.approx(0.5)
 
 
-def test_weighted_quantiles_are_those_of_repeated_values(rng):
-    values, counts = rng.uniform(0, 1, 25), rng.integers(0, 4, 25)
-    repeated = np.sort(np.repeat(values, counts))
-    weights = np.stack([np.ones(25), counts.astype(float)])
-    quantile = Resampling(weights).quantiles(values, 0.9)[1]
-    assert quantile == repeated[int(np.ceil(0.9 * len(repeated))) - 1]
-
-
 def test_figures_are_those_of_the_metrics(rng):
     model, gamma = rng.uniform(0, 3, 60), rng.uniform(1, 4, 60)
     parts = cases(model=errors(model, model, model[::-1]), gamma=errors(gamma, gamma, gamma))
@@ -113,10 +104,6 @@ def test_an_uncertainty_gains_what_it_foretells(rng, sign, least, most):
     assert figures["rank correlation"] == pytest.approx(sign)
     assert least - 1e-9 <= figures["gain"] <= most + 1e-9
     assert figures["band coverage"] == pytest.approx(0.9)
-
-
-def test_rejection_removes_the_most_doubtful_first():
-    np.testing.assert_allclose(rejection_curve(np.array([1.0, 3.0, 2.0]), np.array([1, 3, 2])), [2, 1.5, 1])
 
 
 def test_answers_that_are_far_off_and_called_usable_are_counted():

@@ -7,10 +7,9 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.errors import CRFNetError
 from crfnet_core.response.curve import ResponseCurve
-from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, linearization_error, shape_error
-from training.evaluation.measure.figures import curve_figures, fitted_weights
-from training.evaluation.measure.table import Cases, Table, code_digest
+from training.evaluation.measure.figures import curve_figures
+from training.evaluation.measure.table import Cases, Table
 
 SETTINGS = {"seed": 1, "test_set": "abc"}
 
@@ -82,18 +81,3 @@ def test_errors_are_those_of_the_metrics():
     lower = np.linspace(0, 1, 1024) <= 0.8 + 1e-3
     gap = true.brightness - guess.brightness
     assert figures["partial"] == pytest.approx(np.linalg.norm(gap[lower]), abs=1e-3)
-
-
-def test_weights_are_fitted():
-    curve = ResponseCurve.from_samples(EmorBasis.load().reconstruct([1.0, -0.5, 0.3, *[0] * 8]))
-    assert fitted_weights(curve) == pytest.approx([1.0, -0.5, 0.3], abs=0.02)
-
-
-def test_the_digest_of_the_code_follows_the_code(tmp_path):
-    module = tmp_path / "crfnet_core" / "posterior" / "prior.py"
-    module.parent.mkdir(parents=True)
-    digests = [code_digest(tmp_path)]
-    for text in ("a = 1", "a = 2"):
-        module.write_text(text)
-        digests.append(code_digest(tmp_path))
-    assert len(set(digests)) == 3

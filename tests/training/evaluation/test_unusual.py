@@ -1,6 +1,5 @@
 from types import SimpleNamespace
 
-import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
@@ -32,13 +31,6 @@ def test_every_kind_of_every_scene_comes_once_and_lazily(scene):
     first_kind, _ = next(pairs)
     assert (files[0].read_count, files[1].read_count) == (1, 0)
     assert [first_kind, *(kind for kind, _ in pairs)] == [*UnusualKind] * 2
-
-
-def test_a_picture_does_not_depend_on_which_others_are_asked_for(scene):
-    kinds = (UnusualKind.LOG_FOOTAGE, UnusualKind.AGX)
-    (_, _), (_, with_other) = unusual_photographs([File(scene)], kinds)
-    ((_, alone),) = unusual_photographs([File(scene)], kinds[1:])
-    np.testing.assert_array_equal(alone.pixels, with_other.pixels)
 
 
 def test_p6_asks_once_with_what_programs_write_without_it_and_with_a_camera_stated(

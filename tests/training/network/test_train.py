@@ -81,12 +81,6 @@ def test_a_run_yields_the_average_of_its_weights(shards, tmp_path):
     assert not torch.allclose(averaged[weight], moving[weight])
 
 
-def test_the_learning_rate_ends_at_its_part_of_the_highest(shards, tmp_path):
-    last = train(shards, tmp_path / "run", replace(RECIPE, epochs=2, last_rate=0.25), SIZES)
-    (group,) = torch.load(last, weights_only=True)["optimizer"]["param_groups"]
-    assert group["lr"] == pytest.approx(0.25 * RECIPE.learning_rate, rel=0.1)
-
-
 def test_held_out_curves_can_be_left_out(shards, tmp_path):
     train(shards, tmp_path / "p2", replace(RECIPE, epochs=1, without_held_out=True), SIZES)
     settings = json.loads((tmp_path / "p2" / "run.json").read_text())["recipe"]
@@ -113,25 +107,6 @@ def test_a_run_starts_from_the_weights_of_another(shards, tmp_path):
         torch.testing.assert_close(after[name], before[name])
     start = json.loads((tmp_path / "second" / "run.json").read_text())["start"]
     assert start.startswith("last.pt, SHA-256 ")
-
-
-def test_a_start_may_lack_layers(shards, tmp_path):
-    """As of a network with other heads: what it has is taken."""
-    first = train(shards, tmp_path / "first", replace(RECIPE, epochs=1), SIZES)
-    parts = torch.load(first, weights_only=True)["net"]
-    kept = {name: part for name, part in parts.items() if name.startswith("embedding.")}
-    torch.save({"net": kept}, tmp_path / "part.pt")
-    train(shards, tmp_path / "second", replace(RECIPE, epochs=1), SIZES, init=tmp_path / "part.pt")
-    assert len(read_log(tmp_path / "second")) == 1
-
-
-def test_training_in_single_precision_learns_the_same(shards, tmp_path):
-    recipe = replace(RECIPE, epochs=2)
-    train(shards, tmp_path / "mixed", recipe, SIZES)
-    train(shards, tmp_path / "float32", replace(recipe, mixed=False), SIZES)
-    mixed, single = (read_log(tmp_path / run)[-1] for run in ("mixed", "float32"))
-    assert mixed != single
-    assert single == pytest.approx(mixed, rel=0.3)
 
 
 def test_the_families_are_those_that_the_network_states(shards):

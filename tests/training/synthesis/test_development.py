@@ -1,5 +1,3 @@
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -33,14 +31,6 @@ def test_windows_of_a_frame_are_every_second_sample_from_different_ones_on():
     assert windows.shape == (4, 227, 227, 3)
     np.testing.assert_array_equal(windows[0], codes[0, ::2, ::2])
     np.testing.assert_array_equal(windows[2], codes[0, 1::2, 1::2])
-
-
-def test_scattered_samples_lie_near_their_places():
-    rows = np.broadcast_to(np.arange(454, dtype=np.float32)[:, None, None] / 2, (454, 454, 3)).astype(np.uint8)[None]
-    window = point_sampled(rows, 1, 2, np.random.default_rng(0))[0]
-    away = window[:-2].astype(int) - np.arange(225)[:, None, None]
-    assert set(np.unique(away)) <= {0, 1}
-    assert away.std() > 0
 
 
 def test_a_hue_preserving_curve_is_the_response_of_the_outer_channels(light):
@@ -80,22 +70,6 @@ def test_drawn_cameras_give_windows_that_repeat_with_the_seed_and_leave_the_ligh
         assert len(np.unique(first)) > 100
         np.testing.assert_array_equal(first, second)
         np.testing.assert_array_equal(exposed, before)
-
-
-def test_gray_light_makes_a_gray_photograph(light):
-    gray = np.repeat(light[:, :227, :227, :1], 3, axis=-1)
-    for seed in range(4):
-        rng = np.random.default_rng(seed)
-        windows = develop(gray, CURVE, draw_development(FrameKind.NATIVE, rng), rng)
-        assert (windows == windows[..., :1]).all()
-
-
-def test_glare_brightens_the_dark(light):
-    bare, veiled = (
-        develop(light[:, :227, :227], CURVE, replace(Development(), glare=glare), np.random.default_rng(0))
-        for glare in (0.0, 0.05)
-    )
-    assert veiled.min() > bare.min()
 
 
 def test_kinds_of_frames_have_their_fractions():

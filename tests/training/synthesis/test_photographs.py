@@ -6,7 +6,7 @@ pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.curves import CurveSource
 from training.synthesis import augmentation
-from training.synthesis.augmentation import composited, recolor, relight
+from training.synthesis.augmentation import composited, recolor
 from training.synthesis.camera import reference_luminance
 from training.synthesis.camera_draws import WINDOWS
 from training.synthesis.photographs import LEAST_FILLED, ONE_CHANNEL, PhotographSource
@@ -63,12 +63,3 @@ def test_a_composited_window_shows_both_and_mixes_them_at_the_border():
     assert (light.max(axis=(1, 2, 3)) == light.max()).all()
     between = (light > 1) & (light < light.max())
     assert 0 < between.mean() < 0.02
-
-
-def test_relighting_is_smooth_and_keeps_light_positive(scene):
-    light = np.ones((2, 227, 227, 3), np.float32)
-    for seed in range(30):
-        lit = relight(light, np.random.default_rng(seed))
-        assert (lit > 0).all()
-        assert np.abs(np.diff(np.log2(lit), axis=1)).max() < 0.1
-    assert any(relight(light, np.random.default_rng(seed)).std() > 0.05 for seed in range(30))

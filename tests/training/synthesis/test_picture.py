@@ -6,7 +6,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 Image = pytest.importorskip("PIL.Image", reason="training needs the train extra")
 
-from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, rounded, scaled, smoothed, split
+from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, smoothed, split
 
 
 @pytest.fixture
@@ -21,11 +21,6 @@ def luma(planes):
     return sum(weight * plane for weight, plane in zip(LUMA, planes, strict=True))
 
 
-def test_codes_survive_planes_and_rounding(codes):
-    np.testing.assert_array_equal(rounded(split(codes)), codes)
-    np.testing.assert_array_equal(rounded([np.array([[[-0.2, 1.4]]], np.float32)] * 3)[0, 0, :, 0], [0, 255])
-
-
 @pytest.mark.parametrize(("scale", "quality"), [(1.0, 50), (0.2, 90), (0.1, 95)])
 def test_tables_without_flatness_are_those_of_the_encoder_of_that_quality(scale, quality):
     file = io.BytesIO()
@@ -35,18 +30,9 @@ def test_tables_without_flatness_are_those_of_the_encoder_of_that_quality(scale,
         assert np.abs(np.array(table) - expected[number]).max() <= 1
 
 
-def test_flat_tables_step_alike_at_all_frequencies():
-    assert {len(set(table)) for table in Jpeg(0.3, flatness=1.0).tables} == {1}
-
-
 def test_compression_changes_little_at_small_steps_and_more_at_large_ones(codes):
     errors = [np.abs(Jpeg(scale).compressed(codes).astype(int) - codes).mean() for scale in (0.02, 0.2, 1.0)]
     assert errors[0] < errors[1] < errors[2] < 20
-
-
-def test_a_finish_without_steps_leaves_the_picture(codes):
-    planes = split(codes)
-    assert Finish().applied(planes) is planes
 
 
 def test_chroma_gain_and_blur_keep_luma(codes):
@@ -74,10 +60,3 @@ def test_sharpening_overshoots_at_edges_up_to_its_limit_and_leaves_small_detail(
     assert added[0, 16, 16] > 0 > added[0, 16, 15]
     weak = 0.5 + 0.001 * (picture - 0.5)
     assert (Sharpening(amount=1.5, threshold=0.01).added(weak) == 0).all()
-
-
-def test_scaling_by_a_box_averages_codes():
-    frames = np.arange(2 * 4 * 4 * 3, dtype=np.uint8).reshape(2, 4, 4, 3)
-    small = scaled(frames, 2, Image.Resampling.BOX)
-    expected = frames.reshape(2, 2, 2, 2, 2, 3).mean(axis=(2, 4))
-    assert np.abs(small - expected).max() <= 0.5

@@ -9,7 +9,6 @@ from training.synthesis.camera import (
     ROWS_AT_A_TIME,
     Capture,
     balanced_gains,
-    enlarged,
     render_photo,
     sensor_light,
     simulate_capture,
@@ -49,11 +48,6 @@ def test_rows_captured_one_after_the_other_equal_the_whole(rng, capture):
     np.testing.assert_array_equal(np.rint(255 * photo.pixels), whole)
 
 
-def test_what_looks_at_neighbors_is_captured_as_a_whole():
-    for capture in (Capture(blur=1), Capture(sharpening=0.1), Capture(jpeg_quality=90), Capture(0.1, 0.1, grain=0.1)):
-        assert not capture.splits_into_rows
-
-
 def test_noise_has_its_variance_in_codes(rng):
     gray = Scene("gray", np.full((700, 300, 3), 0.5, np.float32), False)
     codes = 255 * photo_of(gray, rng, exposure=1, grain=2 / 255).pixels
@@ -75,18 +69,6 @@ def test_gains_keep_the_luminance_of_a_neutral():
     assert gains[2] / gains[0] == pytest.approx(1.7 / 0.6)
 
 
-def test_enlarging_is_cubic(rng):
-    ramp = np.repeat(np.linspace(0, 1, 40, dtype=np.float32)[None, :, None], 3, axis=2).repeat(30, axis=0)
-    large = enlarged(ramp, 4)
-    assert large.shape == (120, 160, 3)
-    np.testing.assert_allclose(np.diff(large[60, 12:-12, 0]), 1 / 39 / 4, rtol=0.01)  # a ramp stays one
-    edge = np.zeros((20, 20, 3), np.float32)
-    edge[:, 10:] = 1
-    large = enlarged(edge, 2)
-    assert large.max() > 1.02  # cubic overshoots, linear does not
-    assert large.min() == 0
-
-
 def test_blur_keeps_the_mean_and_smooths(scene, rng):
     soft = sensor_light(scene, rng, blur=4.0)
     assert soft.mean() == pytest.approx(scene.pixels.mean(), rel=0.02)
@@ -95,13 +77,6 @@ def test_blur_keeps_the_mean_and_smooths(scene, rng):
     dot[20, 20] = 1
     spread = sensor_light(Scene("dot", dot, False), rng, blur=4.0)[:, :, 0]
     assert (spread.sum(axis=0) * (np.arange(41) - 20) ** 2).sum() == pytest.approx(4, rel=0.05)
-
-
-def test_jpeg_is_lossy_and_lossier_at_low_quality(rng):
-    noise = Scene("noise", rng.uniform(0, 1, (64, 64, 3)).astype(np.float32), False)
-    clean = photo_of(noise, rng, exposure=1).pixels
-    far = [np.abs(photo_of(noise, rng, exposure=1, jpeg_quality=q).pixels - clean).mean() for q in (95, 50)]
-    assert 0.01 < far[0] < far[1]
 
 
 def test_nothing_writes_into_the_scene(scene, rng):

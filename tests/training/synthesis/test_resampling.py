@@ -28,17 +28,3 @@ def test_a_window_of_twice_the_scale_shows_more_and_turns(scene):
     inner = light[100:130, 100:130]
     np.testing.assert_allclose(np.diff(inner[:, :, 0], axis=1), -2, atol=1e-3)
     np.testing.assert_allclose(np.diff(inner[:, :, 1], axis=0), 2, atol=1e-3)
-
-
-def test_a_thumbnail_is_every_fourth_sample(scene):
-    for seed in range(5):
-        resampling = AffineResampling.draw(scene, np.random.default_rng(seed))
-        thumbnail, window = resampling.thumbnail(), resampling.window()
-        assert thumbnail.shape == (57, 57, 3)
-        assert np.median(np.abs(thumbnail - window[::4, ::4])[2:-2, 2:-2] / thumbnail[2:-2, 2:-2]) < 0.02
-
-
-def test_beyond_its_sides_a_scene_is_mirrored(scene):
-    light = AffineResampling(scene, np.eye(2), np.array([0.0, 250.0])).window()
-    np.testing.assert_allclose(light[112], light[114], atol=1e-4)
-    assert light.min() >= 0

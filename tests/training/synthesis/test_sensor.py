@@ -3,7 +3,7 @@ import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
-from training.synthesis.sensor import Demosaicing, Sensor, demosaiced, mixed, noise
+from training.synthesis.sensor import Demosaicing, Sensor, demosaiced
 
 
 @pytest.fixture
@@ -38,15 +38,6 @@ def test_demosaicing_keeps_what_was_measured_and_finds_smooth_light_again(planes
         np.testing.assert_allclose(found[inside], plane[inside], atol=2e-3)
 
 
-def test_gradient_correction_finds_gray_detail_better_than_bilinear_means():
-    detail = np.random.default_rng(1).random((1, 64, 64), dtype=np.float32)
-    errors = {
-        method: np.mean([np.abs(plane - detail).mean() for plane in demosaiced(detail, method)])
-        for method in Demosaicing
-    }
-    assert errors[Demosaicing.GRADIENT_CORRECTED] < 0.8 * errors[Demosaicing.BILINEAR]
-
-
 def test_the_matrix_undoes_crosstalk_and_clips_what_it_makes_negative(planes):
     sensor = Sensor(crosstalk=0.4)
     for recorded, plane in zip(sensor.record(planes, np.random.default_rng(0)), planes, strict=True):
@@ -70,17 +61,3 @@ def test_noise_has_the_variance_of_the_sensor_and_grows_with_the_gain():
     red, green, _ = Sensor(shot_noise=4e-4, read_noise=0.01, gains=(2, 1, 1)).record(level, np.random.default_rng(0))
     assert green.std() == pytest.approx(np.sqrt(0.25 * 4e-4 + 1e-4), rel=0.05)
     assert red.std() == pytest.approx(np.sqrt(0.25 * 8e-4 + 4e-4), rel=0.05)
-
-
-def test_noise_repeats_with_the_seed_and_not_otherwise():
-    first, again, other = (noise((3, 5), np.random.default_rng(seed)) for seed in (1, 1, 2))
-    np.testing.assert_array_equal(first, again)
-    assert (first != other).any()
-
-
-def test_mixing_leaves_the_planes_given_as_they_are(planes):
-    before = [plane.copy() for plane in planes]
-    for matrix in (np.eye(3), np.full((3, 3), 1 / 3)):
-        mixed(planes, matrix)[0][:] = 0
-    for plane, kept in zip(planes, before, strict=True):
-        np.testing.assert_array_equal(plane, kept)

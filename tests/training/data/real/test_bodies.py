@@ -1,4 +1,3 @@
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,7 @@ from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import bodies as module
 from training.data.real.bodies import measured_bodies
 from training.data.real.file_origin import Editing
-from training.data.real.photographs import RealPhotograph
+from training.data.real.photographs import PUBLISHED_ROWS, RealPhotograph, published_rows
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -65,15 +64,13 @@ def test_a_fold_is_left_out_with_all_bodies_of_its_models(photographs):
     assert keys(without=photographs["real"][1]) == ["canon s45", "pixel 3", "pixel 4"]
 
 
-def test_folds_of_two_folders_are_not_the_same_fold(photographs):
-    """A fold of DATA/real may have the name of one of DATA/real_bodies."""
-    alike = replace(photographs["real"][2], fold="0")
-    photographs["real"][2] = alike
-    assert keys(without=alike) == ["nikon d90", "nikon d90 (second body)", "pixel 3", "pixel 4"]
-
-
 def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_path):
     photographs["real"].append(photograph(tmp_path / "real", "r4", "Nikon D800", "Nikon D800", raw_file="1.NEF"))
     photographs["real"].append(photograph(tmp_path / "real", "r5", "Nikon D700", "Nikon D700", raw_file="1.jpg"))
     assert "nikon d700" in keys()
     assert "nikon d800" not in keys()
+
+
+def test_only_the_rows_that_published_figures_rest_on_are_read(tmp_path):
+    (tmp_path / "cases.csv").write_text("id\n" + "".join(f"{n}\n" for n in range(PUBLISHED_ROWS + 12)))
+    assert [row["id"] for row in published_rows(tmp_path)] == [str(n) for n in range(76)]

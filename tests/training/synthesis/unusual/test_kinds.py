@@ -57,11 +57,6 @@ def test_limited_range_leaves_out_black_and_white(light, rng):
     assert encoded.max() == pytest.approx(235 / 255)
 
 
-def test_a_palette_has_few_colors(light):
-    colors = np.unique(windows(UnusualKind.PALETTE, light).reshape(-1, 3), axis=0)
-    assert len(colors) <= 128
-
-
 def test_the_exposure_saturates_a_few_percent(scene, rng):
     saturated = (scene.pixels.max(axis=-1) * random_exposure(scene.pixels, rng) > 1).mean()
     assert 0.003 < saturated < 0.16

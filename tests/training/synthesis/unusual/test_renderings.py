@@ -5,8 +5,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.response.transfer_functions import srgb_encode
-from training.synthesis.unusual.film_scan import Negative, dust_mask, grain
-from training.synthesis.unusual.filters import cross_processed, faded, split_toned
+from training.synthesis.unusual.film_scan import Negative
 from training.synthesis.unusual.tone_mapping import drago, guided_base, reinhard
 from training.synthesis.unusual.view_transforms import AGX_SIGMOID, filmic_sigmoid, scaled_stops
 
@@ -55,24 +54,3 @@ def test_density_rises_with_light_and_saturates(rng):
     density = film.density(ramp)
     assert (np.diff(density, axis=0) > 0).all()
     assert (density < film.density_range + 1e-6).all()
-
-
-def test_grain_is_correlated_and_of_variance_1(rng):
-    noise = grain((1, 200, 200, 3), rng)
-    assert noise.std() == pytest.approx(1, abs=0.05)
-    assert (noise[0, 1:] * noise[0, :-1]).mean() > 0.02
-
-
-def test_dust_covers_little(rng):
-    mask = dust_mask((227, 454), rng)
-    assert mask.shape == (227, 454)
-    assert 0 <= mask.min() <= mask.max() <= 1
-    assert mask.mean() < 0.02
-
-
-@pytest.mark.parametrize("curves", [faded, split_toned, cross_processed])
-def test_the_curves_of_a_filter_differ_between_channels_and_rise(curves, rng):
-    drawn = curves(rng)
-    assert drawn.shape == (3, 1024)
-    assert (np.diff(drawn, axis=1) >= -1e-9).all()
-    assert np.abs(drawn[0] - drawn[2]).max() > 0.01
