@@ -2,8 +2,7 @@
 """Blender's data, read and changed; in Blender's own thread only.
 
 plates             the image or clip that the user means, and its code values on disk
-packed_images      images without a file of their own: their packed file or code values
-movie_frames       the frame of a movie that an editor shows, as code values
+packed_images      pixels without a file of their own: packed and painted images, the frame of a movie
 stored_estimate    the estimate as a custom property of its image or clip
 apply              the changes of a completed job
 node_group         the inverse response as a compositor node group

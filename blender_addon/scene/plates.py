@@ -11,8 +11,7 @@ import bpy
 from .. import lazy_import
 from ..work.errors import AddonError
 from ..work.job import Plate
-from .movie_frames import codes_of_frame, shown_number
-from .packed_images import content_of, file_name, has_own_file, is_painted
+from .packed_images import codes_of_frame, content_of, file_name, has_own_file, is_painted, shown_number
 
 #: The editors that have the panel.
 EDITORS = ("IMAGE_EDITOR", "CLIP_EDITOR", "NODE_EDITOR")

@@ -38,13 +38,6 @@ def test_bake_overwrites_only_when_asked(image, plate_file):
     assert plate_file.with_name("plate_linear.exr").read_bytes() != first
 
 
-def test_bake_shows_the_linear_plate(image, in_editor):
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        assert bpy.ops.crf.estimate_response(apply="BAKE") == {"FINISHED"}
-        assert space.image.name == "plate_linear.exr"
-
-
 def test_export(image, plate_file, tmp_path, codes, estimate):
     from crfnet.luts.files import WRITERS, read_lut
 

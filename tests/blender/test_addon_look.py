@@ -142,12 +142,6 @@ def test_it_follows_a_response_that_is_applied_again(look, composited, plate_fil
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
 
 
-def test_it_needs_a_response(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    with pytest.raises(RuntimeError, match="has no estimate yet"):
-        bpy.ops.crf.add_look(image=image.name)
-
-
 def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
     """Only the response counts, and the name."""
     plate_file.unlink()

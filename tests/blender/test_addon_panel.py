@@ -134,13 +134,6 @@ def test_a_gray_card_is_not_to_be_trusted(addon, in_editor, tmp_path):
     assert first[1] == "Do not trust: flat frame"
 
 
-def test_an_obstacle_is_drawn_and_not_only_a_gray_button(addon, in_editor):
-    image = bpy.data.images.new("linear", 8, 8, float_buffer=True)
-    drawn = drawn_in(image, in_editor)
-    assert "no camera response" in " ".join(labels(drawn))
-    assert not [entry for entry in drawn if entry[0] in ("prop", "operator")]
-
-
 def test_settings_that_wait_to_be_applied_are_told(image, in_editor):
     image.camera_response_settings.apply = "NODES"
     assert (shown(image, in_editor)) == ("Apply", False, False)

@@ -47,13 +47,6 @@ def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
     assert active(group) is None
 
 
-def test_a_gif_is_called_a_gif(addon, tmp_path):
-    (tmp_path / "few.gif").write_bytes(b"GIF89a")
-    image = bpy.data.images.load(str(tmp_path / "few.gif"))
-    with pytest.raises(RuntimeError, match="GIF files hold at most 256 colors"):
-        bpy.ops.crf.estimate_response(image=image.name)
-
-
 def test_errors_name_a_packed_plate_and_not_the_temporary_file(addon, tmp_path, codes):
     image = bpy.data.images.load(str(write_image(tmp_path / "small.png", codes[:30, :40])))
     image.pack()

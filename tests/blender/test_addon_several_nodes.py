@@ -40,8 +40,10 @@ def test_two_scenes_are_linearized_once_each(image, tree):
     other = bpy.data.scenes.new("Other")
     with bpy.context.temp_override(scene=other):
         apply_nodes(image)
-    assert [len(groups(found)) for found in (tree, compositor_tree(other))] == [1, 1]
     assert twice(image) == ""
+    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=1)
+    nodes = [groups(shown) for shown in (tree, compositor_tree(other))]
+    assert [[node.inputs["Exposure"].default_value for node in each] for each in nodes] == [[1], [1]]
 
 
 def test_nodes_that_hold_the_same_group_are_not_behind_each_other(addon, tree):

@@ -187,7 +187,7 @@ def test_the_zip_holds_the_add_on_and_its_wheels(root, package):
         wheels = {wheel.removeprefix("./") for wheel in inside["wheels"]}
         assert set(archive.namelist()) == modules | wheels | {"blender_manifest.toml"}
     assert inside["platforms"] == [PLATFORM]
-    assert {"__init__.py", "LICENSE", "scene/movie_frames.py"} <= modules
+    assert {"__init__.py", "LICENSE", "scene/packed_images.py"} <= modules
     assert "build.py" not in modules
 
 

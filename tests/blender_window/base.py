@@ -27,7 +27,7 @@ SKIPPED = "needs a Blender with a window: make test-blender-window BLENDER=blend
 SIZES = {1: (1920, 1080), 2: (2560, 2000)}
 
 #: The largest differences of linear values, white = 1, of an 8-bit plate.
-NODES, COLOR_SPACE, BAKED = 2e-6, 2e-6, 1e-7
+NODES, BAKED = 2e-6, 1e-7
 
 
 class WindowTest(unittest.TestCase):

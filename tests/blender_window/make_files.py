@@ -31,22 +31,16 @@ LARGE = (4000, 3000)
 def make_plates(folder: Path) -> None:
     """Write the plates into a folder.
 
-    ``plate.jpg`` and ``a/IMG_0001.jpg`` are the bundled photograph, ``b`` and ``c`` have others of the same name with
-    another response. ``numbers`` and ``shot`` are sequences, ``limited.png`` is the photograph in the codes
-    16 to 235 of video, which no camera's response explains, and ``large.jpg`` has 12 megapixels.
+    ``plate.jpg`` and ``a/IMG_0001.jpg`` are the bundled photograph, ``b/IMG_0001.jpg`` has another response.
+    ``limited.png`` is the photograph in the codes 16 to 235 of video, and ``large.jpg`` has 12 megapixels.
     """
-    for name in ("a", "b", "c", "numbers", "shot"):
+    for name in ("a", "b"):
         (folder / name).mkdir(parents=True, exist_ok=True)
     shutil.copyfile(PLATE, folder / "plate.jpg")
     shutil.copyfile(PLATE, folder / "a" / "IMG_0001.jpg")
     codes = np.rint(read_image(PLATE) * 255)[..., :3].astype(np.uint8)
-    for name, power in (("b", 1.5), ("c", 0.8)):
-        bent = np.rint(255 * (codes / 255) ** power).astype(np.uint8)
-        write_image(folder / name / "IMG_0001.jpg", bent, Compression="jpeg:95")
-    for number in range(1, 5):
-        frame = np.roll(codes, 8 * number, axis=1)
-        write_image(folder / "numbers" / f"{number:04d}.jpg", frame, Compression="jpeg:95")
-        write_image(folder / "shot" / f"shot.{1000 + number}.jpg", frame, Compression="jpeg:95")
+    bent = np.rint(255 * (codes / 255) ** 1.5).astype(np.uint8)
+    write_image(folder / "b" / "IMG_0001.jpg", bent, Compression="jpeg:95")
     write_image(folder / "limited.png", np.rint(16 + 219 / 255 * codes).astype(np.uint8))
     make_photograph(folder / "large.jpg", *LARGE)
 

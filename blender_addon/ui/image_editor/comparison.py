@@ -16,7 +16,7 @@ import numpy as np
 
 from ... import lazy_import
 from ...scene.color_management import running_config
-from ...scene.movie_frames import codes_of_frame
+from ...scene.packed_images import codes_of_frame
 from ...scene.plates import COMPARED_PLATE, alpha_mode, compared_plate, is_heif, plate_itself, plate_of
 from ...work.errors import AddonError
 
