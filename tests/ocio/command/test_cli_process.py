@@ -40,7 +40,7 @@ def test_refuses_names_that_are_no_text(plate, fixed_model, tmp_path):
     command = [CRFNET, "estimate", photo, "--out", tmp_path / "out", "--model", fixed_model]
     done = subprocess.run(command, capture_output=True, text=True, check=False)
     assert done.returncode == BAD_INPUT
-    assert done.stderr == "crfnet: error: a file's name is no valid Unicode; rename it\n"
+    assert done.stderr == "crfnet: error: a file's name is not valid Unicode; rename it\n"
     assert not (tmp_path / "out").exists()
 
 
