@@ -12,7 +12,6 @@ import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
 
-from crfnet_core.errors import CRFNetError
 from crfnet_core.photograph.image_io import MAX_PIXELS, first_line, oiio_message, read_codes, read_metadata
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from crfnet_core.photograph.metadata.header_colors import header_color_tags
@@ -78,9 +77,9 @@ class FirstFrame:
 
 
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
-    """Return the first frame that can be read; None if all fail."""
+    """Return the first frame that can be read; None if all fail, each with an error of its own."""
     for position, load in enumerate(sequence.loaders(range(max(1, len(sequence.numbers))))):
-        with suppress(CRFNetError):
+        with suppress(Exception, SystemExit, GeneratorExit):  # all but an interruption
             return FirstFrame(position, frame_path(sequence, position), load())
     return None
 

@@ -40,20 +40,19 @@ def estimate(crfnet, plate, fixed_model, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def calibration(crfnet, root, true_response, tmp_path_factory):
-    """What `crfnet calibrate` prints, with a LUT to compare, a stale sheet and a lost plate; and what it writes."""
+    """What `crfnet calibrate` prints, with a LUT to compare, and a lost plate; and what it writes."""
     folder = tmp_path_factory.mktemp("calibration")
     light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::4, ::4]
     frames = make_stack(folder, light, true_response, StackOptions(frames=6, quality=0))
     write_look(folder / "camera", ["b.jpg"])
     (folder / "camera" / "a.json").write_text("{}")
-    (folder / "camera" / "a_sheet.png").touch()
     lut = root / "docs" / "sample" / "plate.spi1d"
     options = ("--name", "a", "--compare", lut, "--no-sheet", "--overwrite", "--json")
     done = crfnet("calibrate", *frames, "--out", folder / "camera", *options)
     assert (done.code, done.err) == (0, "")
     written = json.loads((folder / "camera" / "a.json").read_text(encoding="utf-8"))
     printed = json.loads(done.out)
-    assert printed == written | {"left": ["a_sheet.png"], "dropped": ["CRF b"]}
+    assert printed == written | {"dropped": ["CRF b"]}
     return printed, written
 
 
@@ -121,7 +120,6 @@ def test_each(each):
     printed, linear, lines = each
     assert [PROBLEMS["each"](document) for document in (printed, linear)] == [[], []]
     assert [bool(record["error"]) for record in printed["estimates"]] == [False, True]
-    assert printed["left"] == [f"good_forward{suffix}" for suffix in WRITERS]
     schema = read_schema("each")
     record = problems_by(schema["$defs"]["record"] | {"$defs": schema["$defs"]})
     assert [record(line) for line in lines] == [[], []]

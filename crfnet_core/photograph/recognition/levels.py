@@ -108,7 +108,7 @@ class Levels:
 
 
 def is_limited_range(levels: Levels) -> bool:
-    """Return whether a picture has the histogram of limited range: Eq. 39 of docs/METHOD.md.
+    """Return whether a picture has the histogram of limited range: Eq. L.2 of docs/METHOD.md.
 
     Either hardly a sample lies outside the codes 16 to 235, both ends are reached, and at one end at least samples pile
     up, as clipped highlights and shadows do; or black and white of luma lie where limited range has them. Of 92 real

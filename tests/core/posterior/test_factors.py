@@ -43,11 +43,6 @@ def test_the_shape_counts_only_where_no_device_is_known():
     assert unknown_long["camera"] > unknown_long["phone"]
 
 
-def test_a_profile_decides_for_linear_and_log():
-    assert largest(profile="Linear Rec.709", file_format="TIFF") == "linear"
-    assert largest(profile="S-Log3", file_format="TIFF") == "log"
-
-
 @pytest.mark.parametrize("device", [Device.PHONE, Device.COMPACT, Device.CAMERA, Device.UNKNOWN])
 def test_a_stated_device_is_neutral_about_log_and_linear_pictures(device):
     """They are taken with cameras, too; of screenshots and renderings nobody says so."""

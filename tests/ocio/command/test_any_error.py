@@ -98,7 +98,7 @@ def test_it_is_the_error_of_that_photograph_in_a_process(photographs, fixed_mode
     outputs = OutputOptions(has_linear=False, has_sheet=False)
     options = EstimateOptions(model=fixed_model)
     batch = FailingBatch(out=tmp_path / "out", options=options, plates=PlateOptions(), outputs=outputs)
-    records = run_batch(batch, find_photographs([photographs]), workers=2)
+    records = run_batch(batch, find_photographs([photographs], tmp_path / "out"), workers=2)
     errors = {Path(record.photograph).name: record.error for record in records}
     assert errors.pop("bad.jpg").startswith(f"{photographs / 'bad.jpg'}: ")
     assert set(errors.values()) == {""}

@@ -47,10 +47,6 @@ def test_frames_of_a_sequence_are_chosen(estimated, shot, name):
     assert estimated(shot / name, "--frames", "1002-1010x4") == frames(1002, 1006, 1010)
 
 
-def test_a_pattern_may_name_its_frames(estimated, shot):
-    assert estimated(shot / "shot.[1003-1004].jpg") == frames(1003, 1004)
-
-
 def test_frames_of_a_movie_are_chosen(estimated, tmp_path):
     pytest.importorskip("av", reason="needs PyAV: the extra video")
     movie = write_movie(tmp_path / "clip.mp4", 24, size=(320, 240), options={"g": "1"})
