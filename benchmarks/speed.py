@@ -43,7 +43,7 @@ def main(names: list[str]) -> None:
 
 
 def measure(name: str) -> None:
-    """Measure a part and replace its figures in `RESULTS`; those of other parts stay."""
+    """Measure a part and replace its figures in `RESULTS`; other parts stay."""
     circumstances = _circumstances()
     with tempfile.TemporaryDirectory() as folder:
         figures = list(PARTS[name](Path(folder), RUNS))

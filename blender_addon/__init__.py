@@ -8,7 +8,7 @@ lazy_import  loads the modules that need the estimator, when they are first used
 build        builds the zips of the extension
 
 `ui` may import `scene`, and both may import `work`. No room is imported before `register`, so that `work` can be
-imported where there is no Blender. Registering does not import the estimator: see `lazy_import`.
+imported without Blender. Registering does not import the estimator: see `lazy_import`.
 """
 
 from types import ModuleType

@@ -273,7 +273,7 @@ def _download(name: str, folder: Path) -> None:
 
 
 def _pip(arguments: Sequence[str], failure: str, *, options: Mapping[str, str] | None = None) -> None:
-    """Run pip; raise a BuildError with its last error if it fails. `options` replace those of the environment."""
+    """Run pip; raise a BuildError with its last error if it fails. `options` replace the environment's."""
     users = {name: value for name, value in os.environ.items() if options is None or not name.startswith("PIP_")}
     command = [sys.executable, "-m", "pip", "--disable-pip-version-check", *arguments]
     done = subprocess.run(command, env=users | dict(options or {}), capture_output=True, text=True, check=False)

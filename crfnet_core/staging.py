@@ -158,7 +158,7 @@ def _take_back(path: Path, target: Path, earlier: Path, *, was_there: bool) -> N
 
 
 def _put_back(temporary: Path, folder: Path) -> None:
-    """Move the earlier files in a temporary folder back where their names are free, and remove those of other names."""
+    """Move the earlier files in a temporary folder back where their names are free, and remove the others."""
     for path in _earlier_files(temporary):
         with suppress(OSError):
             if os.path.lexists(folder / path.name):

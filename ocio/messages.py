@@ -32,7 +32,7 @@ SENTENCES: Mapping[str, str] = {
     "no_placeholder": "{path}: one name for frames of a sequence, of which there are {count}; put their number into it,"
     " as in plate.%04d.exr",
     "no_such_frames": "{path}: there are {frames}; check the name and the frames",
-    "no_such_plate": "{path}: there is no such file; check the name, or give a sequence such as plate.%04d.png or"
+    "no_such_plate": "{path}: does not exist; check the name, or give a sequence such as plate.%04d.png or"
     " plate.####.png",
     "not_exr": "{path}: linear plates are OpenEXR; give a name that ends in .exr",
     "plate_is_linear": "{path}: is scene-linear already ({space}); give the encoded plate",
@@ -77,7 +77,7 @@ SENTENCES: Mapping[str, str] = {
     "color_space_absent": "{name}: the config has no such color space; add it before writing",
     "color_space_exists": "{name}: the config uses this name for {taken!r}; choose another name",
     "color_space_refused": "{name}: cannot be added to the config ({reason})",
-    "config_absent": "{path}: there is no such config; check the name",
+    "config_absent": "{path}: does not exist; check the name",
     "config_aliases": "{path}: has more than {most} YAML aliases, each of which may multiply it; write them out",
     "config_archive": "{path}: is an archive; unpack it with OpenColorIO's ocioarchive and name the config in it",
     "config_differs_from_lut": "{name}: its conversion differs from its LUT by {difference:.2g}; write both again",
@@ -107,7 +107,7 @@ SENTENCES: Mapping[str, str] = {
     "folder_in_place": "{path}: is a folder, and a file of that name is to be written; choose another folder",
     "folder_not_written": "{path}: cannot be written to ({reason}); choose another folder",
     "no_response_in_file": "{path}: holds no response; give the JSON of an estimate or of a calibration, or a LUT",
-    "no_such_file": "{path}: there is no such file; check the name",
+    "no_such_file": "{path}: does not exist; check the name",
     "not_a_file_name": "{name} cannot be the name of a file; give one without slashes, such as eos20d",
     "not_a_folder": "{path}: is not a folder; choose another for the output",
     "not_opened": "{path}: cannot be opened ({reason}); check its name",

@@ -25,7 +25,7 @@ percent of its brightest light. Shape: error of the linear light once the exposu
 
 
 def main(folder: Path) -> None:
-    """Print the errors of the estimate in `folder` beside those of gamma 2.2, and the files that were written."""
+    """Print the errors of the estimate in `folder` beside gamma 2.2, and the files that were written."""
     report = json.loads((folder / "plate.json").read_text(encoding="utf-8"))
     estimated = ResponseCurve.from_samples(report["response"]["brightness"])
     true = ResponseCurve.from_samples(np.loadtxt(ASSETS / "plate_response.csv", delimiter=",", skiprows=1)[:, 1])

@@ -3,7 +3,7 @@
 python -m tests.measure_calibration [--linear DIR] [--responses N] [--only NAME]
 
 Scenes are the studio lights of tests/data/lights, or the linear pictures of another folder. Responses are those that
-the packaged bank holds of cameras, EMoR draws, and that of the bundled photograph, in turn.
+the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn.
 """
 
 from __future__ import annotations

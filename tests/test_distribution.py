@@ -25,7 +25,7 @@ def citation(root):
 def test_the_source_distribution_holds_the_whole_repository(root, tmp_path):
     """So that its tests run: `make test` in the unpacked distribution."""
     if shutil.which("git") is None or not (root / ".git").exists():
-        pytest.skip("compares with what git keeps; this is no git checkout")
+        pytest.skip("compares with what git keeps; this is not a git checkout")
     subprocess.run([sys.executable, "-c", LIST_FILES, tmp_path], cwd=root, check=True, capture_output=True)
     listed = (tmp_path / "crfnet.egg-info" / "SOURCES.txt").read_text(encoding="utf-8").splitlines()
     command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]

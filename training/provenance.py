@@ -113,7 +113,7 @@ def _settings(record: Record) -> Record:
 
 
 def _git(*arguments: str) -> str | None:
-    """Return what git says of the repository, or None where there is no git or no repository."""
+    """Return what git says of the repository, or None without git or a repository."""
     try:
         done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):

@@ -202,9 +202,7 @@ def plate_of(datablock: Datablock) -> Plate:
         return _plate(datablock, name, folder=None, has_metadata=isinstance(content, bytes), content=content)
     path = _path(datablock)
     if not datablock.filepath or (not path.is_file() and datablock.source != "SEQUENCE"):
-        raise AddonError(
-            f"{datablock.filepath or datablock.name}: there is no such file; find it with File, External Data"
-        )
+        raise AddonError(f"{datablock.filepath or datablock.name}: does not exist; find it with File, External Data")
     if datablock.source != "MOVIE":
         return _plate(datablock, path, folder=path.parent)
     number = shown_number(datablock)

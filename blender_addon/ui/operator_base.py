@@ -66,6 +66,6 @@ def why_unchangeable(context: bpy.types.Context) -> str:
 
 
 def failed(operator: bpy.types.Operator, problem: Exception) -> set[str]:
-    """Report why an operator did nothing, and return its result; that the user cancelled is no error."""
+    """Report why an operator did nothing, and return its result; that the user canceled is not an error."""
     operator.report({"INFO" if isinstance(problem, CancelledError) else "ERROR"}, problem_line(problem))
     return {"CANCELLED"}

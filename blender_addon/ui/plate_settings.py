@@ -49,7 +49,7 @@ APPLIED, APPLIED_SETTINGS = "applied_settings", ("apply", "anchor", "exposure")
 
 
 def _stored_cameras(chosen: bpy.types.bpy_struct, _: bpy.types.Context, text: str) -> list[tuple[str, str]]:
-    """Return the stored cameras that hold a text, those of the plate's model first; none without the wheels."""
+    """Return the stored cameras that hold a text, the plate's model first; none without the wheels."""
     datablock = chosen.id_data
     models = stored_estimate.camera_models(datablock) if stored_estimate.is_stored(datablock) else ()
     cameras: list[tuple[str, str]] = []

@@ -74,7 +74,7 @@ class Run:
         redraw_editors(self._manager, regions=("UI",))
 
     def end(self) -> None:
-        """Remove the timer and the display, once; there is no current run then."""
+        """Remove the timer and the display, once; then no run is current."""
         global _current
         if _current is not self:
             return

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
-"""Refuse plates whose color space in Blender is logarithmic or linear: there is no response to estimate or to undo.
+"""Refuse plates whose color space in Blender is logarithmic or linear: they have no response to estimate or to undo.
 
 The estimator judges the metadata of their files: `crfnet_core.photograph.metadata.color_tags`.
 """

@@ -63,7 +63,7 @@ class Observations:
 
     @property
     def is_white(self) -> BoolArray:
-        """Whether the sample is white, shape (M, T): its irradiance is then at least that of white."""
+        """Whether the sample is white, shape (M, T): its irradiance is then at least white's."""
         return self.white_fraction >= ALL_WHITE
 
     def subset(self, samples: BoolArray | IndexArray) -> Observations:

@@ -32,7 +32,7 @@ from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.types import Float64Array, Progress
 
-#: By how much the cost of exact powers of two may exceed that of the labels as they are.
+#: By how much the cost of exact powers of two may exceed the cost of the labels as they are.
 SNAPPED_BONUS = 30.0
 
 #: Largest distance in stops between nominal and snapped labels that makes no difference.

@@ -24,7 +24,7 @@ WORST_FRAME, WORSE_THAN_OTHERS = 4.0, 2.0
 
 #: Stops that the frames that fit each other have to span, fewer than a whole stack: over one stop, whose labels may be
 #: 1/15 and 1/8 s, the shape of 22 of 23 simulated stacks was within two of its stated standard deviations; over a third
-#: of a stop the scale of every second one was not, and over none there is no solution.
+#: of a stop the scale of every second one was not, and over none no solution exists.
 LEAST_REST = 0.9
 
 #: A sample is an outlier if its largest residual, in expected standard deviations, exceeds this many times that of the

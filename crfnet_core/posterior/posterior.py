@@ -72,7 +72,7 @@ class Posterior(EqualByFields):
     def curve(self) -> ResponseCurve:
         """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25.
 
-        Linear and log members count only if no other does: between them and the others there is no answer in the
+        Linear and log members count only if no other does: no answer lies between them and the others in the
         middle, and where they win, the answer is not to be trusted anyway.
         """
         ordinary = np.where(self.bank.ordinary, self.weights, 0)

@@ -41,7 +41,7 @@ def plate_pattern(name: str) -> str:
 def linear_patterns(stem: str, names: Sequence[str] = ()) -> tuple[str, ...]:
     """Return the patterns of all linear files of a plate: of these names, and frames such as "clip.0001.exr".
 
-    `stem` is that of the plate's files, for example "clip" or "shot.0001". One pattern stands for more than
+    `stem` is the stem of the plate's files, for example "clip" or "shot.0001". One pattern stands for more than
     `MOST_PATTERNS` names.
     """
     named = map(_linear_pattern, names) if len(names) <= MOST_PATTERNS else ["*_linear.exr"]

@@ -31,7 +31,7 @@ def plan_calibration(
 ) -> OutputPlan:
     """Return which files are written of a stack, after checking that they can be; create nothing.
 
-    `name` is the name of the files and of the color space, by default that of the first frame. Raise PlateError if it
+    `name` is the name of the files and of the color space, by default the first frame's. Raise PlateError if it
     cannot be the name of a file, or as `plan_files`; ConfigError if the color space cannot be in a config.
     """
     if name is not None and (not name.strip(" .") or Path(name).name != name):

@@ -22,7 +22,7 @@ class OutputPlan:
     files: OutputFiles
     plates: PlateOptions  # how linear plates are written; `overwrite` holds for every file
     lut_length: int  # entries of the LUTs; 0 if none are written
-    space: PlateColorSpace | None = None  # without its exposure and primaries; None if there is no config
+    space: PlateColorSpace | None = None  # without its exposure and primaries; None without a config
     lost_color_spaces: tuple[str, ...] = ()  # of other plates, in a config that is replaced
 
     @property

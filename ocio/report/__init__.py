@@ -5,7 +5,7 @@ words        lines for people: of the command and of the add-on
 documents    the same for machines, ready for JSON
 cameras      stored cameras in words and as JSON
 calibration  a measured response in words, as JSON and as provenance
-sheet        the picture of an estimate; calibration_sheet that of a measured response: both need matplotlib
+sheet        the picture of an estimate; calibration_sheet of a measured response: both need matplotlib
 """
 
 from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines

@@ -14,7 +14,7 @@ from tests.helpers.images import write_image
 
 @pytest.fixture
 def running_config(tmp_path) -> Path:
-    """The config of a Blender that does not exist; its color spaces are those of every exported config."""
+    """The config of a Blender that does not exist; its color spaces are as in every exported config."""
     path = tmp_path / "running" / "config.ocio"
     path.parent.mkdir()
     path.write_text(portable_config([]).serialize(), encoding="utf-8")

@@ -180,7 +180,7 @@ def test_a_cancelled_job_ends_before_the_network_is_loaded(make_job, calls):
 def test_a_missing_plate_and_a_missing_model_are_told(make_job, tmp_path, plate_file):
     job = make_job()
     plate_file.unlink()
-    with pytest.raises(PlateError, match="there is no such file"):
+    with pytest.raises(PlateError, match="does not exist"):
         run(job)
     with pytest.raises(ModelError, match=r"model\.json"):
         loading.load_network(type(job.estimation.options)(model=tmp_path))

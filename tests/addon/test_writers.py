@@ -45,7 +45,7 @@ def test_a_baked_plate_is_linear(make_job, tmp_path, codes):
 
 @pytest.mark.parametrize("before", ["shot.1-2.", "shot.1-2x", "take#_", "a%02d_", "b$F4.", "[1-2]@@."])
 def test_the_name_before_the_frame_number_may_look_like_a_placeholder(make_job, tmp_path, codes, before):
-    """Blender knows which number is that of the frame, so its name is not read as a pattern."""
+    """Blender knows which number is the frame's, so its name is not read as a pattern."""
     files = [write_image(tmp_path / f"{before}{number:04d}.png", np.roll(codes, number, 0)) for number in (1, 2, 4)]
     write_image(tmp_path / "shot.1-20007.png", codes)
     job = make_job(files[0], is_sequence=True)

@@ -1,4 +1,4 @@
-"""What no longer fits an estimate is told: another file, nodes that show the earlier one or linearize twice."""
+"""What no longer fits an estimate is named: another file, nodes that show the earlier one or linearize twice."""
 
 import os
 
@@ -23,7 +23,7 @@ WITHOUT = "shows code values without the node group"
 
 
 @pytest.fixture
-def told(in_editor):
+def lines_of(in_editor):
     """Return which of the warnings the panel draws for an image."""
 
     def draw(image):
@@ -42,40 +42,42 @@ def other_file(folder, codes, name="other.png"):
 
 
 class TestAnotherFile:
-    def test_nothing_is_told_while_it_is_the_same(self, image, told, tmp_path):
-        assert told(image) == []
+    def test_nothing_is_told_while_it_is_the_same(self, image, lines_of, tmp_path):
+        assert lines_of(image) == []
         apply_nodes(image)
         bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
         bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
-        assert told(bpy.data.images["plate.png"]) == []
+        assert lines_of(bpy.data.images["plate.png"]) == []
 
-    def test_a_copy_of_the_project_is_the_same(self, image, told, plate_file, tmp_path):
+    def test_a_copy_of_the_project_is_the_same(self, image, lines_of, plate_file, tmp_path):
         (tmp_path / "moved").mkdir()
         copy = tmp_path / "moved" / plate_file.name
         copy.write_bytes(plate_file.read_bytes())
         time = plate_file.stat().st_mtime + 1.9  # as an archive rounds it
         os.utime(copy, (time, time))
         image.filepath = str(copy)
-        assert told(image) == []
+        assert lines_of(image) == []
 
-    def test_a_new_file_is_told_until_it_is_estimated(self, image, told, tmp_path, codes):
+    def test_a_new_file_is_told_until_it_is_estimated(self, image, lines_of, tmp_path, codes):
         image.filepath = str(other_file(tmp_path, codes))
-        assert told(image) == [CHANGED]
+        assert lines_of(image) == [CHANGED]
         bpy.ops.crf.apply_response(image=image.name, apply="EXPORT")  # the estimate is still the earlier file's
-        assert told(image) == [CHANGED]
+        assert lines_of(image) == [CHANGED]
         bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
-        assert told(image) == []
+        assert lines_of(image) == []
 
-    def test_nodes_show_the_earlier_file_until_they_are_applied(self, image, told, tmp_path, codes, tree, composited):
+    def test_nodes_show_the_earlier_file_until_they_are_applied(
+        self, image, lines_of, tmp_path, codes, tree, composited
+    ):
         from blender_addon.scene import stored_estimate
 
         apply_nodes(image)
         image.filepath = str(other_file(tmp_path, codes))
-        assert told(image) == [CHANGED, EARLIER]
+        assert lines_of(image) == [CHANGED, EARLIER]
         bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
-        assert told(image) == [EARLIER]
+        assert lines_of(image) == [EARLIER]
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
         (group,) = (node for node in tree.nodes if node.type == "GROUP")
         expected = stored_estimate.restored(image).curve.inverse((255 - codes) / 255)
         assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 1e-6
@@ -92,48 +94,50 @@ class TestAnotherFile:
         apply_nodes(image)
         assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
 
-    def test_a_file_that_is_gone_is_not_to_be_applied(self, image, told, plate_file):
+    def test_a_file_that_is_gone_is_not_to_be_applied(self, image, lines_of, plate_file):
         apply_nodes(image)
         plate_file.unlink()
-        assert told(image) == [GONE]
+        assert lines_of(image) == [GONE]
 
-    def test_of_a_sequence_a_frame_may_be_missing(self, addon, told, tmp_path, codes):
+    def test_of_a_sequence_a_frame_may_be_missing(self, addon, lines_of, tmp_path, codes):
         frames = [write_image(tmp_path / f"shot.{number:04d}.png", codes) for number in (1, 2, 3)]
         image = bpy.data.images.load(str(frames[0]))
         image.source = "SEQUENCE"
         bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
         frames[0].unlink()
-        assert told(image) == []
+        assert lines_of(image) == []
         apply_nodes(image)
 
-    def test_packed_images_say_nothing(self, addon, plate_file, told):
+    def test_packed_images_say_nothing(self, addon, plate_file, lines_of):
         image = bpy.data.images.load(str(plate_file))
         image.pack()
         bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
         plate_file.unlink()
-        assert told(image) == []
+        assert lines_of(image) == []
 
-    def test_a_response_from_elsewhere_is_not_that_of_a_file(self, image, told, tmp_path, codes):
+    def test_a_response_from_elsewhere_is_not_that_of_a_file(self, image, lines_of, tmp_path, codes):
         other = bpy.data.images.load(str(other_file(tmp_path, codes)))
         bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
         other.filepath = image.filepath
-        assert told(other) == []
+        assert lines_of(other) == []
 
-    def test_a_file_that_is_read_anew_by_the_plate_alone_is_told(self, image, told, plate_file, codes):
+    def test_a_file_that_is_read_anew_by_the_plate_alone_is_told(self, image, lines_of, plate_file, codes):
         apply_nodes(image)
         write_image(plate_file, (255 - codes)[:-10])
         image.reload()
-        assert told(image) == [CHANGED, EARLIER]
+        assert lines_of(image) == [CHANGED, EARLIER]
 
 
 class TestPacked:
-    def test_the_nodes_survive_the_loss_of_the_file(self, image, tree, plate_file, codes, composited, tmp_path, told):
+    def test_the_nodes_survive_the_loss_of_the_file(
+        self, image, tree, plate_file, codes, composited, tmp_path, lines_of
+    ):
         apply_nodes(image)
         image.pack()
-        assert told(image) == [EARLIER]
+        assert lines_of(image) == [EARLIER]
         scene = str(tmp_path / "shot.blend")
         bpy.ops.wm.save_as_mainfile(filepath=scene)
-        assert told(image) == []
+        assert lines_of(image) == []
         expected = composited(group_of(tree).outputs[0])
         plate_file.unlink()
         bpy.ops.wm.open_mainfile(filepath=scene)
@@ -158,31 +162,31 @@ def painted(codes):
 
 class TestPainted:
     @pytest.mark.parametrize("is_packed", [False, True])
-    def test_unsaved_changes_are_told_until_they_are_in_the_nodes(self, image, told, plate_file, is_packed):
+    def test_unsaved_changes_are_told_until_they_are_in_the_nodes(self, image, lines_of, plate_file, is_packed):
         if is_packed:
             image.pack()
         apply_nodes(image)
         for given_up_or_kept, warnings in ((image.reload, []), (image.pack, [EARLIER])):
-            assert told(image) == []
+            assert lines_of(image) == []
             image.pixels[0] = 0.5
-            assert told(image) == [UNSAVED]
+            assert lines_of(image) == [UNSAVED]
             given_up_or_kept()
-            assert told(image) == warnings
+            assert lines_of(image) == warnings
             apply_nodes(image)
 
-    def test_of_an_image_without_a_file_it_is_always_told(self, addon, codes, told):
+    def test_of_an_image_without_a_file_it_is_always_told(self, addon, codes, lines_of):
         image = painted(codes)
         bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
-        assert told(image) == []
+        assert lines_of(image) == []
         apply_nodes(image)
-        assert told(image) == [PAINTED]
+        assert lines_of(image) == [PAINTED]
         image.pack()
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
 
 
 class TestWithoutTheGroup:
-    def test_code_values_that_go_on_as_they_are_are_told(self, image, told, tree, in_editor):
+    def test_code_values_that_go_on_as_they_are_are_told(self, image, lines_of, tree, in_editor):
         apply_nodes(image)
         group = group_of(tree)
         source, targets = (
@@ -190,22 +194,22 @@ class TestWithoutTheGroup:
             [link.to_socket for link in group.outputs[0].links],
         )
         tree.nodes.remove(group)
-        assert told(image) == []  # nothing shows them
+        assert lines_of(image) == []  # nothing shows them
         for target in targets:
             tree.links.new(source, target)
-        assert told(image) == [WITHOUT]
+        assert lines_of(image) == [WITHOUT]
         applied = "Applied with these settings."
         assert applied not in " ".join(labels(drawn_in(image, in_editor)))
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
         assert applied in " ".join(labels(drawn_in(image, in_editor)))
 
-    def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, told, tree):
+    def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, lines_of, tree):
         apply_nodes(image)
         group_of(tree).mute = True
-        assert told(image) == [WITHOUT]
+        assert lines_of(image) == [WITHOUT]
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
         assert not group_of(tree).mute
 
 
@@ -223,33 +227,33 @@ class TestTwice:
         tree.links.new(source.outputs["Image"], node.inputs["Image"])
         return source
 
-    def test_a_group_behind_the_plate_itself_is_told(self, image, told, by_hand):
-        assert told(image) == [TWICE]
+    def test_a_group_behind_the_plate_itself_is_told(self, image, lines_of, by_hand):
+        assert lines_of(image) == [TWICE]
         image.colorspace_settings.name = "Non-Color"  # now these are code values
-        assert told(image) == []
+        assert lines_of(image) == []
 
-    def test_applying_mends_it(self, image, told, by_hand, codes, composited):
+    def test_applying_mends_it(self, image, lines_of, by_hand, codes, composited):
         from blender_addon.scene import stored_estimate
 
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
         (link,) = by_hand.outputs["Image"].links
         expected = stored_estimate.restored(image).curve.inverse(codes / 255)
         assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-6
 
-    def test_two_groups_in_a_row_are_told(self, image, told, tree):
+    def test_two_groups_in_a_row_are_told(self, image, lines_of, tree):
         apply_nodes(image)
-        assert told(image) == []
+        assert lines_of(image) == []
         first = next(node for node in tree.nodes if node.type == "GROUP")
         second = tree.nodes.new("CompositorNodeGroup")
         second.node_tree = first.node_tree
         tree.links.new(first.outputs[0], second.inputs["Image"])
-        assert told(image) == [TWICE]
+        assert lines_of(image) == [TWICE]
 
-    def test_the_look_behind_the_group_is_no_second_one(self, image, told, tree):
+    def test_the_look_behind_the_group_is_no_second_one(self, image, lines_of, tree):
         apply_nodes(image)
         bpy.ops.crf.add_look(image=image.name)
         group = next(node for node in tree.nodes if node.type == "GROUP" and "Response" in node.node_tree.name)
         look = next(node for node in tree.nodes if node.type == "GROUP" and "Look" in node.node_tree.name)
         tree.links.new(group.outputs[0], look.inputs["Image"])
-        assert told(image) == []
+        assert lines_of(image) == []

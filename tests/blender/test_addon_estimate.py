@@ -63,7 +63,7 @@ def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
     assert_equal(stored(image), estimate(plate_file))
     assert image.camera_response_settings.exposure == 0.5
     plate_file.rename(plate_file.with_name("gone.png"))
-    with pytest.raises(RuntimeError, match="there is no such file"):
+    with pytest.raises(RuntimeError, match="does not exist"):
         bpy.ops.crf.estimate_response(image=image.name)
 
 

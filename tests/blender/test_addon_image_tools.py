@@ -50,7 +50,7 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
 
 
 def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):
-    """Not the one that Blender has read last, for another editor or a node; a frame that is missing is told."""
+    """Not the one that Blender has read last, for another editor or a node; a missing frame is named."""
     from blender_addon.scene import stored_estimate
 
     for number in (1, 2, 4):

@@ -119,7 +119,7 @@ def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon
     ("name", "words"),
     [
         ("shot.0001.png", r"shot\.####\.png: there are none of this name"),
-        ("still.png", r"still\.png: there is no such file; .*; find it with File, External Data\s*$"),
+        ("still.png", r"still\.png: does not exist; .*; find it with File, External Data\s*$"),
     ],
 )
 def test_frames_that_are_gone_are_told_in_the_words_of_blender(addon, tmp_path, codes, name, words):

@@ -97,7 +97,7 @@ def test_plates_without_tags_have_no_matrix(addon, plate_file):
 
 
 def test_a_new_file_has_its_own_primaries(image, plate_file):
-    """The file is read again only where it is not that of the estimate."""
+    """The file is read again only where it differs from the estimate."""
     apply(image, "NODES")
     assert "Display P3" in image["camera_response"]["primaries"]
     image.filepath = str(plate_file)

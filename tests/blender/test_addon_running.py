@@ -20,7 +20,7 @@ def interface(addon):
 
 
 class Waiting:
-    """A job that waits for its end to be allowed, and reports the progress that it is told to."""
+    """A job that waits for its end to be allowed, and reports the progress that it is given."""
 
     def __init__(self):
         self.end, self.progress = threading.Event(), None

@@ -124,7 +124,7 @@ def bpy_requirements(name="bpy"):
 
 @pytest.fixture(scope="module")
 def bare_python(tmp_path_factory):
-    """Python of an environment that holds bpy and what it requires: links to those of this one, nothing else."""
+    """Python of an environment that holds bpy and what it requires: links to this one's packages, nothing else."""
     folder = tmp_path_factory.mktemp("bare")
     subprocess.run([sys.executable, "-m", "venv", "--without-pip", str(folder)], check=True)
     (packages,) = folder.glob("lib/python*/site-packages")

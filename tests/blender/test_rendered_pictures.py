@@ -1,4 +1,4 @@
-"""Pictures that Blender rendered are told from photographs by what Blender writes into the files."""
+"""Pictures that Blender rendered are recognized by what Blender writes into the files."""
 
 import importlib.util
 import subprocess

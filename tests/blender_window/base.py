@@ -49,7 +49,7 @@ class WindowTest(unittest.TestCase):
             copy_home(installed_home(), self.home)
 
     def tearDown(self) -> None:
-        """Assert that no Blender has printed a traceback: what fails while a panel is drawn is told nowhere else."""
+        """Assert that no Blender has printed a traceback: what fails while a panel is drawn appears nowhere else."""
         for blender in self.blenders:
             blender.quit()
             assert "Traceback" not in blender.printed, blender.printed[-LAST:]

@@ -21,7 +21,7 @@ from tests.helpers.images import read_image, write_image
 #: The bundled photograph.
 PLATE = Path(__file__).resolve().parent.parent / "data" / "plate.jpg"
 
-#: Plates whose estimate and linear values are compared with those of the add-on.
+#: Plates whose estimate and linear values are compared with the add-on.
 COMPARED = ("plate.jpg",)
 
 #: Size of the large plate, 12 megapixels.

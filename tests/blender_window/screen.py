@@ -56,7 +56,7 @@ class Picture:
         return Picture(self.width, len(rows), b"".join(rows))
 
     def difference(self, other: Picture) -> float:
-        """Return the fraction of pixels that differ from those of a picture of the same size."""
+        """Return the fraction of pixels that differ from a picture of the same size."""
         if self.rgb == other.rgb:
             return 0.0
         pixels = range(0, len(self.rgb), 3)

@@ -17,7 +17,7 @@ from tests.blender_window.screen import Screen
 #: What runs inside Blender.
 INSIDE = Path(__file__).parent / "inside" / "serve.py"
 
-#: How many of the last letters that Blender printed an error tells.
+#: How many of the last letters that Blender printed an error quotes.
 LAST = 2000
 
 #: Seconds that Blender may take to start, and to answer.

@@ -1,4 +1,4 @@
-"""The button in the Image Editor: its numbers are those of the `crfnet` command, Esc and undo leave nothing behind."""
+"""The button in the Image Editor: its numbers equal the `crfnet` command's, Esc and undo leave nothing behind."""
 
 from __future__ import annotations
 

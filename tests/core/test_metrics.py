@@ -46,7 +46,7 @@ def test_the_shape_error_ignores_the_exposure():
 
 
 def test_the_scale_error_is_the_exposure():
-    """f(E) = 2 E until it clips: its light beside white is a stop below that of f(E) = E."""
+    """f(E) = 2 E until it clips: its light beside white is a stop below f(E) = E."""
     clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
     assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
     assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)

@@ -1,4 +1,4 @@
-"""docs/API.md: its names are there, its signatures are those of the code, and its examples run."""
+"""docs/API.md: its names are there, its signatures match the code, and its examples run."""
 
 import dataclasses
 import importlib

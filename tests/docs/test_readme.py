@@ -1,4 +1,4 @@
-"""The README is short, begins with the installation, its snippet runs, and its figures are those of the model card."""
+"""The README is short, begins with the installation, its snippet runs, and its figures match the model card."""
 
 import json
 import re

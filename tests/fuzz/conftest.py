@@ -71,7 +71,7 @@ def refused():
         else:
             return False
         assert str(path) in line, f"does not name the file: {line}"
-        assert line.isprintable(), f"is no plain line: {line!r}"
+        assert line.isprintable(), f"is not a plain line: {line!r}"
         return True
 
     return is_refused

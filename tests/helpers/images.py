@@ -35,7 +35,7 @@ def write_image(
     names : tuple of str or str, optional
         Names of the channels, such as "RGB" or ("X", "Z"); by default R, G, B and A, or Y.
     depth : str, optional
-        OpenImageIO's name of the type in the file, such as "half"; by default that of the samples.
+        OpenImageIO's name of the type in the file, such as "half"; by default the samples' type.
     origin : tuple of int
         Column and row at which the data window begins.
     display : tuple of int, optional

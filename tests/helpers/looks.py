@@ -25,7 +25,7 @@ from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import rule_names
 from tests.helpers.images import write_image
 
-#: A response that is no power law, so that no config has a space that converts as it does.
+#: A response that is not a power law, so that no config has a space that converts as it does.
 LUT = inverse_response_lut(
     ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 0.4 * (1.2 - 0.2 * np.linspace(0, 1, 1024)))
 )

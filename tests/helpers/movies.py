@@ -60,7 +60,7 @@ def write_movie(
 
     `tags` are attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
     `images` are uint8, shape (H, W, 3), by default `pictures`; `times` are in 1/24 second, by default consecutive.
-    `options` and `muxer` are those of the encoder and of the container; an interlaced movie has frames of two fields.
+    `options` and `muxer` go to the encoder and the container; an interlaced movie has frames of two fields.
     """
     av = pytest.importorskip("av", reason="needs PyAV: the extra video")
     if codec not in av.codecs_available:

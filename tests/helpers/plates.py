@@ -35,7 +35,7 @@ def linearize(
     progress: Progress | None = None,
     **options: Any,
 ) -> PlateReport:
-    """Linearize the file or the sequence `plates` into `out`; `options` are those of `PlateOptions`."""
+    """Linearize the file or the sequence `plates` into `out`; `options` are as of `PlateOptions`."""
     sequence = find_frames(plates, frames)
     targets = linear_targets(out, sequence)
     return linearize_plates(sequence, targets, lut, PlateOptions(**options), workers=workers, progress=progress)

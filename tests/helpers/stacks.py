@@ -121,7 +121,7 @@ def capture(
 def opencv_response(method: str, paths: Sequence[Path], seconds: Sequence[float], true: ResponseCurve) -> ResponseCurve:
     """Return the response that OpenCV measures on a stack, by "Debevec" or "Robertson": the mean over the channels.
 
-    OpenCV tells the irradiance of each code in each channel, in no known scale, and what it tells of code 255 is far
+    OpenCV gives the irradiance of each code in each channel, in no known scale, and its value for code 255 is far
     off. So the logarithms are averaged, and the scale is the one at which the codes 16 to 240 agree best with `true`.
     """
     import cv2

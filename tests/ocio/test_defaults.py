@@ -1,4 +1,4 @@
-"""The shared constants agree with those of the core and of the formats."""
+"""The shared constants agree with the core and of the formats."""
 
 import numpy as np
 

@@ -1,6 +1,6 @@
 """Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
 
-The steps are those of `training.export.model_folder`. The paper's network states no uncertainty, so what its answers
+The steps are as in `training.export.model_folder`. The paper's network states no uncertainty, so what its answers
 are worth as evidence is fitted on photographs of the validation scenes: see `training.crfnet2017.likelihood`.
 """
 
@@ -56,7 +56,7 @@ class ShippedCRFNet(nn.Module):
 def load_network(run: Path) -> WindowAnswers:
     """Return the best network of a run, ready to infer, with its normalizations folded.
 
-    Raise SystemExit if the run is of the first stage, which tells responses apart.
+    Raise SystemExit if the run is of the first stage, which classifies responses.
     """
     state = torch.load(run / "best.pt", map_location="cpu", weights_only=True)
     network = CRFNet()

@@ -63,8 +63,8 @@ class DorfCurve:
 def parse_dorf(text: str) -> list[DorfCurve]:
     """Return the curves in the text of dorfCurves.txt, in its order.
 
-    Raise CurveError if there are none, or one is cut short, holds something else than numbers, or is no response from 0
-    to 1.
+    Raise CurveError if there are none, or one is cut short, holds something else than numbers, or is not a response
+    from 0 to 1.
     """
     lines = [line.strip() for line in text.splitlines() if line.strip()]
     starts = [index for index, line in enumerate(lines) if line.replace(" ", "") == "I="]
@@ -77,7 +77,7 @@ def parse_dorf(text: str) -> list[DorfCurve]:
 def convert(source: Path, out: Path, *, overwrite: bool = False) -> int:
     """Write the curves of dorfCurves.txt as a MAT-file with I and B, float32 (201, 1024), and return their number.
 
-    Raise CRFNetError if the text cannot be read or is not that of all 201 curves, or the output cannot be written.
+    Raise CRFNetError if the text cannot be read or does not hold all 201 curves, or the output cannot be written.
     """
     check_target(out, overwrite=overwrite)
     try:

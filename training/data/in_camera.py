@@ -101,14 +101,14 @@ def _center(rows: Sequence[Float64Array]) -> Float64Array:
 
 
 def _shrunk_center(rows: Sequence[Float64Array], center: Float64Array) -> Float64Array:
-    """Return the center of the bodies of a kind, shape (1024,), drawn towards that of all by `PSEUDO_BODIES`."""
+    """Return the center of the bodies of a kind, shape (1024,), drawn towards the center of all by `PSEUDO_BODIES`."""
     if not rows:
         return center
     return center + (_center(rows) - center) * len(rows) / (len(rows) + PSEUDO_BODIES)
 
 
 def _spread(bodies: Sequence[Body], squares: dict[str, float], kind: str) -> float:
-    """Return the RMS deviation of the bodies of a kind relative to that of all, shrunk towards it."""
+    """Return the RMS deviation of the bodies of a kind relative to all bodies, shrunk towards it."""
     average = float(np.mean(list(squares.values())))
     own = [squares[body.key] for body in bodies if body.kind == kind]
     count = len(own) + PSEUDO_BODIES_OF_SPREAD

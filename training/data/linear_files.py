@@ -118,7 +118,7 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
     height, width, _ = samples.shape
     if width != 2 * height:
         raise PhotoError(
-            f"{path}: {width} x {height} is no whole panorama, twice as wide as high; import it as a photograph"
+            f"{path}: {width} x {height} is not a whole panorama, twice as wide as high; import it as a photograph"
         )
     rows = int(height * (BAND[1] - BAND[0]))
     top = (height - rows) // 2
@@ -131,9 +131,9 @@ def automatic_scale(height: int, width: int) -> int:
 
 
 def _check_file(path: Path) -> None:
-    """Refuse a path that is no file or cannot be opened."""
+    """Refuse a path that is not a file or cannot be opened."""
     if not path.is_file():
-        raise PhotoError(f"{path}: there is no such file; check the name")
+        raise PhotoError(f"{path}: does not exist; check the name")
     if not os.access(path, os.R_OK):
         raise PhotoError(f"{path}: cannot be opened; check its permissions")
 

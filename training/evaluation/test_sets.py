@@ -27,7 +27,7 @@ LIGHTS_FOLDER = Path(__file__).parents[2] / "tests" / "data" / "lights"
 LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr")
 
 #: Standard deviation, in stops, of the log-normal luminance that sets the exposures where there are no training
-#: scenes: about that of the training scenes, each scaled to a geometric mean of 1.
+#: scenes: about as in the training scenes, each scaled to a geometric mean of 1.
 REFERENCE_STOPS = 2.0
 
 
@@ -50,7 +50,7 @@ class TestSet:
     """Scenes that no model was trained on, and responses.
 
     curves, float64 (N, 1024): true responses at 1024 uniform irradiances
-    held_out: numbers of the responses that P2 holds out; empty where there is no such split
+    held_out: numbers of the responses that P2 holds out; empty without such a split
     data: the folder of the data; None for the bundled test set
     """
 

@@ -42,7 +42,7 @@ def write_golden(network: nn.Module, signature: Signature, path: Path) -> None:
 
 
 def assert_parity(folder: Path, golden: Path) -> float:
-    """Return the largest difference between the golden outputs and those of onnxruntime for the model in `folder`.
+    """Return the largest difference between the golden outputs and onnxruntime for the model in `folder`.
 
     Raise SystemExit if it is above `PARITY`.
     """

@@ -27,7 +27,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     """Write a run folder with the weighted mean of the last checkpoints of runs, and return its checkpoint.
 
     `runs`: folders written by `training.network.train`, or model folders. `shares`: what each run counts, as parts of
-    their sum. `out`: the new folder. Its run.json is that of the run with the largest share, and names all of them
+    their sum. `out`: the new folder. Its run.json comes from the run with the largest share, and names all of them
     under "average". Raise SystemExit if the networks differ in size or are not related, or there is not one share for
     each run.
     """
@@ -49,7 +49,7 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
 
 
 def weighted_mean(networks: Sequence[dict[str, Tensor]], parts: Sequence[float]) -> dict[str, Tensor]:
-    """Return the weighted mean of the states of networks; whole numbers (counts of batches) are those of the first."""
+    """Return the weighted mean of the states of networks; whole numbers (counts of batches) come from the first."""
     return {
         name: sum(
             (part * network[name] for part, network in zip(parts, networks, strict=True)), torch.zeros_like(first)
@@ -73,7 +73,7 @@ def _source(folder: Path) -> Path:
 
 
 def _is_model(folder: Path) -> bool:
-    """Return whether a folder is that of an exported model, not of a run."""
+    """Return whether a folder holds an exported model, not a run."""
     return not (folder / CHECKPOINT).exists()
 
 

@@ -8,7 +8,7 @@ from torch import Tensor
 from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM, EVIDENCE_WEIGHTS
 from training.network.model import EvidenceTensors
 
-#: Weight of the loss of single windows relative to that of photographs, and of the error of the posterior's mean
+#: Weight of the loss of single windows relative to photographs, and of the error of the posterior's mean
 #: relative to the negative logarithm of its density.
 WINDOW_WEIGHT, ERROR_WEIGHT = 0.3, 0.5
 

@@ -135,7 +135,7 @@ def make_shard(data: Path, out: Path, split: str, number: int) -> Path:
     path = shard_path(out, split, number)
     if path.exists():
         return path
-    # The length of the split's name (train 5, validation 10) tells the splits' seeds apart; kept for shards that exist.
+    # The length of the split's name (train 5, validation 10) separates the splits' seeds; kept for shards that exist.
     source, rng = photograph_source(data, split), np.random.default_rng([number, len(split)])
     rows: list[np.ndarray] = []
     weights: list[np.ndarray] = []

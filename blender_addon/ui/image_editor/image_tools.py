@@ -147,7 +147,7 @@ def mean_around(codes: Float32Array, place: tuple[float, float]) -> float:
     height, width = codes.shape[:2]
     column, row = int(place[0] * width // 1), int(place[1] * height // 1)
     if not (0 <= column < width and 0 <= row < height):
-        raise AddonError("There is no pixel: click inside the plate")
+        raise AddonError("No pixel there: click inside the plate")
     square = codes[max(0, row - REACH) : row + REACH + 1, max(0, column - REACH) : column + REACH + 1, :3]
     return float(square.mean())
 

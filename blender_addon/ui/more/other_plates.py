@@ -61,7 +61,7 @@ class CRF_OT_copy_response(ChosenPlate, bpy.types.Operator):
             self._cameras.append(other_camera(source, datablock))
             target.is_chosen = datablock in selected and not self._cameras[-1]
         if not self.targets:
-            self.report({"INFO"}, "There is no other plate in this file: open one first")
+            self.report({"INFO"}, "This file has no other plate: open one first")
             return {"CANCELLED"}
         return context.window_manager.invoke_props_dialog(self)
 

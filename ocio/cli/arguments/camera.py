@@ -26,7 +26,7 @@ def add(commands: Commands) -> None:
     addition.add_argument(
         "--from-calibration", type=Path, required=True, metavar="FILE", help="the JSON that crfnet calibrate wrote"
     )
-    addition.add_argument("--name", metavar="NAME", help="the camera's name (that of FILE)")
+    addition.add_argument("--name", metavar="NAME", help="the camera's name (by default FILE's)")
     addition.add_argument("--overwrite", action="store_true", help="replace the camera of this name")
     add_action(actions, "list", "list your cameras and the ones that come with crfnet")
     for action, words in (("show", "show how good the response of a camera is"), ("remove", "remove a camera")):

@@ -33,7 +33,7 @@ def add(commands: Commands) -> None:
         type=written_path,
         required=True,
         metavar="PATTERN",
-        help="file, or pattern like that of PLATES; with --each a folder",
+        help="file, or pattern like PLATES; with --each a folder",
     )
     parser.add_argument(
         "--lut", type=Path, metavar="FILE", help="the response: a 1D LUT of any format that OpenColorIO reads"

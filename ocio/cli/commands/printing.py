@@ -24,7 +24,7 @@ from ..streams import shown
 if TYPE_CHECKING:
     from ...pipeline.plan import OutputPlan
 
-#: Seconds between two lines of progress where there is no terminal.
+#: Seconds between two lines of progress without a terminal.
 LINE_SECONDS = 60
 
 NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'crfnet[plot]', or add --no-sheet"
@@ -77,7 +77,7 @@ def lost_lines(plan: OutputPlan) -> list[str]:
 
 @contextmanager
 def progress_bar(unit: str) -> Iterator[Progress]:
-    """Yield a callback that moves a bar on stderr; where stderr is no terminal, it prints one line a minute."""
+    """Yield a callback that moves a bar on stderr; where stderr is not a terminal, it prints one line a minute."""
     if not sys.stderr.isatty():
         yield _minute_lines(unit)
         return

@@ -35,7 +35,7 @@ def test_times_of_no_steps_stay_as_they_are():
 
 
 def test_iso_and_aperture_count():
-    """ISO 200 doubles the exposure, f/11 halves that of f/8: log2(11 / 8) * 2 is 0.92, and stands for 1."""
+    """ISO 200 doubles the exposure, f/11 halves the exposure of f/8: log2(11 / 8) * 2 is 0.92, and stands for 1."""
     labels = [ExposureLabel(1.0, 8.0, 100.0), ExposureLabel(1.0, 8.0, 200.0), ExposureLabel(1.0, 11.0, 200.0)]
     found = stack_exposures(labels)
     np.testing.assert_allclose(np.diff(found.snapped), [1, -1])

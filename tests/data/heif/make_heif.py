@@ -1,7 +1,7 @@
 """Make the HEIC and AVIF files of this folder: ``pip install pillow-heif; python tests/data/heif/make_heif.py``.
 
-Needs ffmpeg with libaom for the AVIF of 10 bits. HEIC is lossless, so tests compare codes. pillow-heif is no dependency
-of the tests: its wheel holds x265, which is under the GPL.
+Needs ffmpeg with libaom for the AVIF of 10 bits. HEIC is lossless, so tests compare codes. pillow-heif is not needed
+by the tests: its wheel holds x265, which is under the GPL.
 """
 
 from __future__ import annotations

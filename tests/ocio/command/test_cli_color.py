@@ -20,7 +20,7 @@ from tests.helpers.plates import attributes, read_exr
 
 colour = pytest.importorskip("colour")
 
-#: A response that is no standard one, and light of all colours in it.
+#: A response that is not a standard one, and light of all colours in it.
 CURVE = ResponseCurve.from_samples(1 - (1 - np.linspace(0, 1, 4096)) ** 2)
 LIGHT = np.random.default_rng(0).uniform(0.02, 0.95, (24, 32, 3))
 
@@ -236,7 +236,7 @@ class TestConfig:
     ],
 )
 def test_the_config_finds_the_linear_plate_in_its_space(crfnet, fixed_model, plate, tmp_path, output, space, to_aces):
-    """OpenColorIO sees the file's name only; from the space that it finds, the light is that of the plate itself."""
+    """OpenColorIO sees the file's name only; from the space that it finds, the light equals the plate itself."""
     photo = write_tagged(tmp_path / "shot.0001.png", read_image(plate, kind="uint8"), matrix_profile(DISPLAY_P3))
     look = tmp_path / "look"
     arguments = ("--no-sheet", "--depth", "float", "--output-space", output, "--model", fixed_model)

@@ -97,7 +97,7 @@ def test_the_merge_line_of_the_documents_works(folder, root, tmp_path):
             "is the folder of the config that you build on",
         ),
         (("add", "{look}", "--out", "{out}"), "the following arguments are required: --base"),
-        (("list", "nowhere.ocio"), "nowhere.ocio: there is no such config; check the name"),
+        (("list", "nowhere.ocio"), "nowhere.ocio: does not exist; check the name"),
         ((), "the following arguments are required: ACTION"),
     ],
 )

@@ -19,7 +19,7 @@ CURVE = ResponseCurve.gamma(1.8)
 
 @pytest.fixture(scope="module")
 def lut_file(tmp_path_factory):
-    """The inverse of another response than that of the bundled photograph."""
+    """The inverse of another response than of the bundled photograph."""
     path = tmp_path_factory.mktemp("lut") / "known.spi1d"
     write_lut(path, inverse_response_lut(CURVE))
     return path

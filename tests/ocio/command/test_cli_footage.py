@@ -1,4 +1,4 @@
-"""`crfnet` on what is no photograph of a camera, and on HEIC: what it says, writes and returns."""
+"""`crfnet` on inputs that are not camera photographs, and on HEIC: what it says, writes and returns."""
 
 import json
 import shutil

@@ -13,7 +13,7 @@ from tests.helpers.images import write_image
 
 
 def make_bad_inputs(folder):
-    """Write one file of each kind that is no photograph."""
+    """Write one file of each kind that is not a photograph."""
     (folder / "empty.jpg").write_bytes(b"")
     (folder / "text.jpg").write_text("not a photograph")
     (folder / "folder.jpg").mkdir()
@@ -106,7 +106,7 @@ def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, 
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("none.jpg", "none.jpg: there is no such file; check the name"), (".", "is a folder; give one photograph")],
+    [("none.jpg", "none.jpg: does not exist; check the name"), (".", "is a folder; give one photograph")],
 )
 def test_what_is_no_photograph_is_said_before_the_output_is_looked_at(crfnet, look, tmp_path, name, words):
     """Else a user adds --overwrite to a line about files that exist, and has replaced nothing."""

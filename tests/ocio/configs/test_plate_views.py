@@ -87,7 +87,7 @@ def test_highlights_are_clipped_in_one_view_and_differ_in_the_other(shown):
 
 
 def test_a_video_display_shows_the_same_colors(shown):
-    """The code of Rec.1886 is x^(1/2.4); that of sRGB, above its linear part, 1.055 x^(1/2.4) - 0.055."""
+    """The code of Rec.1886 is x^(1/2.4); the code of sRGB, above its linear part, 1.055 x^(1/2.4) - 0.055."""
     light, config = np.float32([[0.18, 0.18, 0.18]]), with_plate()
     srgb = shown(config, "sRGB", CLIPPED, light)[0, 0]
     video = shown(config, "Rec.709", CLIPPED, light)[0, 0]

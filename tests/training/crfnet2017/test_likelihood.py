@@ -11,7 +11,7 @@ SLOPES, INTERCEPTS = np.array([0.8, 0.6, 0.5, 0.4, 0.3]), np.array([0.5, -0.2, 0
 
 @pytest.fixture(scope="module")
 def noise():
-    """The covariance of the noise in the answers: that of the first two weights is correlated."""
+    """The covariance of the noise in the answers: the first two weights are correlated."""
     covariance = np.diag([0.5, 0.2, 0.1, 0.05, 0.02])
     covariance[0, 1] = covariance[1, 0] = 0.2
     return covariance

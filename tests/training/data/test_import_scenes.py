@@ -82,7 +82,7 @@ def bad_files(folder):
         "small.hdr": "226 rows or columns at scale 1 are too few; windows need 227",
         "black.exr": "is black",
         "endless.exr": "is black",
-        "absent.nef": "there is no such file",
+        "absent.nef": "does not exist",
     }
 
 

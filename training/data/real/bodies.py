@@ -14,7 +14,7 @@ from training.data.real.photographs import RealPhotograph, real_photographs
 class Body:
     """A camera body.
 
-    key: what bodies are told apart by
+    key: what distinguishes bodies
     kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
     responses: one of each exposure stack
     """

@@ -54,7 +54,7 @@ class RealPhotograph:
     is_scaled: whether it was made smaller after the camera
     fold: bodies of one fold are left out of a mean together
     photograph, measured: the files of the photograph and of its response
-    metadata: that of the original file, where `photograph` is not the original and has lost it
+    metadata: of the original file, where `photograph` is not the original and has lost it
     """
 
     name: str
@@ -77,7 +77,7 @@ class RealPhotograph:
 
     @property
     def body_key(self) -> str:
-        """What bodies are told apart by: two folders may write a name in different case."""
+        """What distinguishes bodies: two folders may write a name in different case."""
         return self.body.casefold()
 
     @property
@@ -119,7 +119,7 @@ def published_rows(folder: Path) -> list[dict[str, str]]:
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:
-    """Return the photograph of a row of DATA/real/cases.csv; only the camera's name tells of an editor."""
+    """Return the photograph of a row of DATA/real/cases.csv; only the camera's name shows an editor."""
     return RealPhotograph(
         name=row["id"],
         body=row["camera"],
@@ -141,7 +141,7 @@ def _crop(folder: Path, row: dict[str, str]) -> bytes:
 
 
 def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
-    """Return the photograph of a row of DATA/real_bodies/cases.csv; those of one exposure stack share a response."""
+    """Return the photograph of a row of DATA/real_bodies/cases.csv; one exposure stack has one response."""
     return RealPhotograph(
         name=row["id"],
         body=row["body"],

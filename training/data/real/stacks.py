@@ -1,6 +1,6 @@
 """The exposure stacks of DATA/real_bodies that were measured on the camera's own files, and the settings of its bodies.
 
-Left out are stacks that a program developed or edited, because their response is the program's; those of grade C, whose
+Left out are stacks that a program developed or edited, since their response is the program's; stacks of grade C, whose
 scale is off by half a stop; and bodies of unknown make and model. No file says in which picture mode it was taken: two
 stacks of a body are taken for one setting of it unless their responses differ by more than `SAME_SETTING` standard
 deviations.

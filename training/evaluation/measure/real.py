@@ -201,7 +201,7 @@ def mean_of_other_bodies(
     """Return the mean response, in log irradiance, of the bodies of the other folds, each body counted once.
 
     This is the estimate of someone who knows cameras and does not look at the photograph. Responses of DATA/real_bodies
-    that need caution are left out of it. Where there is no other body it is gamma 2.2.
+    that need caution are left out of it. Without another body it is gamma 2.2.
 
     `photograph`: its fold is left out. `photographs`: all of the folder. `truths`: file of a measured response ->
     response.

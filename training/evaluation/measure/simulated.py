@@ -54,7 +54,7 @@ class Job:
     seed: int = 2017
 
     def photo(self, scene: int, curve: int, condition: Condition) -> Photo:
-        """Return one photograph; its dither is that of the scene, its noise its own."""
+        """Return one photograph; its dither belongs to the scene, its noise to itself."""
         return render_photo(
             _light(self.test_set.scenes[scene], scene, condition.light, self.seed),
             self.test_set.curves[curve],

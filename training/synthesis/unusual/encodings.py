@@ -66,7 +66,7 @@ def limited_range(irradiance: Float32Array, rng: np.random.Generator) -> Float32
 def messenger(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return a camera's picture, averaged down after its encoding and twice compressed at a low quality.
 
-    The light is enlarged first, so that its pixels are as soft as those of a large photograph. A picture that gets
+    The light is enlarged first, so that its pixels are as soft as in a large photograph. A picture that gets
     smaller than a window is continued by its mirror image to the size of a window.
     """
     times, curve = int(rng.choice(SCALED_BY)), drawn_camera_curve(rng)

@@ -76,7 +76,7 @@ RECIPES: dict[UnusualKind, Recipe] = {
         limited_range,
     ),
     UnusualKind.LOCAL_TONE_MAPPING: Recipe(
-        "the same light has another code in another place: there is no response", local_tone_mapping
+        "the same light has another code in another place: no response exists", local_tone_mapping
     ),
     UnusualKind.GLOBAL_TONE_MAPPING: Recipe(
         "the operator maps luminance and keeps or bends color ratios: no curve holds for every channel",
@@ -98,7 +98,8 @@ RECIPES: dict[UnusualKind, Recipe] = {
         is_recorded=False,
     ),
     UnusualKind.FILM_SCAN: Recipe(
-        "film, base and scanner each have a curve, different in every channel, and the grain is no sensor's", film_scan
+        "film, base and scanner each have a curve, different in every channel, and the grain is not of a sensor",
+        film_scan,
     ),
     UnusualKind.MESSENGER: Recipe(
         "averaging encoded codes and strong compression have replaced the mixtures of light at edges",

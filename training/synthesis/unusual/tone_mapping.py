@@ -11,7 +11,7 @@ from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response
 from training.synthesis.unusual.encodings import SRGB
 
-#: Least luminance that a tone-mapping operator tells from black.
+#: Least luminance that a tone-mapping operator separates from black.
 DARKEST = np.float32(1e-4)
 
 #: Percentile of the luminance that an operator takes for the brightest light: single lamps and the sun lie above it.

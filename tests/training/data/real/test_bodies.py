@@ -26,7 +26,7 @@ def photograph(folder, name, body, fold, *, stack="1", kind="camera", raw_file="
 
 @pytest.fixture
 def photographs(tmp_path, monkeypatch):
-    """Two folders that share a model; DATA/real tells two of its bodies apart in brackets."""
+    """Two folders that share a model; DATA/real separates two of its bodies in brackets."""
     real, more = tmp_path / "real", tmp_path / "real_bodies"
     sets = {
         "real": [
