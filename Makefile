@@ -87,12 +87,12 @@ docs: $(PLOT)/ready  ## the sample and the picture in docs/ anew
 	$(PLOT)/bin/python docs/make_sample.py
 	$(PLOT)/bin/python docs/make_picture.py
 
-bench: $(PLOT)/ready  ## time and memory beside oiiotool, in benchmarks/speed.json (half an hour); ONLY="estimate start" for some of it
-	$(PLOT)/bin/python -m benchmarks.speed $(ONLY)
+bench: $(PLOT)/ready  ## time and memory of the command, and of oiiotool on the same photograph
+	$(PLOT)/bin/python -m tests.speed
 
 clean:  ## remove everything that make made
 	rm -rf .venvs $(DEMO) build dist *.egg-info .pytest_cache .mypy_cache .ruff_cache .import_linter_cache .hypothesis
-	find benchmarks crfnet_core ocio training tests blender_addon -name __pycache__ -type d -prune -exec rm -rf {} +
+	find crfnet_core ocio training tests blender_addon -name __pycache__ -type d -prune -exec rm -rf {} +
 
 # $(call install,extras[,requirement]): a virtual environment, complete or absent.
 define install
@@ -103,7 +103,7 @@ define install
 endef
 
 # The zip, the plates and what the command says of them; where they are up to date, the test needs no environment.
-$(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio benchmarks/pictures.py tests/blender_window/make_files.py -name '*.pyc' -o -name '* *' -o -type f -print)
+$(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio tests/blender_window/make_files.py -name '*.pyc' -o -name '* *' -o -type f -print)
 	$(MAKE) $(ADDON)/ready $(PLOT)/ready
 	rm -rf $(WINDOW)
 	$(ADDON)/bin/python blender_addon/build.py --platform linux-x64-any-python --out $(WINDOW)/zip

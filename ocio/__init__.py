@@ -22,31 +22,11 @@ from typing import TYPE_CHECKING, Any
 import crfnet_core
 
 if TYPE_CHECKING:
-    from crfnet_core import (
-        AnalysisOptions,
-        CRFNetError,
-        EmorBasis,
-        Photo,
-        ResponseCurve,
-        ResponseEstimate,
-        ResponseNetwork,
-        estimate_response,
-        read_photo,
-    )
+    from crfnet_core import *  # noqa: F403
     from crfnet_core import estimate_photograph as estimate
 
-__all__ = [
-    "AnalysisOptions",
-    "CRFNetError",
-    "EmorBasis",
-    "Photo",
-    "ResponseCurve",
-    "ResponseEstimate",
-    "ResponseNetwork",
-    "estimate",
-    "estimate_response",
-    "read_photo",
-]
+__all__ = ["estimate"]
+__all__ += crfnet_core.__all__
 
 
 def __getattr__(name: str) -> Any:

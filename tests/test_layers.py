@@ -9,7 +9,7 @@ import crfnet_core
 
 GUESTS = ("bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy")
 
-PACKAGES = ("benchmarks", "blender_addon", "crfnet_core", "ocio", "training")
+PACKAGES = ("blender_addon", "crfnet_core", "ocio", "training")
 
 #: The most lines of a module, and the most modules of a package beside its `__init__.py`: more want another room.
 MOST_LINES, MOST_MODULES = 300, 12

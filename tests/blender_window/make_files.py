@@ -14,9 +14,8 @@ from pathlib import Path
 
 import numpy as np
 
-from benchmarks.pictures import make_photograph
 from crfnet.cli.main import main as crfnet
-from tests.helpers.images import read_image, write_image
+from tests.helpers.images import make_photograph, read_image, write_image
 
 #: The bundled photograph.
 PLATE = Path(__file__).resolve().parent.parent / "data" / "plate.jpg"

@@ -6,10 +6,7 @@ import re
 import numpy as np
 import pytest
 
-from crfnet.defaults import GRAY_BRIGHTNESS
-from crfnet.luts.exposure import anchored_exposure
 from crfnet.luts.files import WRITERS
-from crfnet_core.response.curve import ResponseCurve
 
 #: A number that is not a part of a word, such as the digest of a model.
 NUMBER = re.compile(r"(?<![\w.+-])-?\d+(?:\.\d+)?(?:e[+-]?\d+)?(?![\w.])")
@@ -57,17 +54,12 @@ def test_the_sample_is_what_the_command_writes(root, script, tmp_path):
     assert image.imread(tmp_path / "plate_sheet.png").shape == image.imread(sample / "plate_sheet.png").shape
 
 
-@pytest.mark.parametrize(
-    ("name", "draw", "picture"),
-    [
-        ("make_picture", "draw_picture", "picture.png"),
-        ("make_exposure_picture", "draw_exposure_picture", "pictures/exposure.jpg"),
-    ],
-)
-def test_pictures_are_drawn(root, script, tmp_path, name, draw, picture):
+def test_the_picture_is_drawn(root, script, tmp_path):
     pytest.importorskip("matplotlib")
-    getattr(script(name), draw)(tmp_path / picture)
-    assert all(20_000 < (folder / picture).stat().st_size < LARGEST_PICTURE for folder in (tmp_path, root / "docs"))
+    script("make_picture").draw_picture(tmp_path / "picture.png")
+    assert all(
+        20_000 < (folder / "picture.png").stat().st_size < LARGEST_PICTURE for folder in (tmp_path, root / "docs")
+    )
 
 
 def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(script):
@@ -78,14 +70,3 @@ def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(script):
     spread = blurred(point, 2.0)[..., 0]
     assert spread.sum() == pytest.approx(1)
     assert spread[4, 4] == spread[4, 5] > spread[4, 6] > spread[6, 6] == 0
-
-
-@pytest.mark.parametrize(("gray", "is_same"), [(None, False), (GRAY_BRIGHTNESS, True)])
-def test_photographed_and_rendered_cards_are_equal_with_the_anchor_only(script, gray, is_same):
-    exposure = script("make_exposure_picture")
-    curve = ResponseCurve.from_samples(np.linspace(0, 1, 1024) ** 0.37)
-    light = curve.inverse(exposure.with_gray_card(np.full((200, 500, 3), 0.5, np.float32)))
-    shown = exposure.displayed(exposure.with_rendered_objects(light * 2 ** anchored_exposure(curve, gray=gray)))
-    photographed, rendered = (shown[-40, exposure.left_of(place) + 10] for place in (0, 1))
-    np.testing.assert_allclose(rendered, 0.349, atol=0.002)
-    assert (np.abs(photographed - rendered).max() < 1e-4) == is_same

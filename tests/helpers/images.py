@@ -74,3 +74,13 @@ def read_image(path: Path, *, kind: str = "float") -> NDArray[Any]:
     samples = image.get_pixels(kind)
     assert not image.has_error, image.geterror()
     return np.asarray(samples)
+
+
+def make_photograph(path, width=6000, height=4000, *, seed=0):
+    """Write the bundled photograph, mirrored and tiled to a size, with noise of its own everywhere."""
+    pixels = np.rint(read_image(Path(__file__).parents[1] / "data" / "plate.jpg") * 255)
+    pair = np.concatenate([pixels, pixels[:, ::-1]], axis=1)
+    tile = np.concatenate([pair, pair[::-1]], axis=0)
+    large = np.tile(tile, (-(-height // tile.shape[0]), -(-width // tile.shape[1]), 1))[:height, :width]
+    noise = np.random.default_rng(seed).normal(0, 1.5, large.shape)
+    write_image(path, np.clip(np.rint(large + noise), 0, 255).astype(np.uint8), Compression="jpeg:92")

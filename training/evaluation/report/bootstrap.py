@@ -21,11 +21,6 @@ class Interval(NamedTuple):
     low: float
     high: float
 
-    @property
-    def contains_zero(self) -> bool:
-        """Whether the interval contains 0: a difference is then a tie."""
-        return self.low <= 0 <= self.high
-
 
 @dataclass(frozen=True, eq=False)
 class Resampling:
