@@ -171,7 +171,7 @@ def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
     header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
     carried = _segment_header(picture.info)
     for attribute in carried.extra_attribs:
-        if not attribute.name.startswith(("jpeg:", "oiio:")):
+        if attribute.name.isprintable() and not attribute.name.startswith(("jpeg:", "oiio:")):
             header.attribute(attribute.name, attribute.type, attribute_value(carried, attribute))
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
