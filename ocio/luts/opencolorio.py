@@ -141,7 +141,7 @@ def _raised(path: Path, table: Float64Array) -> Float64Array:
     """Return a table whose level steps rise; raise a LutError if it falls, is not finite, or is level too often."""
     with np.errstate(invalid="ignore"):
         rises = np.diff(table, axis=0)
-    faults = ~(np.isfinite(table[1:]) & (rises >= 0)).all(axis=1)
+    faults = ~(np.isfinite(table[1:]) & np.isfinite(table[:-1]) & (rises >= 0)).all(axis=1)
     if not faults.any() and (rises > 0).mean(axis=0).min() >= 1 - MOST_LEVEL:
         raised = np.stack([strictly_increasing(column) for column in table.T], axis=1)
         if np.abs(raised - table).max() <= MOST_RAISED * np.ptp(table):
