@@ -71,7 +71,7 @@ def _checked_text(path: Path) -> list[str]:
     if path.suffix.lower() not in READABLE:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(READABLE))
     lines = [line.strip() for line in content.decode("utf-8", errors="replace").split("\n")]
-    begins = [number for number, line in enumerate(lines) if re.match("BEGIN METADATA", line, re.IGNORECASE)]
+    begins = [number for number, line in enumerate(lines) if re.search("BEGIN METADATA", line, re.IGNORECASE)]
     if begins and not any(re.match("END METADATA", line, re.IGNORECASE) for line in lines[begins[0] :]):
         raise LutError("lut_refused", path=path, reason="no line END METADATA")  # OpenColorIO would look for ever
     return [line[1:] for line in lines if line.startswith("#")]
