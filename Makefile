@@ -41,7 +41,7 @@ addon: $(ADDON)/ready  ## the Blender extension, one zip per platform and one fo
 	$(ADDON)/bin/python blender_addon/build.py
 
 test: $(TEST)/ready  ## the tests; those that need Blender or torch are shown as skipped
-	$(TEST)/bin/python -m pytest
+	$(TEST)/bin/python -m pytest -n 2
 
 fuzz: $(TEST)/ready  ## damaged files for an hour (SECONDS_EACH=400 of every test), before a release
 	CRFNET_FUZZ_SECONDS=$(SECONDS_EACH) $(TEST)/bin/python -m pytest tests/fuzz
@@ -50,7 +50,7 @@ faults: $(TEST)/ready  ## every write, fsync, close and rename fails once: EIO, 
 	$(TEST)/bin/python -m tests.faults
 
 test-training: $(TRAIN)/ready  ## the tests of training/ (installs torch)
-	$(TRAIN)/bin/python -m pytest tests/training
+	$(TRAIN)/bin/python -m pytest -n 2 tests/training
 
 test-blender: $(BPY_VENV)/ready  ## the tests inside Blender (installs bpy; Python 3.11 or 3.13)
 	$(BPY_VENV)/bin/python -m pytest tests/blender
