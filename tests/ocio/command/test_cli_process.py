@@ -6,12 +6,14 @@ import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from pathlib import Path
 
 import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
+from crfnet.cli.commands import printing
 from tests.helpers.folders import listed
 from tests.helpers.processes import start_interruptible
 
@@ -138,3 +140,12 @@ def test_an_estimate_gives_no_warning_of_python_and_leaves_the_home_empty(plate,
     assert (done.returncode, done.stderr) == (0, "")
     assert listed(tmp_path / "home") == []
     assert "plate_sheet.png" in listed(tmp_path / "out")
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX permissions")
+def test_the_list_of_fonts_lasts_in_a_folder_that_nobody_else_may_enter(tmp_path, monkeypatch):
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    folder = Path(printing._font_folder())
+    assert (printing._font_folder(), folder.stat().st_mode & 0o777) == (str(folder), 0o700)
+    folder.chmod(0o777)
+    assert printing._font_folder() != str(folder)
