@@ -161,6 +161,8 @@ def build_own_wheel(version: str, cache: Path) -> Path:
             raise BuildError(f"{MANIFEST} has version {version}, pyproject.toml makes {wheel.name}: make them equal")
         with zipfile.ZipFile(wheel) as archive:
             contents = {name: archive.read(name) for name in archive.namelist()}
+    for older in cache.glob("crfnet-*.whl"):
+        older.unlink(missing_ok=True)
     write_zip(cache / wheel.name, contents)
     return cache / wheel.name
 
@@ -184,11 +186,7 @@ def fetch_wheel(name: str, cache: Path) -> Path:
 
 
 def write_zip(path: Path, contents: Mapping[str, bytes]) -> None:
-    """Write a zip whose bytes depend only on the names and contents of its members.
-
-    The members are stored uncompressed, because the output of deflate differs between versions of zlib. Most of them
-    are wheels, which are compressed already.
-    """
+    """Write a zip whose bytes depend on its members alone: stored, since deflate differs between versions of zlib."""
     temporary = path.with_name(f".{path.name}")
     with zipfile.ZipFile(temporary, "w") as archive:
         for name in sorted(contents):

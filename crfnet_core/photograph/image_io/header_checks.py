@@ -50,11 +50,8 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
 
 
 def attribute_value(header: Any, attribute: Any) -> Any:
-    """Return the value of an attribute of a header, or an empty text if its name is not printable.
-
-    Its own `value` crashes Blender 4.5 if it is an empty text; a name that is not UTF-8 cannot be asked for.
-    """
-    if not attribute.name.isprintable():
+    """Return the value of an attribute; its own `value` crashes Blender 4.5 if it is an empty text."""
+    if not attribute.name.isprintable():  # names that are not UTF-8 cannot be asked for
         return ""
     is_text = str(attribute.type) == "string"
     return header.get_string_attribute(attribute.name) if is_text else attribute.value
