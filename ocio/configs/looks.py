@@ -97,8 +97,13 @@ def _document(path: Path) -> dict[str, Any] | None:
         _primaries(document)
     except (OSError, KeyError, OverflowError, TypeError, ValueError):
         return None
-    is_named = all(isinstance(name, str) and name and Path(name).name == name for name in names)
+    is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     return document if is_named and document["photographs"] else None
+
+
+def _is_file_name(name: str) -> bool:
+    """Return whether a text is the name of a file that file systems take, without a folder."""
+    return 0 < len(name.encode(errors="replace")) < 250 and Path(name).name == name
 
 
 def _exposure(folder: Path, document: dict[str, Any]) -> float:
