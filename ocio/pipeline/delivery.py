@@ -92,8 +92,10 @@ def _write_luts(files: OutputFiles, plan: OutputPlan, light: PlateLight) -> None
     """Write the LUTs and the config that a plan has."""
     for path in files.luts if plan.lut_length else ():
         write_lut(path, light.lut)
-    for path in files.forward:
-        write_lut(path, forward_lut(light.lut))
+    if files.forward:
+        forward = forward_lut(light.lut)
+        for path in files.forward:
+            write_lut(path, forward)
     if plan.space:
         config = portable_config([with_light(plan.space, light.stops, light.plate, light.space)])
         write_config(files.config, config, check={files.color_space: light.lut.channels[0]})
