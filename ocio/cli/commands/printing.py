@@ -39,7 +39,8 @@ def prepare_matplotlib() -> bool:
     """
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     if find_spec("matplotlib") is not None:
-        os.environ.setdefault("MPLCONFIGDIR", _font_folder())
+        if "MPLCONFIGDIR" not in os.environ:
+            os.environ["MPLCONFIGDIR"] = _font_folder()
         return True
     print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
     return False
