@@ -29,7 +29,7 @@ class CutPhotograph:
     """The windows of a photograph, and the facts about it that an estimate needs."""
 
     name: str
-    windows: tuple[Window, ...]  # empty for a photograph that was kept for later
+    windows: tuple[Window, ...]  # at least one
     samples: Float32Array  # (N, side, side, 3): pixels of the windows
     thumbnail: Float64Array  # (16, 16): ranks of brightness, which no exposure or response changes
     levels: Levels  # its darkest, its middle and its brightest samples
@@ -45,7 +45,7 @@ class AnalyzedPhotograph:
 
     photograph: CutPhotograph
     evidence: Evidence  # how likely each response makes the photograph
-    window_evidences: tuple[Evidence, ...] = ()  # the same for each of its windows alone
+    window_evidences: tuple[Evidence, ...]  # the same for each of its windows alone
 
 
 #: One photograph or several; those that are cut already need no memory for their pixels.

@@ -126,8 +126,6 @@ def _window_estimates(
     """Return the estimate of each window alone, in the order of the photographs."""
     estimates = []
     for number, one in enumerate(analyzed):
-        if not one.photograph.windows:
-            continue
         agrees = pooling.agreeing(one.window_evidences).tolist()
         for window, evidence, is_kept in zip(one.photograph.windows, one.window_evidences, agrees, strict=True):
             alone = Posterior.from_evidences(bank, prior, [evidence])
@@ -161,7 +159,7 @@ def _warnings(
     warnings = [Notice("recognized", {"reason": recognition.reason})] if recognition else []
     warnings += [*editor_warnings(origins), *doubts]
     windows = [window for photograph in photographs for window in photograph.windows]
-    if windows and not any(window.covers_range for window in windows):
+    if not any(window.covers_range for window in windows):
         warnings.append(Notice("narrow_range"))
     if all(photograph.is_gray for photograph in photographs):
         warnings.append(Notice("gray"))
