@@ -114,10 +114,13 @@ def estimate_from_evidence(
     )
 
 
-def editor_warnings(origins: Sequence[FileOrigin]) -> list[Notice]:
-    """Return a warning for each program that edited or developed the photographs."""
+def input_warnings(recognition: Recognition | None, origins: Sequence[FileOrigin]) -> list[Notice]:
+    """Return a warning of recognized photographs, and one for each program that edited or developed photographs."""
+    recognized = [Notice("recognized", {"reason": recognition.reason})] if recognition else []
     editors = dict.fromkeys((origin.editor, origin.is_developed) for origin in origins if origin.editor)
-    return [Notice("developed" if is_developed else "edited", {"editor": editor}) for editor, is_developed in editors]
+    return recognized + [
+        Notice("developed" if is_developed else "edited", {"editor": editor}) for editor, is_developed in editors
+    ]
 
 
 def _window_estimates(
@@ -156,8 +159,7 @@ def _warnings(
     doubts: Sequence[Notice],
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
-    warnings = [Notice("recognized", {"reason": recognition.reason})] if recognition else []
-    warnings += [*editor_warnings(origins), *doubts]
+    warnings = [*input_warnings(recognition, origins), *doubts]
     windows = [window for photograph in photographs for window in photograph.windows]
     if not any(window.covers_range for window in windows):
         warnings.append(Notice("narrow_range"))

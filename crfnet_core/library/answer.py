@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 
 from crfnet_core.errors import Notice
-from crfnet_core.estimate.estimate import editor_warnings
+from crfnet_core.estimate.estimate import input_warnings
 from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
 from crfnet_core.library.camera import Camera
 from crfnet_core.library.library import known_cameras
@@ -51,8 +51,8 @@ def with_camera(estimate: ResponseEstimate, camera: Camera) -> ResponseEstimate:
     recognition: no stored response makes log footage a photograph.
     """
     answer = camera_estimate(camera)
-    notices = [Notice("recognized", {"reason": estimate.recognition.reason})] if estimate.recognition else []
-    notices += [*editor_warnings(estimate.origins), *_other_cameras(camera, estimate), *answer.warnings]
+    notices = input_warnings(estimate.recognition, estimate.origins)
+    notices += [*_other_cameras(camera, estimate), *answer.warnings]
     return replace(
         answer,
         windows=estimate.windows,
