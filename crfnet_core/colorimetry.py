@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -50,6 +51,14 @@ class Primaries:
     blue: Chromaticity
     white: Chromaticity = D65
     interop_id: str = ""  # the Color Interop Forum's name of the scene-linear space; empty if there is none
+
+    @classmethod
+    def from_dict(cls, entry: Mapping[str, Any]) -> Primaries:
+        """Return the primaries that `dataclasses.asdict` made an entry of, also after JSON."""
+        fields: dict[str, Any] = {
+            name: tuple(map(float, part)) if isinstance(part, list) else part for name, part in entry.items()
+        }
+        return cls(**fields)
 
     @property
     def corners(self) -> Float64Array:

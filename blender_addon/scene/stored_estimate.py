@@ -176,9 +176,7 @@ def primaries(datablock: Datablock) -> Primaries | None:
     """Return the primaries of a plate; None if it has no estimate."""
     if not is_stored(datablock):
         return None
-    entries = json.loads(datablock[KEY][PRIMARIES]).items()
-    fields = {name: tuple(value) if isinstance(value, list) else value for name, value in entries}
-    return lazy_import.load("crfnet_core.colorimetry").Primaries(**fields)
+    return lazy_import.load("crfnet_core.colorimetry").Primaries.from_dict(json.loads(datablock[KEY][PRIMARIES]))
 
 
 def set_primaries(datablock: Datablock, primaries: Primaries) -> None:

@@ -71,11 +71,7 @@ class PhotographRecord:
         """The primaries of the photograph."""
         if self.primaries is None:
             return PlatePrimaries(None, self.primaries_source)
-        corners: dict[str, Any] = {
-            name: tuple(map(float, value)) if isinstance(value, list) else value
-            for name, value in self.primaries.items()
-        }
-        return PlatePrimaries(Primaries(**corners), self.primaries_source)
+        return PlatePrimaries(Primaries.from_dict(self.primaries), self.primaries_source)
 
     @property
     def stem(self) -> str:
