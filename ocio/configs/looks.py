@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import re
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -95,15 +96,15 @@ def _document(path: Path) -> dict[str, Any] | None:
         float(document["exposure"]["stops"])
         str(document["output_space"]["interop_id"])
         _primaries(document)
+        is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     except (OSError, KeyError, OverflowError, TypeError, ValueError):
         return None
-    is_named = all(isinstance(name, str) and _is_file_name(name) for name in names)
     return document if is_named and document["photographs"] else None
 
 
 def _is_file_name(name: str) -> bool:
-    """Return whether a text is the name of a file that file systems take, without a folder."""
-    return 0 < len(name.encode(errors="replace")) < 250 and Path(name).name == name
+    """Return whether a text is the name of a file, without a folder; ValueError if it has a surrogate of no byte."""
+    return "\0" not in name and 0 < len(os.fsencode(name)) < 250 and Path(name).name == name
 
 
 def _exposure(folder: Path, document: dict[str, Any]) -> float:

@@ -71,7 +71,7 @@ def test_anything_else_is_refused(tmp_path, name, content, code):
     assert caught.value.code == code
 
 
-@pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", 5, None])
+@pytest.mark.parametrize("name", ["", "../plate.spi1d", "a/b.spi1d", "\ud800.spi1d", "a\0.spi1d", 5, None])
 def test_a_document_does_not_lead_out_of_its_folder(tmp_path, root, name):
     document = json.loads((root / "docs" / "sample" / "plate.json").read_text())
     document["files"]["spi1d"] = name
