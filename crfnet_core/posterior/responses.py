@@ -44,8 +44,9 @@ class ResponseBank(EqualByFields):
     def load(cls) -> ResponseBank:
         """Return the packaged bank."""
         with np.load(BANK_FILE) as arrays:
-            steps, numbers = arrays["steps"], arrays["families"]
-        brightness = np.cumsum(steps, axis=1, dtype=np.uint16) / np.float32(STORED_STEPS)
+            second_differences, numbers = arrays["second_differences"], arrays["families"]
+        differences = np.cumsum(second_differences, axis=1, dtype=np.uint16)
+        brightness = np.cumsum(differences, axis=1, dtype=np.uint16) / np.float32(STORED_STEPS)
         members = list(Family)
         return cls(brightness.astype(np.float32), tuple(members[number] for number in numbers))
 
