@@ -30,9 +30,9 @@ Record = dict[str, Any]
 def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: str) -> Record:
     """Write run.json for a run that begins; for one that goes on, check it and add the resumption; return the record.
 
-    `folder`: the run's folder; made where absent. `recipe`: the whole configuration, of values that JSON knows. `seed`:
-    of the initial weights and of the order of the data. `data`: see `data_record`. `start`: the weights that the run
-    starts from. Raise SystemExit if the folder holds a run of another recipe, seed or start, or on other data.
+    `recipe` is the whole configuration, in values that JSON knows; `seed` decides the initial weights and the order of
+    the data; `data` comes from `data_record`, and `start` names the weights that the run starts from. Raise SystemExit
+    if the folder holds a run of another recipe, seed or start, or on other data.
     """
     wanted = json.loads(json.dumps({"seed": seed, "start": start, "recipe": recipe, "data": data}))
     path = folder / RUN_FILE

@@ -55,10 +55,9 @@ def geometric_median(
 ) -> Float64Array:
     """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
 
-    Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), his iteration from the mean.
-
-    `compared`: the columns in which rows are compared. `least_distance`: what nearer rows count as, in L2: no single
-    row is the median alone because it is near. `steps`: of the iteration.
+    Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), `steps` of his iteration
+    from the mean. Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not
+    become the median only because it is near.
     """
     median: Float64Array = rows.mean(axis=0)
     for _ in range(steps):
@@ -69,7 +68,7 @@ def geometric_median(
 
 
 class DrawsResponses(Protocol):
-    """What draws responses."""
+    """A source of random responses."""
 
     def draw(self, rng: np.random.Generator) -> Float64Array:
         """Return one response, shape (1024,), from 0 to 1."""

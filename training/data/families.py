@@ -31,10 +31,8 @@ def with_headroom(curve: ResponseCurve, stops: float) -> ResponseCurve:
     """Return a response with more headroom: white lies so many stops higher above all that is darker.
 
     Up to brightness `SHOULDER` the irradiance is divided by one factor, which is an exposure and leaves the shape error
-    as it is; above, its logarithm is stretched so that it still ends at 1.
-
-    `curve`: the response. `stops`: headroom to add; above the logarithm, base 2, of the curve's irradiance at the
-    shoulder, which is negative.
+    as it is; above, its logarithm is stretched so that it still ends at 1. `stops` may be negative, but must lie above
+    log2 of the irradiance at the shoulder.
     """
     brightness = np.linspace(0, 1, SAMPLES)
     logarithm = np.log2(curve.inverse(brightness[1:]))  # (1023,)

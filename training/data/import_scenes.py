@@ -25,7 +25,7 @@ from crfnet_core.photograph.image_io import first_line
 from training.data.linear_files import LEAST_SIDE, linear_scene
 from training.data.scenes import IMPORTED
 
-#: What the manifest calls each kind.
+#: Kind -> its name in the manifest.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
 
 
@@ -56,12 +56,9 @@ def import_scene(
 ) -> ManifestRow:
     """Write the scene in `path` to `folder` as OpenEXR, add it to the folder's manifest.csv and return its row.
 
-    `path`: a camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file. `folder`: the folder of the
-    scenes; it and its manifest.csv are created if absent. `kind`: a panorama is equirectangular and twice as wide as
-    high; the middle `BAND` of its rows is kept. `scale`: each scale x scale samples become one, their mean in linear
-    light; None takes the `automatic_scale`. `licence`: licence of the photograph, for the manifest. `overwrite`:
-    whether to replace a scene of this name. Raise CRFNetError if the file is absent, damaged, not scene-linear, too
-    small or black, or if its name is taken; nothing is written then.
+    `linear_scene` explains the kinds of files, panoramas and `scale`. The folder and its manifest.csv are made if
+    absent; `overwrite` replaces a scene of the same name. Raise CRFNetError, and write nothing, if the file is absent,
+    damaged, not scene-linear, too small or black, or if its name is taken.
     """
     path, folder = Path(path), Path(folder)
     target = folder / f"{path.stem}.exr"
@@ -105,9 +102,9 @@ def read_manifest(folder: Path) -> list[dict[str, str]]:
     with path.open(newline="", encoding="utf-8") as file:
         reader = csv.DictReader(file)
         rows = list(reader)
-    found = tuple(reader.fieldnames or ())
-    if found != COLUMNS or any(None in row for row in rows):
-        raise PhotoError(f"{path}: needs the columns {', '.join(COLUMNS)}, and no more; found {', '.join(found)}")
+    columns = tuple(reader.fieldnames or ())
+    if columns != COLUMNS or any(None in row for row in rows):
+        raise PhotoError(f"{path}: needs the columns {', '.join(COLUMNS)}, and no more; found {', '.join(columns)}")
     return rows
 
 

@@ -55,7 +55,7 @@ class InCameraResponses:
     spreads: dict[str, float]
 
     @classmethod
-    def of(cls, bodies: Sequence[Body]) -> InCameraResponses:
+    def from_bodies(cls, bodies: Sequence[Body]) -> InCameraResponses:
         """Return the distribution of measured bodies: each counts once, however many stacks it has."""
         stacks = {body.key: np.stack([log_irradiance(curve) for curve in body.responses]) for body in bodies}
         rows = {key: stack.mean(axis=0) for key, stack in stacks.items()}
@@ -110,9 +110,9 @@ def _shrunk_center(rows: Sequence[Float64Array], center: Float64Array) -> Float6
 def _spread(bodies: Sequence[Body], squares: dict[str, float], kind: str) -> float:
     """Return the RMS deviation of the bodies of a kind relative to all bodies, shrunk towards it."""
     average = float(np.mean(list(squares.values())))
-    own = [squares[body.key] for body in bodies if body.kind == kind]
-    count = len(own) + PSEUDO_BODIES_OF_SPREAD
-    return float(np.sqrt((sum(own) + PSEUDO_BODIES_OF_SPREAD * average) / count / average))
+    of_kind = [squares[body.key] for body in bodies if body.kind == kind]
+    count = len(of_kind) + PSEUDO_BODIES_OF_SPREAD
+    return float(np.sqrt((sum(of_kind) + PSEUDO_BODIES_OF_SPREAD * average) / count / average))
 
 
 def _components(deviations: Float64Array, *, bodies: int) -> Float64Array:

@@ -46,10 +46,10 @@ def linear_scene(
     In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. Other files are multiplied by
     the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`.
 
-    `path`: a camera raw file, known by its suffix, or an OpenEXR or Radiance HDR file. `is_panorama`: whether it is
-    equirectangular, twice as wide as high; the middle `BAND` of its rows is kept. `scale`: each scale x scale samples
-    become one, their mean; None takes the `automatic_scale`. Raise PhotoError if the file is absent, damaged, not
-    scene-linear, too small or black, or no panorama although it is called one.
+    The file is camera raw, known by its suffix, OpenEXR or Radiance HDR. Of a panorama, which is equirectangular and
+    twice as wide as high, the middle `BAND` of the rows is kept. Each scale x scale samples become one, their mean, by
+    default with the `automatic_scale`. Raise PhotoError if the file is absent, damaged, not scene-linear, too small or
+    black, or has other sides than a panorama.
     """
     is_raw = path.suffix.lower() in RAW_SUFFIXES
     samples = read_raw(path) if is_raw else read_hdr(path)
@@ -143,7 +143,7 @@ def _check_header(path: Path, header: Any) -> None:
     check_size(path, header.width, header.height)
     names, space = set(header.channelnames), header.get_string_attribute("colorInteropID")
     if header.deep or header.depth != 1 or str(header.format) not in ("half", "float"):
-        raise PhotoError(f"{path}: holds no flat picture of half or float samples; convert it")
+        raise PhotoError(f"{path}: is deep, a volume, or not of half or float samples; convert it")
     if not (names >= set("RGB") or len(names - {"A"}) == 1):
         raise PhotoError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
     if space and space != "unknown" and not space.startswith("lin_"):
@@ -154,7 +154,7 @@ def _check_scale(path: Path, shape: tuple[int, ...], scale: int) -> None:
     """Refuse a scale below 1, and one that leaves no room for a window."""
     side = min(shape[:2])
     if scale < 1:
-        raise PhotoError(f"{path}: a scale of {scale} is none; give 1 or more")
+        raise PhotoError(f"{path}: the scale must be 1 or more, not {scale}")
     if side // scale < WINDOW_SIZE:
         raise PhotoError(f"{path}: {side} rows or columns at scale {scale} are too few; windows need {WINDOW_SIZE}")
 

@@ -36,13 +36,12 @@ COUNTS = {
 def make_bank(
     data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False, seed: int = 2017
 ) -> ResponseBank:
-    """Return the bank.
+    """Return the bank of the folder `data`, which holds dorf, real and real_bodies.
 
-    `data`: folder with dorf, real and real_bodies. `without`: the fold whose bodies are left out: see
-    `measured_bodies`. `without_held_out`: whether to leave out the curves of DoRF that P2 holds out. `seed`: of the
-    draws.
+    `without` leaves out the bodies of a photograph's fold, as `measured_bodies` does, and `without_held_out` the curves
+    of DoRF that P2 holds out.
     """
-    in_camera = InCameraResponses.of(measured_bodies(data, without=without))
+    in_camera = InCameraResponses.from_bodies(measured_bodies(data, without=without))
     dorf = read_dorf(data / DORF_FILE)
     if without_held_out:
         dorf = np.delete(dorf, held_out_curves(dorf), axis=0)

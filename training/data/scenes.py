@@ -20,9 +20,8 @@ SPLIT_SEED = 2017
 #: Number of scenes that are only measured on, and of those that recipes are chosen and uncertainties fitted on.
 TEST_SCENES, VALIDATION_SCENES = 20, 12
 
-#: The source of a scene that `training.data.import_scenes` added begins so in the manifest.csv of its folder, and with
-#: the second word where an earlier version added it.
-IMPORTED, IMPORTED_EARLIER = "imported:", "brought:"
+#: The source of a scene that `training.data.import_scenes` added begins so in the manifest.csv of its folder.
+IMPORTED = "imported:"
 
 #: The first and the last row of a panorama that are used, as fractions of its height: near its poles it is stretched.
 BAND = (0.1, 0.9)
@@ -55,13 +54,12 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
     """Return split name -> (file, is panorama) of every scene in the folder's manifest.csv.
 
     A quarter of the perspective photographs is in the test split and none in the validation split; panoramas fill up
-    these two. Scenes that `training.data.import_scenes` added are in the training split only, so they move no other.
-
-    `folder`: holds the scenes and their manifest.csv. `with_imported`: whether to list the scenes that were imported.
+    these two. Scenes that `training.data.import_scenes` added, listed if `with_imported`, are in the training split
+    only, so that they move no other.
     """
     with (folder / "manifest.csv").open(newline="") as file:
         rows = list(csv.DictReader(file))
-    is_imported = [row.get("source", "").startswith((IMPORTED, IMPORTED_EARLIER)) for row in rows]
+    is_imported = [row.get("source", "").startswith(IMPORTED) for row in rows]
     listed = [(row["file"], row["kind"] == "panorama band") for row in rows]
     scenes = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if not imported)
     more = sorted(scene for scene, imported in zip(listed, is_imported, strict=True) if imported and with_imported)

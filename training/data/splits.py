@@ -32,9 +32,7 @@ def curve_groups(dorf: Float64Array) -> IndexArray:
     """Return the group of each curve, int (N,), numbered from 0 in order of first appearance.
 
     Complete-linkage clustering on the L2 distance: no two curves of a group are farther apart than `GROUP_DIAMETER`.
-    The 201 curves of DoRF fall into 48 groups.
-
-    `dorf`, (N, 1024): responses at uniform irradiances.
+    The 201 curves of DoRF, (201, 1024) at uniform irradiances, fall into 48 groups.
     """
     labels = fcluster(linkage(dorf, method="complete"), GROUP_DIAMETER, criterion="distance")
     _, first, groups = np.unique(labels, return_index=True, return_inverse=True)
@@ -45,8 +43,6 @@ def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray
     """Return the sorted indices of the curves that P2 holds out: whole groups, a fifth of the curves.
 
     The groups come in random order, and each is held out if it still fits into `HELD_OUT_FRACTION` of the curves.
-
-    `dorf`, (N, 1024): responses at uniform irradiances. `seed`: seed of the order of the groups.
     """
     groups = curve_groups(dorf)
     sizes, room = np.bincount(groups), round(HELD_OUT_FRACTION * len(dorf))

@@ -59,7 +59,7 @@ def assert_parity(folder: Path, golden: Path) -> float:
 
 def _difference(evidences: Sequence[Evidence], expected: Sequence[Float32Array]) -> float:
     """Return the largest difference of evidence from arrays (N, ...); of factors relative to the largest of them."""
-    found = zip(*((each.location, each.factor, each.log_odds) for each in evidences), strict=True)
+    columns = zip(*((each.location, each.factor, each.log_odds) for each in evidences), strict=True)
     scales = (1.0, max(1.0, float(np.abs(expected[1]).max())), 1.0)
-    rows = zip(found, expected, scales, strict=True)
+    rows = zip(columns, expected, scales, strict=True)
     return max(float(np.abs(np.stack(part) - wanted).max() / scale) for part, wanted, scale in rows)

@@ -33,12 +33,9 @@ def load_network(run: Path) -> ShippedNetwork:
 
 
 def write_config(folder: Path, signature: Signature, record: Record) -> None:
-    """Write model.json for the model.onnx in `folder`, whose name is the model's.
+    """Write model.json for the model.onnx in `folder`, whose name is the model's, from the record of the run.
 
-    The figures come later, from `training.export.model_card`.
-
-    `folder`: the model folder. `signature`: what the network reads and answers. `record`: the record of the run: see
-    `training.provenance`.
+    `training.export.model_card` adds the figures later.
     """
     is_without_held_out = record["recipe"].get("training", {}).get("without_held_out", False)
     config = ModelConfig(
@@ -62,9 +59,9 @@ def write_config(folder: Path, signature: Signature, record: Record) -> None:
 
 
 def write_model(network: nn.Module, signature: Signature, options: argparse.Namespace) -> None:
-    """Write the model folder of a `rounded` network: graph, run.json, golden predictions, checked parity, model.json.
+    """Write the model folder of a `rounded` network that is ready to infer, with the options of `export_options`.
 
-    `network`: ready to infer. `signature`: what it reads and answers. `options`: of `export_options`.
+    It writes the graph, run.json and golden predictions, compares onnxruntime with PyTorch, and then writes model.json.
     """
     record = read_run(options.run)
     options.out.mkdir(parents=True, exist_ok=True)

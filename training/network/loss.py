@@ -32,22 +32,22 @@ class EvidenceLoss:
     ) -> Tensor:
         """Return the loss of the outputs of `training.network.model.PhotographNet`.
 
-        `evidence`: of the windows, (B, K, ...), and of the photographs, (B, ...). `present`, bool (B, K): which windows
-        count. `weights`, `families`, (B, 11) and (B,): the truth.
+        `evidence` is that of the windows, (B, K, ...), and that of the photographs, (B, ...); windows count where
+        `present`, bool (B, K), is true. The truth is in `weights`, (B, 11), and `families`, (B,).
         """
         windows, photographs = evidence
         repeated = torch.arange(len(weights)).repeat_interleave(present.sum(1))
-        of_windows = self.of(
+        of_windows = self.of_each(
             (windows[0][present], windows[1][present], windows[2][present]), weights[repeated], families[repeated]
         )
-        return self.of(photographs, weights, families).mean() + WINDOW_WEIGHT * of_windows.mean()
+        return self.of_each(photographs, weights, families).mean() + WINDOW_WEIGHT * of_windows.mean()
 
-    def of(self, evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
+    def of_each(self, evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
         """Return the loss of evidence of N windows or photographs, shape (N,)."""
         scores = self.scores(evidence)  # (N, M)
-        own = log_likelihoods(evidence, weights[:, None], families[:, None]).squeeze(1)
-        normalization = torch.logsumexp(torch.cat([scores, own[:, None]], dim=1), dim=1)
-        negative_log = normalization - own - torch.log(torch.tensor(float(scores.shape[1])))
+        of_truth = log_likelihoods(evidence, weights[:, None], families[:, None]).squeeze(1)
+        normalization = torch.logsumexp(torch.cat([scores, of_truth[:, None]], dim=1), dim=1)
+        negative_log = normalization - of_truth - torch.log(torch.tensor(float(scores.shape[1])))
         return negative_log + ERROR_WEIGHT * self._errors(scores, weights) * (families == ORDINARY)
 
     def errors(self, evidence: EvidenceTensors, weights: Tensor) -> Tensor:
@@ -69,10 +69,10 @@ ORDINARY = 0
 
 
 def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor) -> Tensor:
-    """Return log likelihoods (N, M) of responses under evidence of N: what `Evidence.log_likelihoods` computes.
+    """Return the log likelihoods, (N, M), of M responses under the evidence of N windows or photographs.
 
-    `evidence`: of N windows or photographs. `weights`, (1 or N, M, 11): EMoR weights. `families`, (1 or N, M): their
-    families: see `EvidenceLoss`.
+    The responses have EMoR weights (1 or N, M, 11) and families (1 or N, M), as in `EvidenceLoss`. In numpy,
+    `Evidence.log_likelihoods` computes the same.
     """
     location, factor, log_odds = evidence
     squares = _squares(weights[..., :EVIDENCE_WEIGHTS], location, factor)

@@ -85,7 +85,7 @@ class Embedding(nn.Module):
     def forward(self, statistics: Tensor) -> Tensor:
         """Return vectors, shape (N, width), of statistics (N, LENGTH).
 
-        The three channels share a layer, and their vectors are pooled by mean and maximum: their order is no matter.
+        The three channels share a layer, and their vectors are pooled by mean and maximum: their order does not matter.
         """
         with torch.no_grad(), torch.autocast("cpu", enabled=False):
             levels, edges, equations, candidates = self.features(statistics)
@@ -135,8 +135,8 @@ class PhotographNet(nn.Module):
     def forward(self, statistics: Tensor, present: Tensor) -> tuple[EvidenceTensors, EvidenceTensors]:
         """Return the evidence of windows, (B, K, ...), and of photographs, (B, ...).
 
-        `statistics`, (B, K, LENGTH): of K windows of each of B photographs. `present`, bool (B, K): which windows
-        count; at least one of each photograph.
+        `statistics`, (B, K, LENGTH), are of K windows of each of B photographs; windows count where `present`, bool
+        (B, K), is true, at least one in each photograph.
         """
         together = (statistics * present[..., None]).sum(1, keepdim=True)
         rows = torch.cat([statistics, together], dim=1)  # (B, K + 1, LENGTH)

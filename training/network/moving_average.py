@@ -9,8 +9,8 @@ from torch.optim.swa_utils import AveragedModel, get_ema_multi_avg_fn
 def moving_average(network: nn.Module, steps: float) -> AveragedModel:
     """Return the exponential average of a network's weights and of the statistics of its normalizations.
 
-    `network`: the network; give it to `AveragedModel.update_parameters` after each step. `steps`: how far the average
-    reaches back; 1 for no average.
+    `AveragedModel.update_parameters` takes the network after each step. The average reaches back over `steps`; with 1
+    it is the network itself.
     """
     return AveragedModel(network, multi_avg_fn=get_ema_multi_avg_fn(1 - 1 / steps), use_buffers=True)
 

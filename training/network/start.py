@@ -20,11 +20,10 @@ HALF_SUFFIX = "_half"
 
 
 def start_from(net: PhotographNet, source: Path) -> None:
-    """Copy weights into the network, in place.
+    """Copy the weights of a checkpoint or of a model folder into the network, in place.
 
-    `net`: is changed. What a checkpoint lacks stays as it is. `source`: a checkpoint, or a model folder written by
-    `training.export.model_folder`. Matrices of a model folder were rounded to half precision. Raise SystemExit if a
-    model folder holds another network.
+    Weights that a checkpoint lacks stay as they are. The matrices of a model folder were rounded to half precision.
+    Raise SystemExit if a model folder holds another network.
     """
     file = _weights_file(source)
     state = torch.load(file, weights_only=True)["net"] if file == source else _packaged_state(net, file)
@@ -54,16 +53,18 @@ def _weights_file(source: Path) -> Path:
 
 
 def _packaged_state(net: PhotographNet, graph: Path) -> dict[str, Tensor]:
-    """Return the parameters in a graph. Those that the export transposed have lost their names: shapes tell them."""
+    """Return the parameters in a graph; the export transposed some, and their shapes stand for the lost names."""
     tensors = graph_tensors(graph)
     state = {}
     for name, parameter in net.named_parameters():
         shape = tuple(parameter.shape)
-        found = [tensor for key, tensor in tensors.items() if key == GRAPH_PREFIX + name and tensor.shape == shape]
-        found = found or [tensor.T for tensor in tensors.values() if tensor.ndim == 2 and tensor.shape == shape[::-1]]
-        if len(found) != 1:
-            raise SystemExit(f"{graph}: is not a network of this kind and size: it holds {len(found)} of {name}")
-        state[name] = found[0]
+        candidates = [tensor for key, tensor in tensors.items() if key == GRAPH_PREFIX + name and tensor.shape == shape]
+        candidates = candidates or [
+            tensor.T for tensor in tensors.values() if tensor.ndim == 2 and tensor.shape == shape[::-1]
+        ]
+        if len(candidates) != 1:
+            raise SystemExit(f"{graph}: is not a network of this kind and size: it holds {len(candidates)} of {name}")
+        state[name] = candidates[0]
     for name, buffer in net.named_buffers():
         if GRAPH_PREFIX + name in tensors and buffer.is_floating_point():
             state[name] = tensors[GRAPH_PREFIX + name]

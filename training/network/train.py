@@ -99,11 +99,10 @@ class TrainingState:
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
-    `shards`: folder written by `training.network.shards`. `run`: folder of run.json, log.csv and last.pt. The log has
+    The folder `shards` comes from `training.network.shards`. The folder `run` gets run.json, last.pt, and log.csv with
     the epoch, the training loss, and of the validation photographs the loss and the distance between the posterior's
-    mean and the truth, in units of E_est. `config`, `network`: the recipe and the sizes of the network. `init`: a
-    checkpoint or a model folder whose weights the run starts from, as far as it has them. Raise SystemExit if `run`
-    holds a run of another recipe or on other shards.
+    mean and the truth, in units of E_est. The run starts from the weights of `init`, a checkpoint or a model folder, as
+    far as it has them. Raise SystemExit if `run` holds a run of another recipe or on other shards.
     """
     photographs, held_out = _split(shards, config)
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
@@ -133,7 +132,7 @@ def validation_errors(net: PhotographNet, loss: EvidenceLoss, shards: Shards) ->
             statistics, weights = shards.batch(rows)
             families = shards.families[rows]
             _, evidence = net(statistics, torch.ones(statistics.shape[:2], dtype=torch.bool))
-            losses.append(loss.of(evidence, weights, families))
+            losses.append(loss.of_each(evidence, weights, families))
             errors.append(loss.errors(evidence, weights)[families == 0])
     return float(torch.cat(losses).mean()), float(torch.cat(errors).mean())
 

@@ -75,9 +75,8 @@ class Capture:
 def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
     """Return s_crf: the exposure at which scenes of this luminance have the mean brightness `TARGET_BRIGHTNESS`.
 
-    `curve`, (1024,): the response. `luminance`, (N,): luminances of the training scenes, each scene scaled to a
-    geometric mean of 1. They are the same for every photograph, so s_crf belongs to the response and not to the
-    photograph.
+    `luminance`, (N,), holds samples of the training scenes, each scene scaled to a geometric mean of 1. It is the same
+    for every photograph, so s_crf belongs to the response, (1024,), and not to the photograph.
     """
     low, high = -12.0, 6.0
     for _ in range(24):
@@ -103,9 +102,9 @@ def sensor_light(
 ) -> Float32Array:
     """Return the linear light that reaches the sensor, before exposure, float32 (H, W, 3).
 
-    `scene`: the light; not changed. A panorama is dithered first (see `training.data.scenes.dithered`). `rng`: draws
-    the dither. `gains`: white balance: factors on red, green and blue, scaled so that a neutral keeps its luminance.
-    `is_gray`: whether all channels hold the luminance. `blur`: variance, in squared pixels of the scene, of a Gaussian.
+    A panorama is dithered first (`training.data.scenes.dithered`). `gains` is the white balance, factors on red, green
+    and blue, scaled so that a neutral keeps its luminance. If `is_gray`, all channels hold the luminance. `blur` is the
+    variance of a Gaussian, in squared pixels of the scene.
     """
     light = dithered(scene.pixels, rng) if scene.is_panorama else scene.pixels
     light = light * balanced_gains(gains)
@@ -128,10 +127,9 @@ def render_photo(
 ) -> Photo:
     """Return the photograph of the light of `sensor_light`, as the estimator reads it from a file.
 
-    `light`, float32 (H, W, 3): linear light; not changed. `curve`, (1024,): the response of the camera. `exposure`:
-    irradiance per unit of light; irradiance above 1 clips. `rng`: draws the noise. `name`: the photograph's name.
-    `capture`: the other steps; by default only 8-bit rounding follows the response. `is_gray`: whether all channels of
-    the photograph are equal.
+    `curve`, (1024,), is the response of the camera, and `exposure` the irradiance per unit of light; irradiance above 1
+    clips. By default no other step of `capture` follows the response than 8-bit rounding. `is_gray` states that all
+    channels of the light are equal.
     """
     capture = capture or Capture()
     rows = ROWS_AT_A_TIME if capture.splits_into_rows else len(light)

@@ -40,10 +40,8 @@ def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contra
     """Return brightness f(E) of a simulated camera, by default the plate's: roll-off, sRGB encoding, S-curve.
 
     With s = `roll_off`, k = `contrast`: u = s E / (1 + (s - 1) E); v the sRGB encoding (IEC 61966-2-1) of u;
-    f = (1 - k) v + k v^2 (3 - 2 v). It is not a measured curve, but of the kind that cameras have.
-
-    `irradiance`, float64: relative irradiance E in [0, 1], any shape. `roll_off`, `contrast`: of highlights (1 is
-    none), and weight of the S-curve (0 is none, 1 is smoothstep).
+    f = (1 - k) v + k v^2 (3 - 2 v). Nobody measured this curve, but cameras have such curves. E is in [0, 1], of any
+    shape; s = 1 leaves the roll-off out and k = 0 the S-curve; with k = 1 it is smoothstep.
     """
     rolled = roll_off * irradiance / (1 + (roll_off - 1) * irradiance)
     encoded = srgb_encode(rolled)

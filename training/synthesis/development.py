@@ -106,11 +106,9 @@ def develop(
 ) -> Uint8Array:
     """Return the windows of a photograph, uint8 (windows, 227, 227, 3).
 
-    `irradiance`, float32 (N, S, S, 3): exposed light of frames, of S >= 227 samples along each side; not changed.
-    Irradiance above 1 clips. Where all channels are equal the photograph is gray too: its noise has no color. `curve`,
-    (1024,): the response. `development`: the steps. `rng`: draws the noise, and the places of scattered samples.
-    `windows`: windows, a multiple of N, which is the default: of frames that are point-sampled, several may come
-    from each.
+    `irradiance`, float32 (N, S, S, 3), is the exposed light of frames of S >= 227 samples along each side; above 1 it
+    clips. Where all channels are equal the photograph is gray, too: its noise has no color. `curve`, (1024,), is the
+    response. `windows` is a multiple of N, and N by default: a frame that is point-sampled may give several.
     """
     planes = [np.ascontiguousarray(irradiance[..., channel]) for channel in range(3)]
     if development.lens_blur:

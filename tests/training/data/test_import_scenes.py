@@ -77,7 +77,7 @@ def bad_files(folder):
         "empty.nef": "LibRaw cannot develop it",
         "blank.hdr": "is not scene-linear",
         "renamed.cr2": "LibRaw cannot develop it (Unsupported file format or not RAW file)",
-        "codes.exr": "holds no flat picture of half or float samples",
+        "codes.exr": "is deep, a volume, or not of half or float samples",
         "depth.exr": "needs channels R, G and B, or a gray one; found X, Z",
         "small.hdr": "226 rows or columns at scale 1 are too few; windows need 227",
         "black.exr": "is black",
@@ -102,7 +102,7 @@ def test_bad_files_are_one_line_each_and_stop_no_others(tmp_path, out, capsys):
 @pytest.mark.parametrize("scale", [0, -1, 2])
 def test_a_scale_must_leave_room_for_a_window(tmp_path, scale):
     path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
-    with pytest.raises(PhotoError, match=r"is none; give 1 or more|256 rows or columns at scale 2 are too few"):
+    with pytest.raises(PhotoError, match=r"must be 1 or more|256 rows or columns at scale 2 are too few"):
         linear_scene(path, scale=scale)
 
 

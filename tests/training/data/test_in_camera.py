@@ -31,7 +31,7 @@ def middle(curves):
 
 
 def test_kinds_have_their_own_centers_and_spread(bodies):
-    found = InCameraResponses.of(bodies)
+    found = InCameraResponses.from_bodies(bodies)
     assert set(found.centers) == set(KINDS)
     drawn = {kind: middle(found.draw(kind, 300, np.random.default_rng(1))) for kind in KINDS}
     centers = [np.median(drawn[kind]) for kind in ("phone", "compact", "camera")]
@@ -41,7 +41,7 @@ def test_kinds_have_their_own_centers_and_spread(bodies):
 
 
 def test_draws_rise_from_0_to_1_and_depend_on_the_seed_alone(bodies):
-    found = InCameraResponses.of(bodies)
+    found = InCameraResponses.from_bodies(bodies)
     drawn = found.draw("camera", 50, np.random.default_rng(2))
     assert (np.diff(drawn, axis=1) >= 0).all()
     np.testing.assert_allclose(drawn[:, [0, -1]], [[0, 1]] * 50, atol=1e-9)
@@ -52,11 +52,13 @@ def test_a_body_counts_once_however_many_stacks_it_has(bodies):
     many = [*bodies, body("x", "camera", *[0.6] * 20)]
     one = [*bodies, body("x", "camera", 0.6)]
     for kind in KINDS:
-        np.testing.assert_allclose(InCameraResponses.of(many).centers[kind], InCameraResponses.of(one).centers[kind])
+        np.testing.assert_allclose(
+            InCameraResponses.from_bodies(many).centers[kind], InCameraResponses.from_bodies(one).centers[kind]
+        )
 
 
 def test_one_odd_body_hardly_moves_the_center_of_its_kind(bodies):
-    before = InCameraResponses.of(bodies).centers["camera"]
-    after = InCameraResponses.of([*bodies, body("odd", "camera", 0.9)]).centers["camera"]
+    before = InCameraResponses.from_bodies(bodies).centers["camera"]
+    after = InCameraResponses.from_bodies([*bodies, body("odd", "camera", 0.9)]).centers["camera"]
     odd = log_irradiance(ResponseCurve.from_samples(UNIFORM**0.9))
     assert abs(after[512] - before[512]) < 0.1 * abs(odd[512] - before[512])

@@ -57,7 +57,7 @@ def test_the_loss_of_photographs_is_that_computed_by_hand(bank, competitors):
     rng = np.random.default_rng(1)
     weights, families = rng.normal(0, 1, (5, 11)), np.array([0, 0, 1, 2, 3])
     loss = EvidenceLoss(*competitors)
-    found = loss.of(tensors, torch.from_numpy(weights), torch.from_numpy(families))
+    found = loss.of_each(tensors, torch.from_numpy(weights), torch.from_numpy(families))
     expected = [by_hand(*row) for row in zip(evidences, [bank] * 5, weights, families, strict=True)]
     np.testing.assert_allclose(found, expected, rtol=1e-6)
 
@@ -71,9 +71,9 @@ def test_windows_that_are_not_present_are_no_part_of_the_loss(competitors):
     loss = EvidenceLoss(*competitors)
     found = loss((windows, of_photographs), present, weights, families)
     kept = tuple(part[[0, 2, 5]] for part in of_windows)
-    single = loss.of(kept, weights[[0, 0, 1]], families[[0, 0, 1]])
+    single = loss.of_each(kept, weights[[0, 0, 1]], families[[0, 0, 1]])
     assert float(found) == pytest.approx(
-        float(loss.of(of_photographs, weights, families).mean() + WINDOW_WEIGHT * single.mean())
+        float(loss.of_each(of_photographs, weights, families).mean() + WINDOW_WEIGHT * single.mean())
     )
 
 
@@ -82,7 +82,7 @@ def test_evidence_that_says_nothing_costs_nothing_but_the_error_of_the_mean(comp
     nothing = (torch.zeros(1, 5), torch.zeros(1, 5, 5), torch.zeros(1, 3))
     weights, families = (part.float() if part.is_floating_point() else part for part in competitors)
     loss = EvidenceLoss(weights, families)
-    found = loss.of(nothing, weights[:1], torch.tensor([1]))
+    found = loss.of_each(nothing, weights[:1], torch.tensor([1]))
     assert float(found) == pytest.approx(np.log(11 / 10), abs=1e-5)
 
 

@@ -27,7 +27,7 @@ class Body:
 def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
     """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
 
-    `without`: its fold is left out, and every body of the models in this fold, also where the other folder has it.
+    The fold of the photograph `without` is left out, and every body of the models in this fold, in both folders.
     """
     photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
     left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}
@@ -51,6 +51,6 @@ def _shares_fold(photograph: RealPhotograph, other: RealPhotograph) -> bool:
 
 def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:
     """Return the body of this key."""
-    own = [photograph for photograph in photographs if photograph.body_key == key]
-    measured = {photograph.measured: photograph for photograph in own}
-    return Body(key, own[0].kind, tuple(photograph.truth() for photograph in measured.values()))
+    of_body = [photograph for photograph in photographs if photograph.body_key == key]
+    measured = {photograph.measured: photograph for photograph in of_body}
+    return Body(key, of_body[0].kind, tuple(photograph.truth() for photograph in measured.values()))

@@ -9,13 +9,12 @@ from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
 
 def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
-    """Return what is known of the original file: camera, software, ISO and size, and its tables by the crop.
+    """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
 
-    The size in EXIF, the profile and the XMP history are lost. Where the photograph is the original byte for byte
-    (`is_original`), `read_photo` finds all of it: prefer that.
-
-    `row`: a row of DATA/real_bodies/cases.csv. `crop`: the JPEG file in its column `crop`, cut without recompression:
-    it has the original's quantization tables and subsampling, but its JFIF segment is of the program that cut it.
+    The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
+    quantization tables and subsampling; the crop's JFIF segment comes from the program that cut it. The size in EXIF,
+    the profile and the XMP history are lost: where the photograph is the original byte for byte (`is_original`),
+    `read_photo` finds them.
     """
     jpeg = read_jpeg_header(crop)
     width, height = (int(side) for side in row["original_size"].split("x"))

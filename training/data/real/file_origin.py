@@ -21,13 +21,10 @@ DEVELOPED = "edited/developed by software"
 
 
 def editing(software: str, *, make: str = "", model: str = "", use: str = "") -> Editing:
-    """Return whether a file was edited, from its EXIF and from what the list says of it.
+    """Return whether a file was edited, from `software`, `make` and `model` in its EXIF and `use` in DATA/real_bodies.
 
-    A name in the list decides. Without one the file was not edited as far as anyone knows, if it still has the make or
-    the model of the camera. A file without them has lost its EXIF to some program, so nothing is known.
-
-    `software`: name of the program that saved the file, or another text that holds it. `make`, `model`: of the camera,
-    from EXIF. `use`: what DATA/real_bodies says of the use of a photograph.
+    The name of a program in `software` or `use` decides. Without one, a file that still names the make or the model of
+    the camera counts as not edited. A file without them has lost its EXIF to some program, so nothing is known.
     """
     if DEVELOPED in use or is_editor(software):
         return Editing.EDITED

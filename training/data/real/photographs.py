@@ -82,7 +82,7 @@ class RealPhotograph:
 
     @property
     def is_developed(self) -> bool:
-        """Whether the file says that a program developed it from a raw file: its response is none of the camera's."""
+        """Whether the file names a program that developed it from a raw file: its response is the program's."""
         return file_origin(self.metadata or read_metadata(self.photograph)).is_developed
 
     def truth(self) -> ResponseCurve:

@@ -74,7 +74,9 @@ def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
         else:
             like.append(stack)
     return {
-        body: {body if len(settings) == 1 else f"{body} ({number})": own for number, own in enumerate(settings, 1)}
+        body: {
+            body if len(settings) == 1 else f"{body} ({number})": members for number, members in enumerate(settings, 1)
+        }
         for body, settings in bodies.items()
     }
 

@@ -121,11 +121,10 @@ RECIPES: dict[UnusualKind, Recipe] = {
 
 
 def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng: np.random.Generator) -> Uint8Array:
-    """Return windows of one picture of a kind, 8 bits, uint8 (N, 227, 227, 3); other sizes are as good.
+    """Return windows of one picture of a kind, 8 bits, uint8 (N, 227, 227, 3), from windows of linear light.
 
-    `kind`: the kind; its settings are drawn once for all windows. `light`, float32 (N, 227, 227, 3): windows of linear
-    light; not changed. `exposure`: irradiance per unit of light; irradiance 1 is white, and what is brighter is used
-    where the kind holds more. `rng`: draws the settings, noise and compression.
+    The settings of the kind are drawn once for all windows, which may have another size. `exposure` is the irradiance
+    per unit of light; irradiance 1 is white, and some kinds hold brighter light.
     """
     recipe, capture = RECIPES[kind], Capture.draw(rng)
     irradiance = light * np.float32(exposure)
@@ -142,8 +141,7 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
 def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, exposure: float | None = None) -> Photo:
     """Return a whole frame of a kind, as the estimator reads it from a file.
 
-    `scene`: the light; not changed. `rng`: draws everything that is random. `exposure`: irradiance per unit of light;
-    by default one that puts a percentile from `SATURATED` at 1.
+    `exposure` is the irradiance per unit of light; by default it is the `random_exposure`.
     """
     light = sensor_light(scene, rng)
     exposure = random_exposure(light, rng) if exposure is None else exposure
@@ -154,9 +152,9 @@ def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, 
 
 
 def random_exposure(light: Float32Array, rng: np.random.Generator) -> float:
-    """Return an exposure that puts a percentile from `SATURATED` of the brightest channel of light at irradiance 1.
+    """Return an exposure that puts a random percentile of the brightest channel of light at irradiance 1.
 
-    `light`, float32 (..., H, W, 3): linear light. `rng`: draws the percentile.
+    The light is linear, float32 (..., H, W, 3); the percentile is drawn from `SATURATED`.
     """
     return 1 / max(float(np.percentile(light[..., ::4, ::4, :].max(axis=-1), rng.uniform(*SATURATED))), 1e-6)
 
