@@ -1,7 +1,7 @@
-"""What a training run is made of: code, data, recipe, seed and versions, kept in `run.json` in its folder.
+"""The record of a training run: code, data, recipe, seed and versions, kept in `run.json` in its folder.
 
-Who makes the data of a run (`training.network.shards`, `training.crfnet2017.windows`) leaves `made_SPLIT.json` beside
-it. The record of the run holds these too, so it reaches back to the files of `training/data/manifest.csv`.
+The makers of data (`training.network.shards`, `training.crfnet2017.windows`) leave `made_SPLIT.json` in its folder. The
+record of the run holds these, too, so it reaches back to the files of `training/data/manifest.csv`.
 """
 
 from __future__ import annotations
@@ -113,7 +113,7 @@ def _settings(record: Record) -> Record:
 
 
 def _git(*arguments: str) -> str | None:
-    """Return what git says of the repository, or None without git or a repository."""
+    """Return the output of a git command in the repository, or None without git or a repository."""
     try:
         done = subprocess.run(["git", *arguments], cwd=ROOT, capture_output=True, text=True, check=True)
     except (OSError, subprocess.CalledProcessError):

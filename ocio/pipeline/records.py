@@ -26,7 +26,7 @@ from ..plates.primaries import PlatePrimaries
 
 @dataclass(frozen=True, kw_only=True)
 class PhotographRecord:
-    """What became of one photograph; docs/each.schema.json describes the entries."""
+    """The result of one photograph; docs/each.schema.json describes the entries."""
 
     photograph: str
     options: str = ""

@@ -24,7 +24,7 @@ Network = TypeVar("Network", bound=nn.Module)
 
 @dataclass(frozen=True)
 class Signature:
-    """What a network reads and answers; see `crfnet_core.network.ModelConfig`.
+    """Inputs and outputs of a network; see `crfnet_core.network.ModelConfig`.
 
     input_name: "statistics" or "windows"
     input_shape: shape of the input of one window

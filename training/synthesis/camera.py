@@ -31,7 +31,7 @@ ROWS_AT_A_TIME = 512
 
 @dataclass(frozen=True)
 class Capture:
-    """What happens between the exposed light and the file, beside the response; zeros and None leave a step out.
+    """The steps from exposed light to the file, apart from the response; zeros and None leave a step out.
 
     shot_noise: variance of the sensor's noise at irradiance 1, where the sensor clips; it is proportional to the
         irradiance

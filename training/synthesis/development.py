@@ -71,7 +71,7 @@ class Export:
 
 @dataclass(frozen=True)
 class Development:
-    """What happens between the exposed light of a frame and the windows of the file; the defaults leave steps out.
+    """The steps from the exposed light of a frame to the windows of the file; the defaults leave steps out.
 
     lens_blur: standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance
     glare: part of the frame's mean irradiance that the lens spreads over all of it

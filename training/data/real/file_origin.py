@@ -16,7 +16,7 @@ class Editing(StrEnum):
     UNKNOWN = "not known"
 
 
-#: What `use` of DATA/real_bodies says of a file that its publisher developed or edited.
+#: Words in `use` of DATA/real_bodies for a file that its publisher developed or edited.
 DEVELOPED = "edited/developed by software"
 
 

@@ -77,7 +77,7 @@ class RealPhotograph:
 
     @property
     def body_key(self) -> str:
-        """What distinguishes bodies: two folders may write a name in different case."""
+        """The name of the body in lower case, since two folders may write it differently."""
         return self.body.casefold()
 
     @property

@@ -1,7 +1,7 @@
 """Encodings that are no response of a camera: log, near-linear and limited range, and what messengers send.
 
-Here and in the modules beside it, a rendering takes irradiance, float32 (N, H, W, 3), 1 = white and not clipped, and
-returns the encoded pictures, float32 (N, H, W, 3) in [0, 1]; it draws its settings once for all N.
+In this package a rendering takes irradiance, float32 (N, H, W, 3), 1 = white and not clipped, and returns the encoded
+pictures, float32 (N, H, W, 3) in [0, 1]; it draws its settings once for all N.
 """
 
 from __future__ import annotations
