@@ -5,9 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut
+from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
@@ -15,6 +14,7 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
+from tests.helpers.refusals import refused
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
 
 FILES = {"eos20d.spi1d", "eos20d.cube", "eos20d.clf", "eos20d.json", "eos20d_sheet.png", "config.ocio"}
@@ -49,8 +49,6 @@ def test_says_in_words_what_was_measured(camera):
     out = camera[1]
     assert "6 frames of Canon EOS 20D, ISO 100, f/8, 1/60 s to 0.5 s (5.0 stops)." in out
     assert "The response is measured: the shape of the linear light to 0.0" in out
-    assert "white is reached." in out
-    assert "their exposures were read as exact powers of two" in out
     assert "The other response is off by " in out
     assert "Warning" not in out
 
@@ -118,18 +116,15 @@ def test_times_from_a_list(crfnet, frames, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("arguments", "code"),
     [
-        (("--times", "1,1,1,1,1,1"), "to nearly everything white; --times states them in place of EXIF"),
-        (("--name", "a/b"), "'a/b' cannot be the name of a file"),
-        (("--compare", "none.json"), "none.json: cannot be opened"),
+        (("--times", "1,1,1,1,1,1"), "exposures_span"),
+        (("--name", "a/b"), "not_a_file_name"),
+        (("--compare", "none.json"), "not_opened"),
     ],
 )
-def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, message):
-    done = crfnet("calibrate", *frames, "--out", tmp_path / "out", *arguments)
-    assert done.code == BAD_INPUT
-    assert message in done.err
-    assert len(done.err.splitlines()) == 1
+def test_bad_input_is_refused(crfnet, frames, tmp_path, arguments, code):
+    assert crfnet("calibrate", *frames, "--out", tmp_path / "out", *arguments).refusal == code
     assert not (tmp_path / "out").exists()
 
 
@@ -139,24 +134,16 @@ def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, m
 )
 def test_a_document_without_a_response_is_refused(tmp_path, text):
     (tmp_path / "other.json").write_text(text)
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "no_response_in_file"):
         response_to_compare(tmp_path / "other.json")
-    assert caught.value.code == "no_response_in_file"
 
 
 def test_what_is_there_stays_there(crfnet, frames, tmp_path):
     (tmp_path / "eos20d.cube").write_text("mine")
-    done = crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d")
-    assert done.code == BAD_INPUT
-    assert "eos20d.cube: exists already" in done.err
+    assert crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d").refusal == "file_exists"
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
 
 
 def test_a_response_from_a_lut_is_gamma(tmp_path):
-    """`response_to_compare` on a LUT of gamma 2.2."""
-    from crfnet.luts.files import write_lut
-    from crfnet.luts.lut1d import inverse_response_lut
-    from crfnet.pipeline import response_to_compare
-
     write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
     assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01

@@ -96,22 +96,16 @@ def test_bad_input_is_refused_in_one_line(crfnet, plate, fixed_model, tmp_path, 
     if command != "info" and "--model" not in given:
         given += ["--model", str(fixed_model)]
     done = crfnet(command, *given)
-    assert done.code == BAD_INPUT
+    assert done.refusal
     assert done.out == ""
-    assert done.err.startswith("crfnet: error: ")
-    assert done.err.count("\n") == 1
     assert tree(tmp_path) == before
     assert not (tmp_path / "out").exists()
 
 
-@pytest.mark.parametrize(
-    ("name", "words"),
-    [("none.jpg", "none.jpg: does not exist; check the name"), (".", "is a folder; give one photograph")],
-)
-def test_what_is_no_photograph_is_said_before_the_output_is_looked_at(crfnet, look, tmp_path, name, words):
+@pytest.mark.parametrize(("name", "code"), [("none.jpg", "no_such_file"), (".", "folder_for_photograph")])
+def test_what_is_no_photograph_is_said_before_the_output_is_looked_at(crfnet, look, tmp_path, name, code):
     """Else a user adds --overwrite to a line about files that exist, and has replaced nothing."""
-    done = crfnet("estimate", tmp_path / name, "--out", look)
-    assert (done.code, words in done.err, "--overwrite" in done.err) == (BAD_INPUT, True, False)
+    assert crfnet("estimate", tmp_path / name, "--out", look).refusal == code
 
 
 @pytest.mark.parametrize("folder", ["$HOME", "projects$", "a%b%"])
@@ -126,19 +120,14 @@ def test_a_folder_whose_name_opencolorio_takes_for_a_variable_is_refused(crfnet,
         ("estimate", plate, "--out", tmp_path / folder, "--each"),
         ("config", "add", "--base", base, "--out", tmp_path / folder, lut_file),
     ):
-        done = crfnet(*command)
-        words = f"{tmp_path / folder}: OpenColorIO takes $ and % in it for variables and finds no LUT; choose another"
-        assert (done.code, done.err) == (BAD_INPUT, f"crfnet: error: {words} folder\n")
+        assert crfnet(*command).refusal == "variables_in_path"
         assert list((tmp_path / folder).iterdir()) == []
     assert crfnet("linearize", plate, "--lut", lut_file, "--out", tmp_path / folder / "a.exr").code == 0
 
 
 @pytest.mark.parametrize("arguments", [(), ("nonsense",), ("completion", "dos")])
 def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
-    done = crfnet(*arguments)
-    assert done.code == BAD_INPUT
-    assert done.err.startswith("crfnet: error: ")
-    assert done.err.count("\n") == 1
+    assert crfnet(*arguments).refusal == "usage"
 
 
 @pytest.mark.parametrize(
@@ -146,16 +135,8 @@ def test_bad_commands_are_refused_in_one_line(crfnet, arguments):
     [
         (KeyboardInterrupt(), 130, "crfnet: interrupted"),
         (MemoryError(), BAD_INPUT, "crfnet: error: not enough memory"),
-        (
-            OSError(28, "No space left on device", "x.exr"),
-            BAD_INPUT,
-            "crfnet: error: x.exr: No space left on device; check",
-        ),
-        (
-            OSError(2, "No such file or directory"),
-            BAD_INPUT,
-            "crfnet: error: the output: No such file or directory; ch",
-        ),
+        (OSError(28, "No space left on device", "x.exr"), BAD_INPUT, "crfnet: error: x.exr: No space left on device;"),
+        (OSError(2, "No such file"), BAD_INPUT, "crfnet: error: the output: No such file;"),
     ],
 )
 def test_what_stops_it_in_the_middle_is_one_line(estimate, plate, monkeypatch, problem, code, line):
@@ -174,6 +155,4 @@ def test_the_name_of_the_linear_plate_is_checked_before_the_estimate(crfnet, pla
         raise AssertionError("estimated although nothing can be written")
 
     monkeypatch.setattr(estimates, "estimate_response", fail)
-    done = crfnet("linearize", plate, "--out", tmp_path / "plate.png", "--model", fixed_model)
-    assert done.code == BAD_INPUT
-    assert "linear plates are OpenEXR" in done.err
+    assert crfnet("linearize", plate, "--out", tmp_path / "plate.png", "--model", fixed_model).refusal == "not_exr"

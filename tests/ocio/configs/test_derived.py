@@ -15,6 +15,7 @@ from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import converted, loaded, rule_names
 from tests.helpers.folders import listed, tree
 from tests.helpers.looks import LUT, NAME, OTHER_LUT, STUDIO, add, all_names, space_of, write_look
+from tests.helpers.refusals import refused
 
 BUILT_IN = [entry[0] for entry in OCIO.BuiltinConfigRegistry().getBuiltinConfigs()]
 
@@ -129,9 +130,8 @@ class TestBase:
 
     def test_a_folder_that_opencolorio_takes_for_a_variable_is_refused(self, studio, small_look, tmp_path):
         moved = studio.parent.rename(tmp_path / "a$b") / studio.name
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "base_folder_is_variable"):
             add(moved, tmp_path / "new", small_look)
-        assert caught.value.code == "base_folder_is_variable"
 
 
 class TestAgain:
@@ -181,17 +181,15 @@ class TestFolder:
     def test_that_of_the_base_is_refused(self, studio, small_look, tmp_path):
         (tmp_path / "link").symlink_to(studio.parent)
         for folder in (studio.parent, tmp_path / "link"):
-            with pytest.raises(ConfigError) as caught:
+            with refused(ConfigError, "base_would_change"):
                 add(studio, folder, small_look, overwrite=True)
-            assert caught.value.code == "base_would_change"
 
     @pytest.mark.parametrize("name", ["config.ocio", "plate01.spi1d"])
     def test_files_are_replaced_only_when_asked(self, small_look, tmp_path, name):
         (tmp_path / "show").mkdir()
         (tmp_path / "show" / name).write_text("mine")
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "output_exists"):
             add(STUDIO, tmp_path / "show", small_look)
-        assert caught.value.code == "output_exists"
         assert listed(tmp_path / "show") == [name]
         add(STUDIO, tmp_path / "show", small_look, overwrite=True)
         assert (tmp_path / "show" / name).read_text() != "mine"
