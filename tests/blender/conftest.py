@@ -91,6 +91,17 @@ def in_editor():
 
 
 @pytest.fixture
+def interface(addon):
+    """The context of an interactive session; the run that is under way at the end of the test is stopped."""
+    from blender_addon.ui import running
+
+    from .helpers import Interface
+
+    yield Interface()
+    running.stop()
+
+
+@pytest.fixture
 def composited(tmp_path):
     """Render what comes out of a compositor socket, on the CPU, and return its pixels, shape (H, W, 4)."""
 

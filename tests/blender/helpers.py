@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
+
 import numpy as np
 import pytest
 
@@ -9,7 +11,7 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 from blender_addon.scene import plates as plates  # noqa: E402 - after the skip
 from blender_addon.scene import stored_estimate as stored_estimate  # noqa: E402
-from blender_addon.scene.compositor import compositor_tree  # noqa: E402
+from blender_addon.scene.compositor import compositor_tree as compositor_tree  # noqa: E402
 
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
@@ -93,6 +95,43 @@ def linear_shown(image, in_editor):
         show(after=False)
         assert space.image == image
     return found
+
+
+class Interface:
+    """Stands for the context of an interactive session, and records what an operator does to it."""
+
+    def __init__(self):
+        self.window = object()
+        self.window_manager = self.workspace = self
+        self.space_data = None
+        self.scene = bpy.context.scene
+        self.timers, self.status, self.progress, self.handlers, self.redrawn = [], [], [], [], []
+        region = SimpleNamespace(type="UI", tag_redraw=lambda: self.redrawn.append("UI"))
+        picture = SimpleNamespace(type="WINDOW", tag_redraw=lambda: self.redrawn.append("WINDOW"))
+        area = SimpleNamespace(type="IMAGE_EDITOR", regions=[region, picture])
+        self.windows = [SimpleNamespace(screen=SimpleNamespace(areas=[area]))]
+
+    def event_timer_add(self, seconds, *, window):
+        self.timers.append(seconds)
+        return seconds
+
+    def event_timer_remove(self, timer):
+        self.timers.remove(timer)
+
+    def modal_handler_add(self, operator):
+        self.handlers.append(operator)
+
+    def status_text_set(self, text):
+        self.status.append(text)
+
+    def progress_begin(self, first, last):
+        self.progress.append(first)
+
+    def progress_update(self, percent):
+        self.progress.append(percent)
+
+    def progress_end(self):
+        self.progress.append(None)
 
 
 class Layout:
