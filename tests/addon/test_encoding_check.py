@@ -85,7 +85,6 @@ def test_estimate_anyway_leaves_the_metadata_of_other_files_alone(make_job):
 
 @pytest.fixture
 def untagged(tmp_path, codes):
-    """An OpenEXR file that does not say what its values are."""
     return write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32))
 
 

@@ -73,7 +73,6 @@ def test_a_bake_looks_for_its_frames_once_and_builds_one_lut(make_job, calls, se
 
 
 def test_a_stored_estimate_is_used_as_it_is(make_job, sequence_file, estimate, monkeypatch):
-    """Its LUT can be exported even where the frames are not."""
     stored = estimate(sequence_file)
     monkeypatch.setattr(run_module, "estimate_plate", None)
     shutil.rmtree(sequence_file.parent)

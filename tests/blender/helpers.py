@@ -50,22 +50,18 @@ def estimate(datablock, mode="ESTIMATE", **choices):
 
 
 def apply(image, mode="NODES", **choices):
-    """Apply the estimate of an image."""
     assert bpy.ops.crf.apply_response(image=image.name, apply=mode, **choices) == {"FINISHED"}
 
 
 def curve_of(datablock):
-    """The response that is stored."""
     return stored_estimate.restored(datablock).curve
 
 
 def scene_tree():
-    """The scene's compositor tree."""
     return compositor_tree(bpy.context.scene)
 
 
 def groups(tree):
-    """The nodes of a tree that hold node groups."""
     return [node for node in tree.nodes if node.type == "GROUP"]
 
 
@@ -76,7 +72,6 @@ def group_node(part="Camera Response"):
 
 
 def reopen(path):
-    """Save the .blend file and open it."""
     bpy.ops.wm.save_as_mainfile(filepath=str(path))
     bpy.ops.wm.open_mainfile(filepath=str(path))
 
@@ -162,8 +157,6 @@ class Layout:
 
 
 class Panel:
-    """Stands for a panel."""
-
     def __init__(self):
         self.layout = Layout()
 
@@ -180,10 +173,8 @@ def drawn_in(image, in_editor):
 
 
 def labels(drawn):
-    """The words of labels."""
     return [entry[1] for entry in drawn if entry[0] == "label"]
 
 
 def operators(drawn):
-    """The names and words of buttons."""
     return [entry[1:3] for entry in drawn if entry[0] == "operator"]

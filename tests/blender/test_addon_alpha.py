@@ -16,7 +16,6 @@ NEAREST = 1e-4
 
 @pytest.fixture
 def alpha():
-    """Code values of alpha, shape (256, 256, 1), some of them 0 and some 255."""
     drawn = np.random.default_rng(1).integers(0, 256, (256, 256, 1)).astype(np.uint8)
     drawn[:8], drawn[8:16] = 0, 255
     return drawn

@@ -83,7 +83,6 @@ class TestAnotherFile:
         assert np.abs(composited(group_node().outputs[0])[..., :3] - expected).max() < 1e-6
 
     def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, composited):
-        """The nodes have read its earlier pixels."""
         apply(image)
         linear, curve = group_node().outputs[0], curve_of(image)
         assert np.abs(composited(linear)[..., :3] - curve.inverse(codes / 255)).max() < 1e-6

@@ -9,20 +9,17 @@ from .helpers import IS_BLENDER_5, bpy, estimate, groups, load, load_sequence
 
 @pytest.fixture
 def tree(tree):
-    """The scene's compositor tree, empty."""
     tree.nodes.clear()
     return tree
 
 
 @pytest.fixture
 def plates(tmp_path, codes, addon):
-    """Two plates."""
     return [load(write_image(tmp_path / f"{name}.png", codes)) for name in ("one", "two")]
 
 
 @pytest.fixture
 def sequence(tmp_path, codes, addon):
-    """A sequence from 1001 on."""
     paths = [write_image(tmp_path / f"shot.{number}.png", codes) for number in (1001, 1002, 1003)]
     return load_sequence(paths[0])
 

@@ -22,7 +22,6 @@ def test_their_code_values_are_exact(addon, tmp_path, codes, plate_file, suffix)
 
 
 def save_jpeg_2000(source, target):
-    """Save an image as JPEG 2000 without loss."""
     scene, image = bpy.context.scene, load(source)
     image.colorspace_settings.name = "Non-Color"
     scene.view_settings.view_transform = "Raw"

@@ -14,7 +14,6 @@ from .helpers import estimate as run
 
 @pytest.fixture
 def avif(addon, tmp_path, codes):
-    """A lossless AVIF file."""
     pillow = pytest.importorskip("PIL.Image", reason="needs Pillow to write AVIF")
     path = tmp_path / "phone.avif"
     pillow.fromarray(codes).save(path, quality=100, subsampling="4:4:4")

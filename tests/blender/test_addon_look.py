@@ -129,7 +129,6 @@ def test_it_follows_a_response_that_is_applied_again(look, composited, plate_fil
 
 
 def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
-    """Only the response counts, and the name."""
     plate_file.unlink()
     assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
     assert "Camera Look plate" in bpy.data.node_groups

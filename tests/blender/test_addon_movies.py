@@ -123,7 +123,6 @@ def test_a_damaged_movie_is_one_sentence(addon, tmp_path):
 
 
 def test_of_a_movie_it_is_the_frame_that_the_editor_shows(movie, codes, in_editor):
-    """Not the one that Blender has read last, here the first."""
     image = load(movie("rgb.mkv"))
     estimate(image)
     before = list(bpy.data.images)

@@ -26,7 +26,6 @@ def node_of(addon):
 
 @pytest.fixture
 def tree(tree):
-    """The scene's compositor tree, empty."""
     tree.nodes.clear()
     return tree
 
@@ -109,7 +108,6 @@ def test_a_clip(addon, plate_file, composited, codes, estimate):
 
 
 def test_the_frames_of_a_sequence(addon, tmp_path, codes, composited, estimate):
-    """A new node shows the file of each frame number on that frame."""
     frames = {number: np.roll(codes, number, axis=0) for number in (7, 8, 10)}
     paths = [write_image(tmp_path / f"shot.{number:04d}.png", pixels) for number, pixels in frames.items()]
     run(load_sequence(paths[0]), "NODES")

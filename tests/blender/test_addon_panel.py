@@ -62,7 +62,6 @@ def test_every_line_fits_the_sidebar(image, in_editor):
 
 
 def test_a_narrow_range_is_no_more_than_the_mean_of_cameras(image, in_editor):
-    """The verdict may be usable or even good."""
     image["camera_response"]["notices"] = '[["narrow_range", {}]]'
     for verdict in ("good", "usable", "do not trust"):
         image["camera_response"]["verdict"] = verdict

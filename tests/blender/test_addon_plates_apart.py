@@ -46,7 +46,6 @@ def group_with(tree, image):
 
 class TestTwoPlatesOfOneName:
     def test_they_have_two_groups_and_two_luts(self, twins, tree, composited, codes, monkeypatch):
-        """The second response does not touch the first plate."""
         from blender_addon.scene import node_group
         from crfnet_core import ResponseCurve
 

@@ -14,7 +14,6 @@ def twice(image):
 
 
 def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
-    """Both hold the same node group, but neither is behind the other."""
     for _ in range(2):
         tree.nodes.new("CompositorNodeImage").image = image
     apply(image)

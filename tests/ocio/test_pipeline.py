@@ -39,8 +39,6 @@ class CancelledError(Exception):
 
 
 def cancel_after(frames):
-    """A progress callback that cancels once so many frames are finished."""
-
     def progress(done, total):
         if done >= frames:
             raise CancelledError
@@ -55,7 +53,6 @@ def options(fixed_model):
 
 @pytest.fixture
 def sequence(plate, tmp_path):
-    """Twelve frames of a plate."""
     for number in range(1, 13):
         shutil.copy(plate, tmp_path / f"shot.{number:04d}.jpg")
     return find_frames(tmp_path / "shot.####.jpg")

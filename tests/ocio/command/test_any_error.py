@@ -88,5 +88,6 @@ def test_it_is_the_error_of_that_photograph_in_a_process(photographs, fixed_mode
     outputs = OutputOptions(has_linear=False, has_sheet=False)
     options = EstimateOptions(model=fixed_model)
     batch = FailingBatch(out=tmp_path / "out", options=options, plates=PlateOptions(), outputs=outputs)
-    run_batch(batch, find_photographs([photographs], tmp_path / "out"), workers=2)
+    found = find_photographs([photographs / "bad.jpg", photographs / "a.jpg"], tmp_path / "out")
+    run_batch(batch, found, workers=2)
     assert_only_bad_failed(tmp_path / "out", photographs)

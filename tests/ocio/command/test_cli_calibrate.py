@@ -96,7 +96,6 @@ def test_the_document_says_all(camera):
 
 
 def test_the_config_converts_as_the_lut(camera, frames, oiiotool, tmp_path):
-    """OpenColorIO agrees, and other plates are not caught by a file rule."""
     folder, converted, looked_up = camera[0], tmp_path / "a.exr", tmp_path / "b.exr"
     convert = ("--colorconvert", "CRF eos20d", "scene_linear", "-d", "float", "-o", converted)
     oiiotool("--colorconfig", folder / "config.ocio", frames[3], *convert)
@@ -108,7 +107,6 @@ def test_the_config_converts_as_the_lut(camera, frames, oiiotool, tmp_path):
 
 
 def test_times_from_a_list(crfnet, frames, tmp_path):
-    """Exact powers of two in place of EXIF's rounded ones, in the order of the frames."""
     times = ",".join(str(2**index) for index in range(6))
     done = crfnet("calibrate", *frames, "--times", times, "--out", tmp_path, "--no-sheet", "--json")
     assert (done.code, done.err) == (0, "")

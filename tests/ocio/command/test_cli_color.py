@@ -208,7 +208,6 @@ class TestConfig:
     ],
 )
 def test_the_config_finds_the_linear_plate_in_its_space(crfnet, fixed_model, plate, tmp_path, output, space, to_aces):
-    """OpenColorIO sees the file's name only; from the space that it finds, the light equals the plate itself."""
     photo = write_tagged(tmp_path / "shot.0001.png", read_image(plate, kind="uint8"), matrix_profile(DISPLAY_P3))
     look = tmp_path / "look"
     arguments = ("--no-sheet", "--depth", "float", "--output-space", output, "--model", fixed_model)

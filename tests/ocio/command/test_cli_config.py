@@ -21,7 +21,6 @@ def folder(tmp_path):
 
 
 def test_an_estimate_goes_into_a_copy_of_a_studios_config(crfnet, look, plate, oiiotool, linear, tmp_path, tolerance):
-    """From the photograph to a config that oiiotool reads the plate and its linear file with."""
     out = tmp_path / "show"
     done = crfnet("config", "add", "--base", STUDIO, "--out", out, look)
     assert (done.code, done.err) == (0, "")

@@ -96,16 +96,15 @@ def test_a_second_run_does_only_what_is_left(estimate, photographs, tmp_path, mo
     "choice", [("--prior", "any"), ("--taken-with", "phone"), ("--exposure", "gray"), ("--forward",)]
 )
 def test_other_options_are_refused(estimate, photographs, tmp_path, choice):
-    estimate(photographs, *QUICK)
+    estimate(photographs / "a.jpg", *QUICK)
     before = tree(tmp_path / "out")
-    assert estimate(photographs, *QUICK, *choice).refusal == "other_options"
+    assert estimate(photographs / "a.jpg", *QUICK, *choice).refusal == "other_options"
     assert tree(tmp_path / "out") == before
-    assert estimate(photographs, *QUICK, *choice, "--overwrite").code == 0
-    assert estimate(photographs, *QUICK, *choice).code == 0
+    assert estimate(photographs / "a.jpg", *QUICK, *choice, "--overwrite").code == 0
+    assert estimate(photographs / "a.jpg", *QUICK, *choice).code == 0
 
 
 def test_two_runs_at_once_lose_no_record(photographs, fixed_model, tmp_path):
-    """The second finds what the first has written meanwhile, and both end well."""
     arguments = ["estimate", photographs, "--out", tmp_path / "out", "--model", fixed_model, *QUICK]
     command = [sys.executable, "-m", "crfnet", *map(str, arguments)]
     runs = [subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True) for _ in range(2)]

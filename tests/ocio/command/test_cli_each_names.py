@@ -34,7 +34,6 @@ def test_names_of_one_alias_are_two_photographs(estimate, photographs, tmp_path)
 
 @pytest.mark.parametrize("name", ["a.jpeg", "A.jpg"])
 def test_two_of_one_name_get_files_of_their_own(estimate, photographs, tmp_path, name):
-    """And keep them in the next run; also where the system separates A from a."""
     shutil.copy(photographs / "a.jpg", photographs / name)
     if len(listed(photographs)) < 4:
         pytest.skip("this file system takes A and a for one name")

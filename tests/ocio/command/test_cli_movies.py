@@ -28,7 +28,6 @@ ROOT = Path(__file__).parents[3]
 
 @pytest.fixture
 def av():
-    """PyAV."""
     return pytest.importorskip("av", reason="needs PyAV: the extra video")
 
 

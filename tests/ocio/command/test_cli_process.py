@@ -30,7 +30,6 @@ WAITING = (
 
 @pytest.fixture
 def arguments(plate, fixed_model, tmp_path):
-    """Those of `crfnet estimate` into tmp_path/out."""
     return ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
 
 

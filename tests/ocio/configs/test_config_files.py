@@ -23,7 +23,6 @@ from tests.helpers.refusals import refused
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder with the plate's LUT."""
     write_lut(tmp_path / "plate01.spi1d", LUT)
     return tmp_path
 
@@ -93,10 +92,8 @@ class TestLoading:
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_another_file_is_refused(self, tmp_path, text):
         (tmp_path / "config.ocio").write_text(text)
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_refused"):
             load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_refused"
-        assert "\n" not in str(caught.value)
 
     @pytest.mark.parametrize("depth", [3, 9])
     def test_nested_aliases_are_refused_before_they_multiply(self, tmp_path, depth):

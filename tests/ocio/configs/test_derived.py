@@ -64,8 +64,6 @@ class TestBuiltIn:
 
 
 class TestBase:
-    """A studio's config with LUTs of its own."""
-
     def test_it_stays_as_it_is_and_all_of_it_means_the_same(self, studio, small_look, tmp_path):
         before = tree(studio.parent)
         done = add(studio, tmp_path / "new", small_look)
@@ -91,8 +89,7 @@ class TestBase:
         for path in paths:
             config.addSearchPath(path)
         studio.write_text(config.serialize())
-        result = conversions(loaded(add(studio, tmp_path / "new", small_look).path))
-        assert_same(result, conversions(loaded(studio)))
+        assert_same(conversions(loaded(add(studio, tmp_path / "new", small_look).path)), conversions(loaded(studio)))
 
     @pytest.mark.parametrize("is_absolute", [True, False])
     def test_paths_that_begin_with_a_variable_mean_the_same_folder(self, studio, small_look, tmp_path, is_absolute):
@@ -219,7 +216,6 @@ class TestRules:
 
     @pytest.mark.parametrize("interop_id", ["lin_rec709_scene", "lin_ap1_scene"])
     def test_a_sequence_has_rules_for_every_frame(self, tmp_path, interop_id):
-        """The frames of `crfnet linearize` are called sky.0001.exr."""
         look = write_look(tmp_path / "look", ["sky.0001.png", "sky.0090.png", "wall.png"], interop_id=interop_id)
         result = loaded(add(STUDIO, tmp_path / "show", look).path)
         assert {space_of(result, path) for path in ("sky.0099.png", "a/WALL.png")} == {"CRF sky.0001"}

@@ -87,7 +87,6 @@ def test_a_missing_lut_is_named(tmp_path):
 
 
 def test_a_lut_of_another_kind_is_refused(tmp_path):
-    """One that leads from light to codes, and one whose channels differ."""
     write_lut(tmp_path / "forward.spi1d", Lut1D(np.linspace(0, 1, 256) ** 0.45))
     write_lut(tmp_path / "rgb.cube", RgbLut1D((LUT, LUT, OTHER_LUT)))
     for name in ("forward.spi1d", "rgb.cube"):

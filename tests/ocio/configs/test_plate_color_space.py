@@ -52,7 +52,6 @@ def added(config, *spaces):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder with the plate's LUT."""
     write_lut(tmp_path / "plate01.spi1d", LUT)
     return tmp_path
 

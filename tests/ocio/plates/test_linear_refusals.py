@@ -18,7 +18,6 @@ from tests.helpers.refusals import refused
 
 
 def refusal(*arguments, **options):
-    """The code of the error by which plates are refused."""
     with pytest.raises(CRFNetError) as caught:
         linearize(*arguments, **options)
     return caught.value.code
