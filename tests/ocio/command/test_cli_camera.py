@@ -48,14 +48,8 @@ def run(crfnet, fixed_model):
     return run_command
 
 
-def test_a_calibration_becomes_a_camera_that_is_shown_and_removed(crfnet, run, root, true_response, tmp_path, library):
-    from tests.helpers.stacks import StackOptions, light_of, make_stack
-
-    light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2]
-    (tmp_path / "stack").mkdir()
-    header = {"Make": "Canon", "Model": "Canon EOS 20D", "Exif__PhotographicSensitivity": 100}
-    frames = make_stack(tmp_path / "stack", light, true_response, StackOptions(frames=6, quality=0), **header)
-    done = crfnet("calibrate", *frames, "--out", tmp_path / "look", "--name", "eos20d", "--no-sheet")
+def test_a_calibration_becomes_a_camera_that_is_shown_and_removed(crfnet, run, stack, tmp_path, library):
+    done = crfnet("calibrate", *stack, "--out", tmp_path / "look", "--name", "eos20d", "--no-sheet")
     assert (done.code, done.err) == (0, "")
     calibration = tmp_path / "look" / "eos20d.json"
     out = run("camera", "add", "--from-calibration", calibration, "--name", "20D")
