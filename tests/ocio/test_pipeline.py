@@ -175,6 +175,11 @@ class TestExport:
             pipeline.deliver(self.planned(tmp_path / "look", overwrite=True), light_of(other))
         assert {path: path.read_bytes() for path in plan.files.config.parent.iterdir()} == earlier
 
+    def test_a_folder_in_which_opencolorio_finds_no_lut_is_refused(self, tmp_path):
+        with refused(PlateError, "variables_in_path"):
+            pipeline.deliver(self.planned(tmp_path / "projects$"), light_of(LUT))
+        assert not (tmp_path / "projects$").exists()
+
     @pytest.mark.parametrize("problem", [PlateError("disk full"), KeyboardInterrupt(), CancelledError()])
     def test_a_failure_in_the_middle_leaves_nothing(self, plan, monkeypatch, problem):
         def fail(*arguments, **options):

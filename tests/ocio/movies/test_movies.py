@@ -53,6 +53,7 @@ def bars(frames):
 def refusal(path, call=read_stream):
     with pytest.raises(PlateError) as caught:
         call(path)
+    assert str(caught.value).isprintable()
     return caught.value.code
 
 
