@@ -8,11 +8,12 @@ from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
+from unittest import mock
 
 import numpy as np
 import pytest
 
-from crfnet.cli.main import main
+from crfnet.cli import main
 from tests.helpers.images import write_image
 
 if TYPE_CHECKING:
@@ -38,6 +39,13 @@ class CommandResult:
     code: int
     out: str
     err: str
+    problem: str
+
+    @property
+    def refusal(self) -> str:
+        """The code of the error for which the command ended with exit status 2 and one line."""
+        assert (self.code, self.err.count("\n"), self.err[:15]) == (2, 1, "crfnet: error: ")
+        return self.problem
 
 
 @pytest.fixture(scope="session", autouse=True)
@@ -85,16 +93,24 @@ def fixed_model(root) -> Path:
 
 @pytest.fixture(scope="session")
 def crfnet() -> Callable[..., CommandResult]:
-    """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed."""
+    """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed.
+
+    Its problem is the code of an error, the name of another exception, or "usage" where the arguments do not parse.
+    """
 
     def run(*arguments: object) -> CommandResult:
         out, err = io.StringIO(), io.StringIO()
-        with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
+        with (
+            contextlib.redirect_stdout(out),
+            contextlib.redirect_stderr(err),
+            mock.patch.object(main, "_fail", wraps=main._fail) as fail,
+        ):
             try:
-                code = main([str(argument) for argument in arguments])
+                code = main.main([str(argument) for argument in arguments])
             except SystemExit as leaving:
                 code = int(leaving.code or 0)
-        return CommandResult(code, out.getvalue(), err.getvalue())
+        problems = [getattr(call.args[0], "code", type(call.args[0]).__name__) for call in fail.call_args_list]
+        return CommandResult(code, out.getvalue(), err.getvalue(), *(problems or ["usage"]))
 
     return run
 

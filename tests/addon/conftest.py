@@ -12,6 +12,12 @@ from crfnet_core.estimate.options import AnalysisOptions
 from tests.helpers.images import write_image
 
 
+def plate_from_file(path, *, is_sequence=False, name="", color_space="sRGB"):
+    """Return the plate of a file, which Blender calls by this name."""
+    names = {"datablock_name": name or path.name, "uid": 1}
+    return Plate.from_file(path, is_sequence=is_sequence, color_space=color_space, folder=path.parent, **names)
+
+
 @pytest.fixture
 def running_config(tmp_path) -> Path:
     """The config of a Blender that does not exist; its color spaces are as in every exported config."""
@@ -42,22 +48,11 @@ def make_job(plate_file, fixed_model, running_config, tmp_path):
         prior="camera",
         use_metadata=True,
     ):
+        analysis = AnalysisOptions(use_metadata=use_metadata)
+        options = EstimateOptions(model=fixed_model, prior=prior, analysis=analysis)
         return Job(
-            plate=Plate.from_file(
-                path,
-                is_sequence=is_sequence,
-                datablock_name=path.name,
-                uid=1,
-                color_space=color_space,
-                folder=path.parent,
-            ),
-            estimation=Estimation(
-                options=EstimateOptions(
-                    model=fixed_model, prior=prior, analysis=AnalysisOptions(use_metadata=use_metadata)
-                ),
-                is_forced=is_forced,
-                stored=stored,
-            ),
+            plate=plate_from_file(path, is_sequence=is_sequence, color_space=color_space),
+            estimation=Estimation(options=options, is_forced=is_forced, stored=stored),
             exposure=Exposure(anchor=anchor, gray=gray, stops=stops),
             output=Output(mode=mode, folder=folder, depth=depth, overwrite=overwrite),
             config=str(running_config),

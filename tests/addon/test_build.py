@@ -151,10 +151,10 @@ def test_no_network_is_one_line(root, tmp_path):
 
 
 def test_the_build_of_our_wheel_changes_with_its_sources(tmp_path):
-    (tmp_path / "a.py").write_text("1")
-    first = build._digest(tmp_path)
-    assert first == build._digest(tmp_path)
-    (tmp_path / "a.py").write_text("2")
-    assert build._digest(tmp_path) != first
-    (tmp_path / "a.py").rename(tmp_path / "b.py")
-    assert len({first, build._digest(tmp_path)}) == 2
+    digests = []
+    for name, text in (("a/x.py", "1"), ("b/x.py", "1"), ("c/x.py", "2"), ("d/y.py", "2")):
+        (tmp_path / name).parent.mkdir()
+        (tmp_path / name).write_text(text)
+        digests.append(build._digest((tmp_path / name).parent))
+    assert digests[0] == digests[1]
+    assert len(set(digests)) == 3, "the content and the name count"

@@ -3,16 +3,7 @@
 import numpy as np
 import pytest
 
-from blender_addon.work.curve_picture import (
-    BACKGROUND,
-    BAND,
-    CURVE,
-    EXTENT,
-    GRID,
-    MARGIN,
-    SIZE,
-    draw_response,
-)
+from blender_addon.work.curve_picture import BACKGROUND, BAND, CURVE, EXTENT, GRID, MARGIN, SIZE, draw_response
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -32,6 +23,10 @@ def row(brightness):
     return round(MARGIN + brightness * EXTENT)
 
 
+def assert_color(pixels, color):
+    np.testing.assert_allclose(pixels[..., :3], np.broadcast_to(color, pixels[..., :3].shape), atol=1e-6)
+
+
 def test_it_is_an_image_as_blender_stores_it(picture):
     assert picture.shape == (SIZE, SIZE, 4)
     assert picture.dtype == np.float32
@@ -41,22 +36,22 @@ def test_it_is_an_image_as_blender_stores_it(picture):
 
 def test_the_margin_is_empty(picture):
     for margin in (picture[SIZE - 5 :], picture[:, SIZE - 5 :], picture[:5], picture[:, :2]):
-        np.testing.assert_allclose(margin[..., :3], np.broadcast_to(BACKGROUND, margin[..., :3].shape), atol=1e-6)
+        assert_color(margin, BACKGROUND)
 
 
 @pytest.mark.parametrize("stops", [-6.5, -4, -2.5, -1])
 def test_the_curve_goes_through_the_responses_values(picture, stops):
     """The square root of light halves its stops."""
-    np.testing.assert_allclose(picture[row(2 ** (stops / 2)), column(stops), :3], CURVE, atol=1e-6)
+    assert_color(picture[row(2 ** (stops / 2)), column(stops)], CURVE)
 
 
 def test_the_band_is_below_the_curve_here(picture):
     brightness = 2 ** (-2.5 / 2)
-    np.testing.assert_allclose(picture[row(brightness - 0.05), column(-2.5), :3], BAND, atol=1e-6)
-    np.testing.assert_allclose(picture[row(brightness - 0.15), column(-2.5), :3], BACKGROUND, atol=1e-6)
-    np.testing.assert_allclose(picture[row(0.98), column(-2.5), :3], BACKGROUND, atol=1e-6)
+    assert_color(picture[row(brightness - 0.05), column(-2.5)], BAND)
+    assert_color(picture[row(brightness - 0.15), column(-2.5)], BACKGROUND)
+    assert_color(picture[row(0.98), column(-2.5)], BACKGROUND)
 
 
 def test_the_grid_has_a_line_every_two_stops_and_every_64_codes(picture):
-    np.testing.assert_allclose(picture[row(0.9), column(-6), :3], GRID, atol=1e-6)
-    np.testing.assert_allclose(picture[row(128 / 255), column(-7), :3], GRID, atol=1e-6)
+    assert_color(picture[row(0.9), column(-6)], GRID)
+    assert_color(picture[row(128 / 255), column(-7)], GRID)

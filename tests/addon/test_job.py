@@ -4,18 +4,9 @@ from pathlib import Path
 
 import pytest
 
-from blender_addon.work.job import Plate
+from .conftest import plate_from_file
 
-
-def plate_of(name, *, is_sequence=True):
-    return Plate.from_file(
-        Path("/shots") / name,
-        is_sequence=is_sequence,
-        datablock_name="Beach.001",
-        uid=7,
-        color_space="sRGB",
-        folder=Path("/shots"),
-    )
+SHOTS = Path("/shots")
 
 
 @pytest.mark.parametrize(
@@ -29,17 +20,13 @@ def plate_of(name, *, is_sequence=True):
     ],
 )
 def test_the_last_number_of_a_sequences_file_is_the_frame_number(file, name, placeholder, pattern):
-    plate = plate_of(file)
+    plate = plate_from_file(SHOTS / file, is_sequence=True, name="Beach.001")
     assert plate.is_sequence
-    assert plate.name == name
-    assert plate.file == Path("/shots") / placeholder
-    assert plate.pattern == pattern
+    assert (plate.name, plate.file, plate.pattern) == (name, SHOTS / placeholder, pattern)
 
 
 @pytest.mark.parametrize(("file", "is_sequence"), [("IMG_1234.jpg", False), ("beach.png", True)])
 def test_a_file_that_is_no_frame_stands_for_itself(file, is_sequence):
-    plate = plate_of(file, is_sequence=is_sequence)
+    plate = plate_from_file(SHOTS / file, is_sequence=is_sequence)
     assert not plate.is_sequence
-    assert plate.name == Path(file).stem
-    assert plate.file == Path("/shots") / file
-    assert plate.pattern == file
+    assert (plate.name, plate.file, plate.pattern) == (Path(file).stem, SHOTS / file, file)

@@ -67,9 +67,10 @@ def test_work_does_without_what_only_the_command_needs(root):
 
 def test_no_import_of_blender_hides_in_a_function_of_work(addon_folder):
     for path in (addon_folder / "work").glob("*.py"):
-        nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        nodes = list(ast.walk(ast.parse(path.read_text(encoding="utf-8"))))
         names = [alias.name for node in nodes if isinstance(node, ast.Import) for alias in node.names]
-        assert "bpy" not in names, path
+        names += [node.module or "" for node in nodes if isinstance(node, ast.ImportFrom)]
+        assert "bpy" not in {name.partition(".")[0] for name in names}, path
 
 
 def test_what_blender_imports_of_work_at_its_start_is_light(root):

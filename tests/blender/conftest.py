@@ -91,17 +91,25 @@ def in_editor():
 
 
 @pytest.fixture
+def interface(addon):
+    """The context of an interactive session; the run that is under way at the end of the test is stopped."""
+    from blender_addon.ui import running
+
+    from .helpers import Interface
+
+    yield Interface()
+    running.stop()
+
+
+@pytest.fixture
 def composited(tmp_path):
     """Render what comes out of a compositor socket, on the CPU, and return its pixels, shape (H, W, 4)."""
 
     def render(socket, size=(256, 256)):
-        scene, tree = bpy.context.scene, socket.id_data
-        if bpy.app.version >= (5, 0, 0):
-            outputs = [node for node in tree.nodes if node.type == "GROUP_OUTPUT"]
-        else:
-            outputs = [node for node in tree.nodes if node.type == "COMPOSITE"]
-        tree.links.new(socket, outputs[0].inputs[0])
-        return rendered(scene, tmp_path / "rendered.exr", size)
+        tree = socket.id_data
+        output = next(node for node in tree.nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
+        tree.links.new(socket, output.inputs[0])
+        return rendered(bpy.context.scene, tmp_path / "rendered.exr", size)
 
     return render
 
@@ -128,6 +136,8 @@ def rendered_anew(tmp_path, root):
 
 def rendered(scene, path, size):
     """Render a scene's compositor to an EXR file and return its pixels."""
+    from blender_addon.scene.compositor import compositor_tree
+
     render = scene.render
     render.resolution_x, render.resolution_y = size
     render.resolution_percentage = 100
@@ -139,11 +149,8 @@ def rendered(scene, path, size):
     render.image_settings.file_format = "OPEN_EXR"
     render.image_settings.color_depth, render.image_settings.color_mode = "32", "RGBA"
     render.filepath = str(path)
-    for node in [node for node in _tree(scene).nodes if node.type == "R_LAYERS"]:
-        _tree(scene).nodes.remove(node)  # nothing is to be rendered
+    nodes = compositor_tree(scene).nodes
+    for node in [node for node in nodes if node.type == "R_LAYERS"]:
+        nodes.remove(node)  # nothing is to be rendered
     bpy.ops.render.render(write_still=True)
     return read_image(path)
-
-
-def _tree(scene):
-    return scene.compositing_node_group if bpy.app.version >= (5, 0, 0) else scene.node_tree

@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import IS_BLENDER_5, apply, bpy, curve_of, group_node
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -14,21 +14,15 @@ ACES = "cg-config-v1.0.0_aces-v1.3_ocio-v2.1"
 def test_they_give_the_same_light(image, composited, rendered_anew, codes, tmp_path, has_look):
     import PyOpenColorIO as OCIO
 
-    from blender_addon.scene.compositor import compositor_tree
-    from blender_addon.scene.stored_estimate import restored
-
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
-    tree = compositor_tree(bpy.context.scene)
-    (group,) = (node for node in tree.nodes if node.type == "GROUP")
-    composited(group.outputs[0])
+    apply(image)
+    composited(group_node().outputs[0])
     config = OCIO.Config.CreateFromBuiltinConfig(ACES)
-    expected = restored(image).curve.inverse(codes / 255).astype(np.float32)
+    expected = curve_of(image).inverse(codes / 255).astype(np.float32)
     if has_look:
         bpy.ops.crf.add_look(image=image.name)
-        look = next(node for node in tree.nodes if node.type == "GROUP" and node != group)
-        composited(look.outputs["Code Values"])
+        composited(group_node("Camera Look").outputs["Code Values"])
         expected = codes / 255
-    elif bpy.app.version < (5, 0, 0):  # later, the file keeps its working space, linear Rec.709
+    elif not IS_BLENDER_5:  # later, the file keeps its working space, linear Rec.709
         config.getProcessor("Linear Rec.709 (sRGB)", "ACEScg").getDefaultCPUProcessor().applyRGB(expected)
     (tmp_path / "aces.ocio").write_text(config.serialize())
     pixels, log = rendered_anew(tmp_path / "aces.ocio")

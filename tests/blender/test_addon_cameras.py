@@ -5,7 +5,7 @@ import pytest
 
 from tests.helpers.cameras import camera, photograph
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, estimate, load, stored_estimate
 
 
 @pytest.fixture
@@ -20,14 +20,12 @@ def curve(monkeypatch, tmp_path):
 
 
 def test_a_chosen_camera_is_the_answer_and_is_remembered(image, curve):
-    from blender_addon.scene.stored_estimate import panel_paragraphs, restored
-
     bpy.ops.crf.estimate_response(image=image.name, camera="mine")
-    found = restored(image)
+    found = stored_estimate.restored(image)
     np.testing.assert_array_equal(found.curve.brightness, curve.brightness)
     assert found.camera.name == "mine"
     assert image.camera_response_settings.camera == "mine"
-    _, details, _ = panel_paragraphs(image)
+    _, details, _ = stored_estimate.panel_paragraphs(image)
     assert any("6 exposures" in line for line in details)
 
 
@@ -58,12 +56,10 @@ def test_without_the_wheels_none_are_suggested_and_nothing_breaks(image, monkeyp
 @pytest.fixture
 def of_that_model(addon, plate_file, tmp_path):
     """A plate of the stored camera's make and model."""
-    return bpy.data.images.load(str(photograph(plate_file, tmp_path / "sony.jpg")))
+    return load(photograph(plate_file, tmp_path / "sony.jpg"))
 
 
 def test_a_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_model, curve):
-    from blender_addon.scene import stored_estimate
-
     bpy.ops.crf.estimate_response(image=of_that_model.name)
     ((name, words),) = stored_estimate.offers(of_that_model)
     assert (name, words) == ("mine", "mine: measured from 6 exposures")
@@ -76,17 +72,13 @@ def test_a_camera_of_the_plate_s_model_is_offered_and_used_at_a_press(of_that_mo
 
 
 def test_the_offer_stays_when_the_estimate_is_applied(of_that_model, curve, tmp_path):
-    from blender_addon.scene import stored_estimate
-
-    bpy.ops.crf.estimate_response(image=of_that_model.name)
+    estimate(of_that_model)
     before = stored_estimate.offers(of_that_model)
-    bpy.ops.crf.apply_response(image=of_that_model.name, apply="EXPORT", folder=str(tmp_path / "out"), anyway=True)
+    apply(of_that_model, "EXPORT", folder=str(tmp_path / "out"), anyway=True)
     assert stored_estimate.offers(of_that_model) == before != []
 
 
 def test_nothing_is_offered_for_other_models_or_without_metadata(image, of_that_model, curve):
-    from blender_addon.scene import stored_estimate
-
     bpy.ops.crf.estimate_response(image=image.name)
     bpy.ops.crf.estimate_response(image=of_that_model.name, ignore_metadata=True)
     assert stored_estimate.offers(image) == stored_estimate.offers(of_that_model) == []

@@ -7,9 +7,19 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .test_addon_panel import drawn_in, labels
-
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import (
+    apply,
+    bpy,
+    curve_of,
+    drawn_in,
+    estimate,
+    group_node,
+    labels,
+    load,
+    load_sequence,
+    paint,
+    reopen,
+)
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -33,10 +43,6 @@ def lines_of(in_editor):
     return draw
 
 
-def apply_nodes(image):
-    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}
-
-
 def other_file(folder, codes, name="other.png"):
     return write_image(folder / name, 255 - codes)
 
@@ -44,9 +50,8 @@ def other_file(folder, codes, name="other.png"):
 class TestAnotherFile:
     def test_nothing_is_told_while_it_is_the_same(self, image, lines_of, tmp_path):
         assert lines_of(image) == []
-        apply_nodes(image)
-        bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-        bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+        apply(image)
+        reopen(tmp_path / "shot.blend")
         assert lines_of(bpy.data.images["plate.png"]) == []
 
     def test_a_copy_of_the_project_is_the_same(self, image, lines_of, plate_file, tmp_path):
@@ -61,103 +66,75 @@ class TestAnotherFile:
     def test_a_new_file_is_told_until_it_is_estimated(self, image, lines_of, tmp_path, codes):
         image.filepath = str(other_file(tmp_path, codes))
         assert lines_of(image) == [CHANGED]
-        bpy.ops.crf.apply_response(image=image.name, apply="EXPORT")  # the estimate is still the earlier file's
+        apply(image, "EXPORT")  # the estimate is still the earlier file's
         assert lines_of(image) == [CHANGED]
-        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        estimate(image)
         assert lines_of(image) == []
 
-    def test_nodes_show_the_earlier_file_until_they_are_applied(
-        self, image, lines_of, tmp_path, codes, tree, composited
-    ):
-        from blender_addon.scene import stored_estimate
-
-        apply_nodes(image)
+    def test_nodes_show_the_earlier_file_until_they_are_applied(self, image, lines_of, tmp_path, codes, composited):
+        apply(image)
         image.filepath = str(other_file(tmp_path, codes))
         assert lines_of(image) == [CHANGED, EARLIER]
-        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        estimate(image)
         assert lines_of(image) == [EARLIER]
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
-        (group,) = (node for node in tree.nodes if node.type == "GROUP")
-        expected = stored_estimate.restored(image).curve.inverse((255 - codes) / 255)
-        assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 1e-6
+        expected = curve_of(image).inverse((255 - codes) / 255)
+        assert np.abs(composited(group_node().outputs[0])[..., :3] - expected).max() < 1e-6
 
-    def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, tree, composited):
-        """The nodes have read its earlier pixels."""
-        from blender_addon.scene import stored_estimate
-
-        apply_nodes(image)
-        (group,) = (node for node in tree.nodes if node.type == "GROUP")
-        curve = stored_estimate.restored(image).curve
-        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse(codes / 255)).max() < 1e-6
+    def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, composited):
+        apply(image)
+        linear, curve = group_node().outputs[0], curve_of(image)
+        assert np.abs(composited(linear)[..., :3] - curve.inverse(codes / 255)).max() < 1e-6
         other_file(plate_file.parent, codes, plate_file.name)
-        apply_nodes(image)
-        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
+        apply(image)
+        assert np.abs(composited(linear)[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
 
     def test_a_file_that_is_gone_is_not_to_be_applied(self, image, lines_of, plate_file):
-        apply_nodes(image)
+        apply(image)
         plate_file.unlink()
         assert lines_of(image) == [GONE]
 
     def test_of_a_sequence_a_frame_may_be_missing(self, addon, lines_of, tmp_path, codes):
         frames = [write_image(tmp_path / f"shot.{number:04d}.png", codes) for number in (1, 2, 3)]
-        image = bpy.data.images.load(str(frames[0]))
-        image.source = "SEQUENCE"
-        bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+        image = load_sequence(frames[0])
+        estimate(image, "NODES")
         frames[0].unlink()
         assert lines_of(image) == []
-        apply_nodes(image)
+        apply(image)
 
     def test_packed_images_say_nothing(self, addon, plate_file, lines_of):
-        image = bpy.data.images.load(str(plate_file))
+        image = load(plate_file)
         image.pack()
-        bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+        estimate(image, "NODES")
         plate_file.unlink()
         assert lines_of(image) == []
 
     def test_a_response_from_elsewhere_is_not_that_of_a_file(self, image, lines_of, tmp_path, codes):
-        other = bpy.data.images.load(str(other_file(tmp_path, codes)))
+        other = load(other_file(tmp_path, codes))
         bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
         other.filepath = image.filepath
         assert lines_of(other) == []
 
     def test_a_file_that_is_read_anew_by_the_plate_alone_is_told(self, image, lines_of, plate_file, codes):
-        apply_nodes(image)
+        apply(image)
         write_image(plate_file, (255 - codes)[:-10])
         image.reload()
         assert lines_of(image) == [CHANGED, EARLIER]
 
 
-class TestPacked:
-    def test_the_nodes_survive_the_loss_of_the_file(
-        self, image, tree, plate_file, codes, composited, tmp_path, lines_of
-    ):
-        apply_nodes(image)
-        image.pack()
-        assert lines_of(image) == [EARLIER]
-        scene = str(tmp_path / "shot.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=scene)
-        assert lines_of(image) == []
-        expected = composited(group_of(tree).outputs[0])
-        plate_file.unlink()
-        bpy.ops.wm.open_mainfile(filepath=scene)
-        from blender_addon.scene.compositor import compositor_tree
-
-        opened = compositor_tree(bpy.context.scene)
-        assert np.abs(composited(group_of(opened).outputs[0]) - expected).max() < 1e-6
-        assert expected[..., :3].max() > 0.5
-
-
-def group_of(tree):
-    (node,) = (node for node in tree.nodes if node.type == "GROUP")
-    return node
-
-
-def painted(codes):
-    image = bpy.data.images.new("painted", 256, 256)
-    pixels = np.concatenate([codes / 255, np.ones((256, 256, 1))], axis=2)
-    image.pixels.foreach_set(pixels[::-1].astype(np.float32).ravel())
-    return image
+def test_the_nodes_of_a_packed_plate_survive_the_loss_of_the_file(image, plate_file, composited, tmp_path, lines_of):
+    apply(image)
+    image.pack()
+    assert lines_of(image) == [EARLIER]
+    scene = str(tmp_path / "shot.blend")
+    bpy.ops.wm.save_as_mainfile(filepath=scene)
+    assert lines_of(image) == []
+    expected = composited(group_node().outputs[0])
+    plate_file.unlink()
+    bpy.ops.wm.open_mainfile(filepath=scene)
+    assert np.abs(composited(group_node().outputs[0]) - expected).max() < 1e-6
+    assert expected[..., :3].max() > 0.5
 
 
 class TestPainted:
@@ -165,34 +142,33 @@ class TestPainted:
     def test_unsaved_changes_are_told_until_they_are_in_the_nodes(self, image, lines_of, plate_file, is_packed):
         if is_packed:
             image.pack()
-        apply_nodes(image)
+        apply(image)
         for given_up_or_kept, warnings in ((image.reload, []), (image.pack, [EARLIER])):
             assert lines_of(image) == []
             image.pixels[0] = 0.5
             assert lines_of(image) == [UNSAVED]
             given_up_or_kept()
             assert lines_of(image) == warnings
-            apply_nodes(image)
+            apply(image)
 
     def test_of_an_image_without_a_file_it_is_always_told(self, addon, codes, lines_of):
-        image = painted(codes)
-        bpy.ops.crf.estimate_response(image=image.name, apply="ESTIMATE")
+        image = bpy.data.images.new("painted", 256, 256)
+        paint(image, codes / 255)
+        estimate(image)
         assert lines_of(image) == []
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == [PAINTED]
         image.pack()
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
 
 
 class TestWithoutTheGroup:
     def test_code_values_that_go_on_as_they_are_are_told(self, image, lines_of, tree, in_editor):
-        apply_nodes(image)
-        group = group_of(tree)
-        source, targets = (
-            group.inputs["Image"].links[0].from_socket,
-            [link.to_socket for link in group.outputs[0].links],
-        )
+        apply(image)
+        group = group_node()
+        source = group.inputs["Image"].links[0].from_socket
+        targets = [link.to_socket for link in group.outputs[0].links]
         tree.nodes.remove(group)
         assert lines_of(image) == []  # nothing shows them
         for target in targets:
@@ -200,25 +176,25 @@ class TestWithoutTheGroup:
         assert lines_of(image) == [WITHOUT]
         applied = "Applied with these settings."
         assert applied not in " ".join(labels(drawn_in(image, in_editor)))
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
         assert applied in " ".join(labels(drawn_in(image, in_editor)))
 
-    def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, lines_of, tree):
-        apply_nodes(image)
-        group_of(tree).mute = True
+    def test_a_muted_group_counts_as_absent_until_it_is_applied(self, image, lines_of):
+        apply(image)
+        group_node().mute = True
         assert lines_of(image) == [WITHOUT]
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
-        assert not group_of(tree).mute
+        assert not group_node().mute
 
 
 class TestTwice:
     @pytest.fixture
     def by_hand(self, image, tree):
         """The plate's node group, put by hand behind a node that shows the plate."""
-        apply_nodes(image)
-        group = next(node for node in tree.nodes if node.type == "GROUP").node_tree
+        apply(image)
+        group = group_node().node_tree
         for node in list(tree.nodes):
             if node.type in ("IMAGE", "GROUP"):
                 tree.nodes.remove(node)
@@ -233,27 +209,23 @@ class TestTwice:
         assert lines_of(image) == []
 
     def test_applying_mends_it(self, image, lines_of, by_hand, codes, composited):
-        from blender_addon.scene import stored_estimate
-
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
         (link,) = by_hand.outputs["Image"].links
-        expected = stored_estimate.restored(image).curve.inverse(codes / 255)
+        expected = curve_of(image).inverse(codes / 255)
         assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-6
 
     def test_two_groups_in_a_row_are_told(self, image, lines_of, tree):
-        apply_nodes(image)
+        apply(image)
         assert lines_of(image) == []
-        first = next(node for node in tree.nodes if node.type == "GROUP")
+        first = group_node()
         second = tree.nodes.new("CompositorNodeGroup")
         second.node_tree = first.node_tree
         tree.links.new(first.outputs[0], second.inputs["Image"])
         assert lines_of(image) == [TWICE]
 
     def test_the_look_behind_the_group_is_no_second_one(self, image, lines_of, tree):
-        apply_nodes(image)
+        apply(image)
         bpy.ops.crf.add_look(image=image.name)
-        group = next(node for node in tree.nodes if node.type == "GROUP" and "Response" in node.node_tree.name)
-        look = next(node for node in tree.nodes if node.type == "GROUP" and "Look" in node.node_tree.name)
-        tree.links.new(group.outputs[0], look.inputs["Image"])
+        tree.links.new(group_node().outputs[0], group_node("Look").inputs["Image"])
         assert lines_of(image) == []

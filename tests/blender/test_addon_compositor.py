@@ -4,33 +4,24 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import IS_BLENDER_5, bpy, estimate, groups, load, load_sequence
 
 
 @pytest.fixture
 def tree(tree):
-    """The scene's compositor tree, empty."""
     tree.nodes.clear()
     return tree
 
 
 @pytest.fixture
 def plates(tmp_path, codes, addon):
-    """Two plates."""
-    return [bpy.data.images.load(str(write_image(tmp_path / f"{name}.png", codes))) for name in ("one", "two")]
+    return [load(write_image(tmp_path / f"{name}.png", codes)) for name in ("one", "two")]
 
 
 @pytest.fixture
 def sequence(tmp_path, codes, addon):
-    """A sequence from 1001 on."""
     paths = [write_image(tmp_path / f"shot.{number}.png", codes) for number in (1001, 1002, 1003)]
-    image = bpy.data.images.load(str(paths[0]))
-    image.source = "SEQUENCE"
-    return image
-
-
-def apply(image, **choices):
-    assert bpy.ops.crf.estimate_response(image=image.name, **{"apply": "NODES", **choices}) == {"FINISHED"}
+    return load_sequence(paths[0])
 
 
 def of_kind(tree, kind):
@@ -43,7 +34,7 @@ def timing(user):
 
 def test_one_viewer_shows_the_last_plate(tree, plates):
     for image in plates:
-        apply(image)
+        estimate(image, "NODES")
         (viewer,) = of_kind(tree, "VIEWER")
         group = viewer.inputs["Image"].links[0].from_node
         assert group.node_tree["camera_response_of"] == image
@@ -52,21 +43,21 @@ def test_one_viewer_shows_the_last_plate(tree, plates):
 def test_a_viewer_that_shows_something_else_keeps_it(tree, plates):
     render, viewer = tree.nodes.new("CompositorNodeRLayers"), tree.nodes.new("CompositorNodeViewer")
     tree.links.new(render.outputs["Image"], viewer.inputs["Image"])
-    apply(plates[0])
+    estimate(plates[0], "NODES")
     assert viewer.inputs["Image"].links[0].from_node == render
     (other,) = (node for node in of_kind(tree, "VIEWER") if node != viewer)
     assert other.inputs["Image"].links[0].from_node.type == "GROUP"
 
 
-@pytest.mark.skipif(bpy.app.version >= (5, 0, 0), reason="later, a compositor cannot be switched off so")
+@pytest.mark.skipif(IS_BLENDER_5, reason="later, a compositor cannot be switched off so")
 def test_a_compositor_that_is_switched_off_stays_off_and_the_report_says_so(tree, plates, capfd):
     bpy.context.scene.use_nodes = False
-    apply(plates[0])
+    estimate(plates[0], "NODES")
     assert not bpy.context.scene.use_nodes
     assert "switched off: tick Use Nodes" in capfd.readouterr().out
 
 
-@pytest.mark.skipif(bpy.app.version < (5, 0, 0), reason="before, the compositor belongs to the scene")
+@pytest.mark.skipif(not IS_BLENDER_5, reason="before, the compositor belongs to the scene")
 def test_a_linked_compositor_is_refused_and_nothing_is_stored(tree, plates, tmp_path):
     library = str(tmp_path / "library.blend")
     bpy.data.libraries.write(library, {tree})
@@ -74,25 +65,25 @@ def test_a_linked_compositor_is_refused_and_nothing_is_stored(tree, plates, tmp_
         here.node_groups = [tree.name]
     bpy.context.scene.compositing_node_group = here.node_groups[0]
     with pytest.raises(RuntimeError, match="linked from another file: make it local first"):
-        apply(plates[0])
+        estimate(plates[0], "NODES")
     assert "camera_response" not in plates[0]
 
 
 def test_the_new_group_is_active_and_the_only_selected_node(tree, plates):
     for image in plates:
-        apply(image)
+        estimate(image, "NODES")
         selected = [node for node in tree.nodes if node.select]
         assert selected == [tree.nodes.active]
         assert selected[0].node_tree["camera_response_of"] == image
 
 
 def test_what_is_only_brought_up_to_date_leaves_the_selection(tree, plates):
-    apply(plates[0])
+    estimate(plates[0], "NODES")
     (viewer,) = of_kind(tree, "VIEWER")
     tree.nodes.active = viewer
     for node in tree.nodes:
         node.select = node == viewer
-    apply(plates[0], exposure=1)
+    estimate(plates[0], "NODES", exposure=1)
     assert tree.nodes.active == viewer
     assert [node for node in tree.nodes if node.select] == [viewer]
 
@@ -111,65 +102,36 @@ def test_the_nodes_behind_make_room(tree, plates, in_frame):
         frame.location = (50, 50)
         blur.parent = frame
     distance = view.location_absolute.x - blur.location_absolute.x
-    apply(plates[0])
-    (group,) = of_kind(tree, "GROUP")
+    estimate(plates[0], "NODES")
+    (group,) = groups(tree)
     assert group.location_absolute.x >= source.location_absolute.x + source.width
     assert blur.location_absolute.x >= group.location_absolute.x + group.width
     assert view.location_absolute.x - blur.location_absolute.x == pytest.approx(distance)
     assert tuple(other.location) == (200, -400)
 
 
-def test_the_panel_follows_the_group_to_the_plate(tree, plates, in_editor):
-    from blender_addon.scene.plates import active_datablock
-
-    apply(plates[0])
-    with in_editor("NODE_EDITOR") as space:
-        space.node_tree = tree
-        for kind in ("GROUP", "IMAGE"):
-            (tree.nodes.active,) = of_kind(tree, kind)
-            assert active_datablock(bpy.context) == plates[0]
-
-
-def test_a_new_node_has_the_timing_of_the_editor(tree, sequence, in_editor):
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = sequence
-        user = space.image_user
-        user.frame_duration, user.frame_start, user.frame_offset = 3, 1, 1000  # as Blender opens it
-        assert bpy.ops.crf.estimate_response(apply="NODES") == {"FINISHED"}
-    (node,) = of_kind(tree, "IMAGE")
-    assert timing(node) == (3, 1, 1000)
-
-
 @pytest.mark.parametrize("mode", ["NODES", "BAKE"])
-def test_a_timing_that_shows_none_of_the_files_was_set_by_nobody(tree, sequence, in_editor, mode):
-    """An editor begins with the frames 1 to 100; in it, Blender shows no frame of this sequence."""
+@pytest.mark.parametrize(("before", "after"), [((3, 1, 1000), (3, 1, 1000)), ((100, 1, 0), (3, 1001, 1000))])
+def test_the_timing_of_the_editor_goes_on_if_it_shows_a_file(tree, sequence, in_editor, mode, before, after):
+    """Blender opens it with 3, 1, 1000; an editor begins with the frames 1 to 100, of which this sequence has none."""
     with in_editor("IMAGE_EDITOR") as space:
         space.image = sequence
         user = space.image_user
-        user.frame_duration, user.frame_start, user.frame_offset = 100, 1, 0
+        user.frame_duration, user.frame_start, user.frame_offset = before
         assert bpy.ops.crf.estimate_response(apply=mode) == {"FINISHED"}
         shown = space.image_user if mode == "BAKE" else of_kind(tree, "IMAGE")[0]
-        assert timing(shown) == (3, 1001, 1000)
+        assert timing(shown) == after
+        assert (space.image.name == "shot_linear.1001.exr") == (mode == "BAKE")
 
 
 def test_a_node_keeps_its_timing(tree, sequence):
     node = tree.nodes.new("CompositorNodeImage")
     node.image = sequence
     node.frame_duration, node.frame_start, node.frame_offset, node.use_cyclic = 3, 11, 1000, True
-    apply(sequence)
+    estimate(sequence, "NODES")
     assert timing(node) == (3, 11, 1000)
     assert node.use_cyclic
     assert node.image != sequence
-
-
-def test_the_baked_sequence_has_the_timing_of_the_plate(sequence, in_editor):
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = sequence
-        user = space.image_user
-        user.frame_duration, user.frame_start, user.frame_offset = 3, 1, 1000
-        assert bpy.ops.crf.estimate_response(apply="BAKE") == {"FINISHED"}
-        assert space.image.name == "shot_linear.1001.exr"
-        assert timing(space.image_user) == (3, 1, 1000)
 
 
 def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
@@ -178,7 +140,7 @@ def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
     clip.tracking.camera.focal_length = 77
     track = clip.tracking.tracks.new(name="corner", frame=1)
     track.markers.insert_frame(2, co=(0.25, 0.5))
-    bpy.ops.crf.estimate_response(clip=clip.name, apply="BAKE")
+    estimate(clip, "BAKE")
     baked = bpy.data.movieclips["shot_linear.1001.exr"]
     assert (baked.frame_start, baked.frame_offset) == (101, 3)
     assert baked.tracking.camera.focal_length == 77
@@ -197,27 +159,26 @@ def test_the_baked_clip_has_timing_tracks_and_camera(sequence):
 def test_a_relative_path_stays_relative(addon, tmp_path, codes, kind, is_relative):
     path = write_image(tmp_path / "plate.png", codes)
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-    collection = bpy.data.images if kind == "image" else bpy.data.movieclips
-    datablock = collection.load(str(path))
+    datablock = load(path, kind)
     datablock.filepath = "//plate.png" if is_relative else str(path)
-    bpy.ops.crf.estimate_response(**{kind: datablock.name}, apply="BAKE")
-    found = collection["plate_linear.exr"].filepath
+    estimate(datablock, "BAKE")
+    found = (bpy.data.images if kind == "image" else bpy.data.movieclips)["plate_linear.exr"].filepath
     assert found == ("//plate_linear.exr" if is_relative else str(tmp_path / "plate_linear.exr"))
 
 
 @pytest.mark.parametrize("is_packed", [False, True])
 def test_unsaved_painting_is_not_lost(addon, tree, tmp_path, codes, is_packed):
-    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    image = load(write_image(tmp_path / "plate.png", codes))
     if is_packed:
         image.pack()
     image.pixels[0] = 0.25
     for mode in ("NODES", "BAKE", "EXPORT"):
         with pytest.raises(RuntimeError, match="has unsaved changes"):
-            apply(image, apply=mode)
+            estimate(image, mode)
     assert image.is_dirty
     assert image.pixels[0] == pytest.approx(0.25, abs=1 / 255)
     if is_packed:
         image.pack()
     else:
         image.save()
-    apply(image)
+    estimate(image, "NODES")

@@ -3,10 +3,13 @@
 import numpy as np
 import pytest
 
+from crfnet.luts.files import write_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.footage import limited_range_picture
 from tests.helpers.images import read_image, write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, drawn_in, estimate, labels, linear_shown, load, operators
 
 
 @pytest.mark.parametrize("color_space", ["AgX Log", "Linear Rec.709"])
@@ -25,23 +28,16 @@ def test_a_stored_response_is_not_applied_to_them_either(image):
     with pytest.raises(RuntimeError, match="is logarithmic or linear, so it has no camera response"):
         bpy.ops.crf.apply_response(image=image.name, apply="NODES")
     assert not any(tree.name.startswith("Camera Response") for tree in bpy.data.node_groups)
-    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES", force=True) == {"FINISHED"}
+    apply(image, force=True)
 
 
-def test_a_dpx_that_is_neither(addon, tmp_path, codes, estimate):
+def test_a_dpx_that_is_neither(addon, tmp_path, codes):
     """Blender takes every DPX for linear; its header says otherwise."""
-    from blender_addon.scene.stored_estimate import restored
-
-    path = write_image(tmp_path / "video.dpx", codes)
-    image = bpy.data.images.load(str(path))
-    assert bpy.ops.crf.estimate_response(image=image.name) == {"FINISHED"}
-    expected = estimate(path)
-    assert restored(image).weights.tolist() == expected.weights.tolist()
+    estimate(load(write_image(tmp_path / "video.dpx", codes)))
 
 
 def test_linear_files_are_refused_and_no_choice_is_offered_that_is_no_help(addon, tmp_path):
-    path = write_image(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32))
-    image = bpy.data.images.load(str(path))
+    image = load(write_image(tmp_path / "render.exr", np.ones((256, 256, 3), np.float32)))
     for force in (False, True):
         with pytest.raises(RuntimeError, match="OpenEXR holds scene-linear values") as problem:
             bpy.ops.crf.estimate_response(image=image.name, force=force)
@@ -49,42 +45,29 @@ def test_linear_files_are_refused_and_no_choice_is_offered_that_is_no_help(addon
 
 
 def test_what_is_recognized_is_named_and_applied_at_the_users_word_only(addon, tmp_path, in_editor):
-    from tests.blender.test_addon_panel import drawn_in, labels, operators
-    from tests.helpers.footage import limited_range_picture
-
-    image = bpy.data.images.load(str(write_image(tmp_path / "limited.png", limited_range_picture())))
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
+    image = load(write_image(tmp_path / "limited.png", limited_range_picture()))
+    estimate(image, "NODES")
     assert not [tree for tree in bpy.data.node_groups if tree.name.startswith("Camera Response")]
     image.camera_response_settings.apply = "NODES"
     drawn = drawn_in(image, in_editor)
     assert next(entry for entry in drawn if entry[0] == "label") == ("label", "Do not trust: limited range", "ERROR")
-    words = " ".join(labels(drawn))
-    assert "Expand the range first" in words
+    assert "Expand the range first" in " ".join(labels(drawn))
     assert ("crf.apply_response", "Apply Anyway") in operators(drawn)
     with pytest.raises(RuntimeError, match="Apply Anyway"):
         bpy.ops.crf.apply_response(image=image.name)
-    assert bpy.ops.crf.apply_response(image=image.name, anyway=True, apply="NODES") == {"FINISHED"}
+    apply(image, anyway=True)
 
 
 def test_an_exr_plate_is_baked_and_shown_once_it_is_called_encoded(addon, tmp_path, codes, in_editor):
-    from crfnet.luts.files import write_lut
-    from crfnet.luts.lut1d import inverse_response_lut
-
     curve = ResponseCurve.gamma(2.2)
     write_lut(tmp_path / "camera.cube", inverse_response_lut(curve))
-    path = write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32))
-    image = bpy.data.images.load(str(path))
+    image = load(write_image(tmp_path / "plate.exr", (codes / 255).astype(np.float32)))
     lut = {"image": image.name, "filepath": str(tmp_path / "camera.cube")}
     with pytest.raises(RuntimeError, match="choose for it a color space that is not linear"):
         bpy.ops.crf.load_lut(**lut)
     image.colorspace_settings.name = "Non-Color"
     assert bpy.ops.crf.load_lut(**lut) == {"FINISHED"}
-    assert bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float") == {"FINISHED"}
+    apply(image, "BAKE", depth="float")
     linear = curve.inverse(codes / 255)
     assert np.abs(read_image(tmp_path / "plate_linear.exr") - linear).max() < 1e-5
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
-        shown = np.array(space.image.pixels[:]).reshape(*codes.shape[:2], 4)[::-1, :, :3]
-        assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
-    assert np.abs(shown - linear).max() < 1e-4  # 16-bit codes are looked up
+    assert np.abs(linear_shown(image, in_editor)[..., :3] - linear).max() < 1e-4  # 16-bit codes are looked up

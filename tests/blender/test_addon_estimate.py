@@ -7,21 +7,18 @@ import sys
 import numpy as np
 import pytest
 
+from crfnet_core.photograph.metadata import Device
+from crfnet_core.posterior import Prior
 from tests.helpers.images import read_image, write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import bpy, load, load_sequence, paint, reopen, stored_estimate
 
 EDITORS = {"IMAGE_EDITOR": "image", "CLIP_EDITOR": "clip"}
 
 
-def stored(datablock):
-    from blender_addon.scene.stored_estimate import restored
-
-    return restored(datablock)
-
-
-def assert_equal(found, expected):
-    """Two estimates are the same, number by number."""
+def assert_stored(datablock, expected):
+    """The estimate that is stored is this one, number by number."""
+    found = stored_estimate.restored(datablock)
     np.testing.assert_equal(dataclasses.asdict(found), dataclasses.asdict(expected))
     assert found.verdict == expected.verdict
 
@@ -39,32 +36,34 @@ def test_enabled_and_disabled_twice(addon):
 
 def test_the_estimate_is_the_apis(image, plate_file, estimate):
     bpy.ops.crf.estimate_response(image=image.name)
-    assert_equal(stored(image), estimate(plate_file))
-
-
-def test_with_the_packaged_model(addon, plate):
-    from crfnet_core import ResponseNetwork, estimate_response, read_photo
-    from crfnet_core.network import DEFAULT_MODEL
-
-    if not DEFAULT_MODEL.is_dir():
-        pytest.skip("the packaged model is not there")
-    addon.model = ""
-    image = bpy.data.images.load(str(plate))
-    bpy.ops.crf.estimate_response(image=image.name)
-    assert_equal(stored(image), estimate_response(read_photo(plate), network=ResponseNetwork.load()))
+    assert_stored(image, estimate(plate_file))
 
 
 def test_it_survives_in_the_file(image, plate_file, tmp_path, estimate):
     bpy.ops.crf.estimate_response(image=image.name, exposure=0.5)
     image.use_fake_user = True
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "shot.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
+    reopen(tmp_path / "shot.blend")
     image = bpy.data.images["plate.png"]
-    assert_equal(stored(image), estimate(plate_file))
+    assert_stored(image, estimate(plate_file))
     assert image.camera_response_settings.exposure == 0.5
     plate_file.rename(plate_file.with_name("gone.png"))
     with pytest.raises(RuntimeError, match="does not exist"):
         bpy.ops.crf.estimate_response(image=image.name)
+
+
+def test_the_prior_and_the_metadata_follow_the_settings(image, plate_file, estimate):
+    image.camera_response_settings.prior = "any"
+    bpy.ops.crf.estimate_response(image=image.name, ignore_metadata=True)
+    assert_stored(image, estimate(plate_file, prior=Prior.load("any"), use_metadata=False))
+    settings = image.camera_response_settings
+    assert (settings.prior, settings.ignore_metadata) == ("any", True)
+
+
+@pytest.mark.parametrize(("device", "expected"), [("phone", Device.PHONE), ("file", None)])
+def test_the_user_may_state_what_took_the_plate(image, plate_file, estimate, device, expected):
+    bpy.ops.crf.estimate_response(image=image.name, device=device)
+    assert_stored(image, estimate(plate_file, device=expected))
+    assert image.camera_response_settings.device == device
 
 
 def test_undo_takes_everything_back(image):
@@ -85,14 +84,14 @@ def test_undo_takes_everything_back(image):
 def test_from_the_editors(image, plate_file, in_editor, editor):
     with in_editor(editor) as space:
         assert not bpy.ops.crf.estimate_response.poll()
-        datablock = image if editor == "IMAGE_EDITOR" else bpy.data.movieclips.load(str(plate_file))
+        datablock = load(plate_file, EDITORS[editor])
         setattr(space, EDITORS[editor], datablock)
         assert bpy.ops.crf.estimate_response.poll()
         assert not bpy.ops.crf.apply_response.poll()
         assert bpy.ops.crf.estimate_response("INVOKE_DEFAULT", apply="NODES") == {"FINISHED"}  # no interface: execute
         assert bpy.ops.crf.apply_response.poll()
         if editor == "IMAGE_EDITOR":
-            image.pixels[0] = 0.5  # unsaved changes
+            datablock.pixels[0] = 0.5  # unsaved changes
             assert not bpy.ops.crf.apply_response.poll()
     assert "camera_response" in datablock
 
@@ -105,21 +104,13 @@ def sequence(tmp_path, codes):
     return tmp_path / "shot.0007.png"
 
 
-def load_sequence(kind, path):
-    if kind == "clip":
-        return bpy.data.movieclips.load(str(path))
-    image = bpy.data.images.load(str(path))
-    image.source = "SEQUENCE"
-    return image
-
-
 @pytest.mark.parametrize("kind", ["image", "clip"])
 def test_a_sequence(addon, sequence, codes, estimate, kind):
-    datablock = load_sequence(kind, sequence)
+    datablock = load(sequence, kind) if kind == "clip" else load_sequence(sequence)
     assert bpy.ops.crf.estimate_response(**{kind: datablock.name}, apply="BAKE", depth="float") == {"FINISHED"}
     frames = [sequence.with_name(f"shot.{number:04d}.png") for number in (7, 9, 10)]
     expected = estimate(*frames)
-    assert_equal(stored(datablock), expected)
+    assert_stored(datablock, expected)
     linear = sorted(path.name for path in sequence.parent.glob("*.exr"))
     assert linear == ["shot_linear.0007.exr", "shot_linear.0009.exr", "shot_linear.0010.exr"]
     pixels = read_image(sequence.with_name("shot_linear.0010.exr"))
@@ -135,7 +126,7 @@ def test_a_packed_image(image, plate_file, estimate):
     image.pack()
     plate_file.unlink()
     bpy.ops.crf.estimate_response(image=image.name)
-    assert_equal(stored(image), expected)
+    assert_stored(image, expected)
     with pytest.raises(RuntimeError, match="choose one under Folder"):
         bpy.ops.crf.apply_response(image=image.name, apply="BAKE")
 
@@ -145,15 +136,13 @@ def test_a_generated_image(addon, codes, estimate, tmp_path, color_space):
     """Its pixels are code values, whatever its color space, and it has no metadata."""
     image = bpy.data.images.new("painted", 256, 256)
     image.colorspace_settings.name = color_space
-    pixels = np.ones((256, 256, 4), np.float32)
-    pixels[..., :3] = codes[::-1] / 255
-    image.pixels.foreach_set(pixels.ravel())
+    paint(image, codes / 255)
     bpy.ops.crf.estimate_response(image=image.name)
-    assert_equal(stored(image), estimate(write_image(tmp_path / "painted.png", codes), use_metadata=False))
+    assert_stored(image, estimate(write_image(tmp_path / "painted.png", codes), use_metadata=False))
 
 
 def test_errors_are_one_sentence_and_leave_nothing(addon, tmp_path, codes):
-    small = bpy.data.images.load(str(write_image(tmp_path / "small.png", codes[:100])))
+    small = load(write_image(tmp_path / "small.png", codes[:100]))
     float_image = bpy.data.images.new("float", 256, 256, float_buffer=True)
     for name, words in ((small.name, "at least 227 x 227"), (float_image.name, "linear"), ("nothing", "no image")):
         with pytest.raises(RuntimeError, match=words) as problem:

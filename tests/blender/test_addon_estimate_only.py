@@ -6,7 +6,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import IS_BLENDER_5, apply, bpy, estimate, load
 
 
 @pytest.fixture
@@ -31,7 +31,7 @@ def scene_state():
         {image.name: (image.colorspace_settings.name, image.source, image.filepath) for image in bpy.data.images},
         [clip.name for clip in bpy.data.movieclips],
         [group.name for group in bpy.data.node_groups],
-        bpy.context.scene.use_nodes if bpy.app.version < (5, 0, 0) else bpy.context.scene.compositing_node_group,
+        bpy.context.scene.compositing_node_group if IS_BLENDER_5 else bpy.context.scene.use_nodes,
     )
 
 
@@ -63,7 +63,7 @@ def test_do_not_trust_is_not_applied_without_the_users_word(untrusted, tmp_path,
 
 def test_there_is_no_redo_panel_and_no_choice_is_left_for_the_next_plate(image, plate_file, codes, tmp_path):
     """The panel would show the arguments of the call, not what was done, and do something else at a change."""
-    other = bpy.data.images.load(str(write_image(plate_file.with_name("other.png"), codes)))
+    other = load(write_image(plate_file.with_name("other.png"), codes))
     choices = {"apply": "EXPORT", "folder": str(tmp_path / "out"), "overwrite": True, "exposure": 1}
     for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
         operator("EXEC_DEFAULT", True, image=image.name, **choices)
@@ -86,7 +86,7 @@ def test_the_estimate_is_kept_if_it_cannot_be_applied(image, tmp_path, monkeypat
     assert "camera_response" in image
     assert scene_state() == before
     monkeypatch.undo()
-    assert bpy.ops.crf.apply_response(image=image.name, apply="EXPORT", folder=str(tmp_path / "out")) == {"FINISHED"}
+    apply(image, "EXPORT", folder=str(tmp_path / "out"))
 
 
 def test_a_packed_image_goes_beside_a_saved_blend(image, plate_file, tmp_path):
@@ -94,5 +94,5 @@ def test_a_packed_image_goes_beside_a_saved_blend(image, plate_file, tmp_path):
     plate_file.unlink()
     (tmp_path / "project").mkdir()
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "project" / "shot.blend"))
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="BAKE") == {"FINISHED"}
+    estimate(image, "BAKE")
     assert (tmp_path / "project" / "plate_linear.exr").is_file()

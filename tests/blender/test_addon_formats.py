@@ -5,9 +5,7 @@ import pytest
 
 from tests.helpers.images import read_image, write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
-
-from .test_addon_movies import stored_curve  # noqa: E402 - after the skip
+from .helpers import bpy, curve_of, estimate, load
 
 
 @pytest.mark.parametrize("suffix", ["bmp", "jp2"])
@@ -17,15 +15,14 @@ def test_their_code_values_are_exact(addon, tmp_path, codes, plate_file, suffix)
         save_jpeg_2000(plate_file, path)
     else:
         write_image(path, codes)
-    image = bpy.data.images.load(str(path))
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="BAKE", depth="float") == {"FINISHED"}
-    expected = stored_curve(image).inverse(codes / 255)
+    image = load(path)
+    estimate(image, "BAKE", depth="float")
+    expected = curve_of(image).inverse(codes / 255)
     assert np.abs(read_image(tmp_path / "other_linear.exr") - expected).max() < 1e-6
 
 
 def save_jpeg_2000(source, target):
-    """Save an image as JPEG 2000 without loss."""
-    scene, image = bpy.context.scene, bpy.data.images.load(str(source))
+    scene, image = bpy.context.scene, load(source)
     image.colorspace_settings.name = "Non-Color"
     scene.view_settings.view_transform = "Raw"
     settings = scene.render.image_settings

@@ -7,21 +7,10 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import bpy, curve_of, load_sequence, pixels_of, plates, show
+from .helpers import estimate as run
 
 pytestmark = pytest.mark.usefixtures("estimated")
-
-
-def pixels_of(image):
-    """The pixels of a float image, the top row first."""
-    width, height = image.size
-    pixels = np.empty(len(image.pixels), np.float32)
-    image.pixels.foreach_get(pixels)
-    return pixels.reshape(height, width, 4)[::-1]
-
-
-def show(after):
-    assert bpy.ops.crf.compare(is_after=after) == {"FINISHED"}
 
 
 def names():
@@ -29,8 +18,6 @@ def names():
 
 
 def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes, estimate, in_editor):
-    from blender_addon.scene.plates import active_datablock
-
     before = names()
     expected = estimate(plate_file).curve.inverse(codes / 255)
     with in_editor("IMAGE_EDITOR") as space:
@@ -38,7 +25,7 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
         show(after=True)
         assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
         assert space.image.colorspace_settings.name == "Linear Rec.709"
-        assert active_datablock(bpy.context) == image  # the panel still shows the plate
+        assert plates.active_datablock(bpy.context) == image  # the panel still shows the plate
         assert image.colorspace_settings.name == "sRGB"
         image.camera_response_settings.exposure = 1
         show(after=True)  # anew
@@ -51,14 +38,11 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
 
 def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):
     """Not the one that Blender has read last, for another editor or a node; a missing frame is named."""
-    from blender_addon.scene import stored_estimate
-
     for number in (1, 2, 4):
         write_image(tmp_path / f"shot.{number:04d}.png", np.roll(codes, number, axis=0))
-    image = bpy.data.images.load(str(tmp_path / "shot.0001.png"))
-    image.source = "SEQUENCE"
-    bpy.ops.crf.estimate_response(image=image.name)
-    curve = stored_estimate.restored(image).curve
+    image = load_sequence(tmp_path / "shot.0001.png")
+    run(image)
+    curve = curve_of(image)
     with in_editor("IMAGE_EDITOR") as space:
         space.image, space.image_user.frame_duration = image, 4
         for number in (2, 4, 1):

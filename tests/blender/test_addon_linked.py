@@ -3,9 +3,7 @@
 import numpy as np
 import pytest
 
-from .test_addon_panel import drawn_in, labels
-
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, drawn_in, labels, linear_shown
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -43,21 +41,15 @@ def test_operators_that_would_change_its_settings_are_refused_and_say_why(linked
 
 
 def test_its_linear_plate_may_be_looked_at(linked, in_editor, codes, estimate, plate_file):
-    from .test_addon_image_tools import pixels_of
-
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = linked
-        assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
-        expected = estimate(plate_file).curve.inverse(codes / 255)
-        assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
-        bpy.ops.crf.compare(is_after=False)
+    expected = estimate(plate_file).curve.inverse(codes / 255)
+    assert np.abs(linear_shown(linked, in_editor)[..., :3] - expected).max() < 1e-6
 
 
 def test_saving_leaves_the_code_values_of_the_other_file_alone(image, tmp_path):
     """The plate was packed after its nodes had read the file, so its code values are not packed yet."""
     from blender_addon.ui import handlers
 
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
+    apply(image)
     image.pack()
     bpy.app.handlers.save_pre.remove(handlers.pack_code_values)  # as by a Blender without the add-on
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))

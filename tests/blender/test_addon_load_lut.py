@@ -3,14 +3,15 @@
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from crfnet.luts.files import read_lut, write_lut
+from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+
+from .helpers import apply, bpy, curve_of, drawn_in, estimate, group_node, labels, operators, reopen, stored_estimate
 
 
 @pytest.fixture
 def lut_file(tmp_path, true_response):
     """Write the inverse of a known response in a format; returns its file."""
-    from crfnet.luts.files import write_lut
-    from crfnet.luts.lut1d import inverse_response_lut
 
     def write(suffix=".spi1d"):
         path = tmp_path / f"camera{suffix}"
@@ -26,17 +27,13 @@ def load(image, path):
 
 @pytest.mark.parametrize("suffix", [".spi1d", ".cube", ".clf"])
 def test_the_response_of_the_file_is_stored(image, lut_file, true_response, suffix):
-    from blender_addon.scene import stored_estimate
-
     assert load(image, lut_file(suffix)) == {"FINISHED"}
-    found = stored_estimate.restored(image).curve
+    found = curve_of(image)
     assert np.abs(found.brightness - true_response.brightness).max() < 2e-4
     assert stored_estimate.origin(image) == f"Loaded from camera{suffix}"
 
 
 def test_the_panel_says_so_and_has_no_verdict(image, lut_file, in_editor):
-    from tests.blender.test_addon_panel import drawn_in, labels, operators
-
     assert "crf.load_lut" in [name for name, *_ in operators(drawn_in(image, in_editor))]
     load(image, lut_file())
     image.camera_response_settings.apply = "NODES"
@@ -49,45 +46,34 @@ def test_the_panel_says_so_and_has_no_verdict(image, lut_file, in_editor):
 
 
 def test_it_is_applied_in_nodes_and_files(image, lut_file, tmp_path, codes, composited, true_response):
-    from blender_addon.scene.node_links import compositor_trees
-    from crfnet.luts.files import read_lut
-
     load(image, lut_file())
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES")
-    tree = bpy.data.node_groups["Camera Response plate"]
-    users = [user for user in compositor_trees() if user != tree]
-    node = next(node for user in users for node in user.nodes if getattr(node, "node_tree", None) == tree)
-    assert np.abs(composited(node.outputs[0])[..., :3] - true_response.inverse(codes / 255)).max() < 5e-5
-    bpy.ops.crf.apply_response(image=image.name, apply="EXPORT")
+    apply(image)
+    linear = composited(group_node().outputs[0])[..., :3]
+    assert np.abs(linear - true_response.inverse(codes / 255)).max() < 5e-5
+    apply(image, "EXPORT")
     (exported,) = (path for path in tmp_path.glob("*.spi1d") if path.name != "camera.spi1d")
     assert read_lut(exported).comments == ("Inverse response, loaded from camera.spi1d",)
     assert image["camera_response"]["origin"] == "Loaded from camera.spi1d"
 
 
 def test_it_survives_saving_and_goes_to_other_plates(image, lut_file, tmp_path, codes):
-    from blender_addon.scene import stored_estimate
-
     load(image, lut_file())
     other = image.copy()
     del other["camera_response"]
     bpy.ops.crf.copy_response(image=image.name, targets=[{"name": other.name, "is_clip": False, "is_chosen": True}])
     name = other.name
     image.use_fake_user = other.use_fake_user = True
-    bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "saved.blend"))
-    bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "saved.blend"))
+    reopen(tmp_path / "saved.blend")
     image, other = bpy.data.images["plate.png"], bpy.data.images[name]
     assert not stored_estimate.has_verdict(image)
     assert not stored_estimate.has_verdict(other)
     assert stored_estimate.origin(other) == "From plate.png (Loaded from camera.spi1d)"
-    curves = [stored_estimate.restored(plate).curve.brightness for plate in (image, other)]
-    assert np.array_equal(*curves)
+    assert np.array_equal(curve_of(image).brightness, curve_of(other).brightness)
 
 
 def test_a_new_estimate_takes_its_place(image, lut_file):
-    from blender_addon.scene import stored_estimate
-
     load(image, lut_file())
-    bpy.ops.crf.estimate_response(image=image.name)
+    estimate(image)
     assert stored_estimate.has_verdict(image)
     assert stored_estimate.origin(image) == ""
 
@@ -98,9 +84,6 @@ def test_without_a_file_it_asks_for_one(image):
 
 
 def test_other_files_are_refused_and_change_nothing(image, tmp_path):
-    from crfnet.luts.files import write_lut
-    from crfnet.luts.lut1d import Lut1D
-
     path = tmp_path / "forward.cube"
     write_lut(path, Lut1D(np.linspace(0, 1, 256) ** 0.45))
     for wrong in (path, tmp_path / "absent.spi1d", tmp_path / "plate.png"):

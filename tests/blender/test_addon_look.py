@@ -7,28 +7,16 @@ from crfnet.luts.lut1d import inverse_response_lut
 from tests.blender.conftest import rendered
 from tests.helpers.images import read_image, write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import IS_BLENDER_5, apply, bpy, curve_of, estimate, group_node, load, scene_tree
 
 pytestmark = pytest.mark.usefixtures("estimated")
-
-IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: Largest difference from the code values of the plate, white = 1.
 ROUND_TRIP = 1e-5
 
 
-def scene_tree():
-    scene = bpy.context.scene
-    return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
-
-
 def output():
     return next(node for node in scene_tree().nodes if node.type in ("GROUP_OUTPUT", "COMPOSITE"))
-
-
-def node_of(prefix):
-    groups = [node for node in scene_tree().nodes if node.type == "GROUP"]
-    return next(node for node in groups if node.node_tree.name.startswith(prefix))
 
 
 @pytest.fixture
@@ -36,11 +24,11 @@ def look(addon):
     """Linearize a file in the compositor, and add its look behind it; returns the image and the node of the look."""
 
     def run(path, **choices):
-        image = bpy.data.images.load(str(path))
-        bpy.ops.crf.estimate_response(image=image.name, apply="NODES", **choices)
-        scene_tree().links.new(node_of("Camera Response").outputs[0], output().inputs[0])
+        image = load(path)
+        estimate(image, "NODES", **choices)
+        scene_tree().links.new(group_node().outputs[0], output().inputs[0])
         assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
-        return image, node_of("Camera Look")
+        return image, group_node("Camera Look")
 
     return run
 
@@ -66,11 +54,9 @@ def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, ch
 
 def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
     """The look is exact; between its entries the LUT is linear and the inverse response is not, by a code or so."""
-    from blender_addon.scene.stored_estimate import restored
-
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
     image, node = look(write_image(tmp_path / "deep.png", samples))
-    curve = restored(image).curve
+    curve = curve_of(image)
     expected = curve.forward(inverse_response_lut(curve).apply(samples / 65535))
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - expected).max() < ROUND_TRIP
     assert np.abs(expected - samples / 65535).max() < 2 / 65535
@@ -118,18 +104,18 @@ def test_light_beyond_the_camera_clips(look, composited, plate_file):
 def test_it_stands_before_the_output_once(look, plate_file):
     image, node = look(plate_file)
     assert output().inputs[0].links[0].from_socket == node.outputs["Image"]
-    assert node.inputs["Image"].links[0].from_node == node_of("Camera Response")
-    node_of("Camera Response").inputs["Exposure"].default_value = 0.75
+    assert node.inputs["Image"].links[0].from_node == group_node()
+    group_node().inputs["Exposure"].default_value = 0.75
     bpy.ops.crf.add_look(image=image.name)
-    assert [other for other in scene_tree().nodes if other.type == "GROUP" and "Look" in other.node_tree.name] == [node]
+    assert group_node("Camera Look") == node
     assert node.inputs["Exposure"].default_value == 0.75
-    assert node.inputs["Image"].links[0].from_node == node_of("Camera Response")
+    assert node.inputs["Image"].links[0].from_node == group_node()
 
 
 def test_another_plates_look_takes_its_place(look, plate_file, tmp_path, codes):
     _, node = look(plate_file)
-    other = bpy.data.images.load(str(write_image(tmp_path / "other.png", codes)))
-    bpy.ops.crf.estimate_response(image=other.name)
+    other = load(write_image(tmp_path / "other.png", codes))
+    estimate(other)
     bpy.ops.crf.add_look(image=other.name)
     assert output().inputs[0].links[0].from_node == node
     assert node.node_tree["camera_response_look_of"] == other
@@ -137,13 +123,12 @@ def test_another_plates_look_takes_its_place(look, plate_file, tmp_path, codes):
 
 def test_it_follows_a_response_that_is_applied_again(look, composited, plate_file, codes):
     image, node = look(plate_file)
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=-2)
+    apply(image, exposure=-2)
     assert node.inputs["Exposure"].default_value == -2
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
 
 
 def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
-    """Only the response counts, and the name."""
     plate_file.unlink()
     assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
     assert "Camera Look plate" in bpy.data.node_groups

@@ -7,56 +7,12 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import Interface, bpy, load_sequence, stored_estimate
+from .helpers import estimate as run_now
 
 TIMER = SimpleNamespace(type="TIMER", value="NOTHING")
 ESC = SimpleNamespace(type="ESC", value="PRESS")
 MOUSE = SimpleNamespace(type="MOUSEMOVE", value="NOTHING")
-
-
-class Interface:
-    """Stands for the context of an interactive session, and records what an operator does to it."""
-
-    def __init__(self):
-        self.window = object()
-        self.window_manager = self.workspace = self
-        self.space_data = None
-        self.scene = bpy.context.scene
-        self.timers, self.status, self.progress, self.handlers, self.redrawn = [], [], [], [], []
-        region = SimpleNamespace(type="UI", tag_redraw=lambda: self.redrawn.append("UI"))
-        picture = SimpleNamespace(type="WINDOW", tag_redraw=lambda: self.redrawn.append("WINDOW"))
-        area = SimpleNamespace(type="IMAGE_EDITOR", regions=[region, picture])
-        self.windows = [SimpleNamespace(screen=SimpleNamespace(areas=[area]))]
-
-    def event_timer_add(self, seconds, *, window):
-        self.timers.append(seconds)
-        return seconds
-
-    def event_timer_remove(self, timer):
-        self.timers.remove(timer)
-
-    def modal_handler_add(self, operator):
-        self.handlers.append(operator)
-
-    def status_text_set(self, text):
-        self.status.append(text)
-
-    def progress_begin(self, first, last):
-        self.progress.append(first)
-
-    def progress_update(self, percent):
-        self.progress.append(percent)
-
-    def progress_end(self):
-        self.progress.append(None)
-
-
-@pytest.fixture
-def interface(addon):
-    from blender_addon.ui import running
-
-    yield Interface()
-    running.stop()
 
 
 @pytest.fixture
@@ -88,15 +44,13 @@ def drive(operator, interface, seconds=60):
 
 
 def test_runs_to_its_end(operator, interface, image, plate_file, estimate):
-    from blender_addon.scene.stored_estimate import restored
-
     run = operator(image.name, apply="NODES")
     assert run.invoke(interface, None) == {"RUNNING_MODAL"}
     assert interface.handlers == [run]
     assert "camera_response" not in image  # nothing happens in Blender before it has succeeded
     assert run.modal(interface, MOUSE) == {"PASS_THROUGH"}
     assert drive(run, interface) == {"FINISHED"}
-    assert restored(image).uncertainty == estimate(plate_file).uncertainty
+    assert stored_estimate.restored(image).uncertainty == estimate(plate_file).uncertainty
     assert run.reports[0][0] == "INFO"
     assert interface.timers == []
     assert interface.status[-1] is None
@@ -121,9 +75,8 @@ def test_esc_cancels_and_changes_nothing(operator, interface, image):
 def test_a_cancelled_bake_leaves_no_files(operator, interface, addon, tmp_path, codes, monkeypatch):
     for number in range(8):
         write_image(tmp_path / f"shot.{number:04d}.png", codes)
-    image = bpy.data.images.load(str(tmp_path / "shot.0000.png"))
-    image.source = "SEQUENCE"
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    image = load_sequence(tmp_path / "shot.0000.png")
+    run_now(image, "NODES")
     run = operator(image.name, apply="BAKE")
     run.is_estimated = True
     run.invoke(interface, None)

@@ -5,17 +5,15 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import IS_BLENDER_5, bpy, curve_of, estimate, group_node, load, load_sequence, pixels_of, plates, show
 
 FRAMES = 12
 
-#: Container, codec and bits of the movies: RGB without loss, YUV of limited range without further loss, RGB of 10 bits,
-#: RGB with alpha.
+#: Container, codec and bits of the movies: RGB without loss, YUV of limited range without further loss, RGB of 10 bits.
 CODECS = {
     "rgb.mkv": ("MKV", "FFV1", "8"),
     "yuv.mp4": ("MPEG4", "H264", "8"),
     "deep.mkv": ("MKV", "FFV1", "10"),
-    "alpha.mov": ("QUICKTIME", "QTRLE", "8"),
 }
 
 
@@ -35,9 +33,8 @@ def movie(addon, movie_folder, codes):
     def encoded(name):
         path = movie_folder / name
         if not path.is_file():
-            encode(
-                path, [write_image(movie_folder / f"{n:04d}.png", frame_codes(codes, n)) for n in range(1, FRAMES + 1)]
-            )
+            numbers = range(1, FRAMES + 1)
+            encode(path, [write_image(movie_folder / f"{n:04d}.png", frame_codes(codes, n)) for n in numbers])
         return path
 
     return encoded
@@ -47,15 +44,14 @@ def encode(path, frames, color_mode="RGB"):
     """Encode 8-bit frames as they are."""
     container, codec, depth = CODECS[path.name]
     scene = bpy.data.scenes.new("Encoder")
-    image = bpy.data.images.load(str(frames[0]))
-    image.source = "SEQUENCE"
+    image = load_sequence(frames[0])
     image.colorspace_settings.name = "Non-Color"
     tree, output = empty_tree(scene)
     node = tree.nodes.new("CompositorNodeImage")
     node.image = image
     node.frame_duration, node.frame_start, node.frame_offset = len(frames), 1, 0
     multiplied = tree.nodes.new("CompositorNodePremulKey")  # by alpha, which the encoder divides by
-    if bpy.app.version >= (5, 0, 0):
+    if IS_BLENDER_5:
         multiplied.inputs["Type"].default_value = "To Premultiplied"
     else:
         multiplied.mapping = "STRAIGHT_TO_PREMUL"
@@ -71,7 +67,7 @@ def encode(path, frames, color_mode="RGB"):
     settings.file_format = "FFMPEG"
     render.ffmpeg.format, render.ffmpeg.codec, render.ffmpeg.audio_codec = container, codec, "NONE"
     render.ffmpeg.constant_rate_factor = "LOSSLESS"
-    settings.color_mode, settings.color_depth = "RGBA" if codec == "QTRLE" else color_mode, depth
+    settings.color_mode, settings.color_depth = color_mode, depth
     render.filepath, render.use_file_extension = str(path), False
     bpy.ops.render.render(animation=True, scene=scene.name)
     bpy.data.images.remove(image)
@@ -79,7 +75,7 @@ def encode(path, frames, color_mode="RGB"):
 
 
 def empty_tree(scene):
-    if bpy.app.version >= (5, 0, 0):
+    if IS_BLENDER_5:
         tree = scene.compositing_node_group = bpy.data.node_groups.new("Encoder", "CompositorNodeTree")
         tree.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
         return tree, tree.nodes.new("NodeGroupOutput")
@@ -88,26 +84,13 @@ def empty_tree(scene):
     return scene.node_tree, scene.node_tree.nodes.new("CompositorNodeComposite")
 
 
-def stored_curve(datablock):
-    from blender_addon.scene.stored_estimate import restored
-
-    return restored(datablock).curve
-
-
-def load(kind, path):
-    return (bpy.data.images if kind == "image" else bpy.data.movieclips).load(str(path))
-
-
 @pytest.mark.parametrize("kind", ["image", "clip"])
 @pytest.mark.parametrize("number", [1, 7, 12])
 def test_a_plate_holds_the_code_values_of_the_frame_shown(movie, codes, kind, number):
-    from blender_addon.scene.plates import plate_of
-
     bpy.context.scene.frame_set(number)
     images = list(bpy.data.images)
     for name, most in (("rgb.mkv", 1), ("yuv.mp4", 2)):  # H.264 keeps 219 levels of brightness
-        datablock = load(kind, movie(name))
-        plate = plate_of(datablock)
+        plate = plates.plate_of(load(movie(name), kind))
         assert (plate.shown_frame, plate.frame_count) == (number, FRAMES)
         difference = plate.content.astype(int) - frame_codes(codes, number)
         assert np.abs(difference).max() <= most
@@ -116,34 +99,23 @@ def test_a_plate_holds_the_code_values_of_the_frame_shown(movie, codes, kind, nu
 
 
 def test_a_movie_of_ten_bits_has_no_code_values(movie):
-    image = load("image", movie("deep.mkv"))
+    image = load(movie("deep.mkv"))
     with pytest.raises(RuntimeError, match="movies of more than 8 bits"):
         bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
     assert "camera_response" not in image
 
 
-def test_a_movie_is_not_baked(movie, tmp_path):
-    image = load("image", movie("rgb.mkv"))
-    with pytest.raises(RuntimeError, match="movies are not baked"):
-        bpy.ops.crf.estimate_response(image=image.name, apply="BAKE", folder=str(tmp_path / "out"))
-    assert not (tmp_path / "out").exists()
-
-
 def test_nodes_linearize_a_movie(movie, codes, composited):
-    image = load("image", movie("rgb.mkv"))
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
+    image = load(movie("rgb.mkv"))
+    estimate(image, "NODES")
     bpy.context.scene.frame_set(7)
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
-    (node,) = (node for node in tree.nodes if node.type == "GROUP")
-    found = composited(node.outputs["Image"])[..., :3]
-    assert np.abs(found - stored_curve(image).inverse(frame_codes(codes, 7) / 255)).max() < 1e-5
+    found = composited(group_node().outputs["Image"])[..., :3]
+    assert np.abs(found - curve_of(image).inverse(frame_codes(codes, 7) / 255)).max() < 1e-5
 
 
 def test_a_damaged_movie_is_one_sentence(addon, tmp_path):
     (tmp_path / "broken.mov").write_bytes(b"no movie" * 100)
-    image = bpy.data.images.load(str(tmp_path / "broken.mov"))
+    image = load(tmp_path / "broken.mov")
     with pytest.raises(RuntimeError, match=r"broken.mov: frame 1 cannot be read") as problem:
         bpy.ops.crf.estimate_response(image=image.name)
     assert len(str(problem.value).strip().splitlines()) == 1
@@ -151,19 +123,16 @@ def test_a_damaged_movie_is_one_sentence(addon, tmp_path):
 
 
 def test_of_a_movie_it_is_the_frame_that_the_editor_shows(movie, codes, in_editor):
-    """Not the one that Blender has read last, here the first."""
-    from .test_addon_image_tools import pixels_of
-
-    image = load("image", movie("rgb.mkv"))
-    bpy.ops.crf.estimate_response(image=image.name)
+    image = load(movie("rgb.mkv"))
+    estimate(image)
     before = list(bpy.data.images)
     with in_editor("IMAGE_EDITOR") as space:
         space.image, space.image_user.frame_duration = image, FRAMES
         for number in (7, 2, 12, 1):
             bpy.context.scene.frame_set(number)
-            assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
-            expected = stored_curve(image).inverse(frame_codes(codes, number) / 255)
+            show(after=True)
+            expected = curve_of(image).inverse(frame_codes(codes, number) / 255)
             assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
-            bpy.ops.crf.compare(is_after=False)
+            show(after=False)
     assert list(bpy.data.images) == before
     assert not image.is_dirty

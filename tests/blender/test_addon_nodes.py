@@ -3,56 +3,49 @@
 import numpy as np
 import pytest
 
+from crfnet.luts.lut1d import inverse_response_lut
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
-
-IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
+from .helpers import IS_BLENDER_5, bpy, group_node, load, load_sequence
+from .helpers import estimate as run
 
 #: Largest difference against numpy on 8-bit and 16-bit plates.
 CODES = 1e-6
 
 
 @pytest.fixture
-def load(addon):
-    """Load a file and estimate; returns the image and its group node."""
+def node_of(addon):
+    """Load a file and apply its response; returns the group node."""
 
-    def run(path, **choices):
-        image = bpy.data.images.load(str(path))
-        assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES", **choices) == {"FINISHED"}
-        return image, next(node for node in scene_tree().nodes if node.type == "GROUP")
+    def applied(path, **choices):
+        run(load(path), "NODES", **choices)
+        return group_node()
 
-    return run
-
-
-def scene_tree():
-    scene = bpy.context.scene
-    return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
+    return applied
 
 
-def linear(curve, brightness):
-    """What `crfnet linearize` makes of a brightness: a LUT of the usual length, which all 8-bit codes are in."""
-    from crfnet.luts.lut1d import inverse_response_lut
+@pytest.fixture
+def tree(tree):
+    tree.nodes.clear()
+    return tree
 
-    return inverse_response_lut(curve).apply(brightness)
 
-
-def test_every_8_bit_code(load, composited, plate_file, codes, estimate):
-    _, group = load(plate_file)
+def test_every_8_bit_code(node_of, composited, plate_file, codes, estimate):
+    group = node_of(plate_file)
     expected = estimate(plate_file).curve.inverse(codes / 255)
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
-def test_a_16_bit_plate(load, composited, tmp_path, estimate):
+def test_a_16_bit_plate(node_of, composited, tmp_path, estimate):
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
     path = write_image(tmp_path / "deep.png", samples)
-    _, group = load(path)
-    expected = linear(estimate(path).curve, samples / 65535)
+    group = node_of(path)
+    expected = inverse_response_lut(estimate(path).curve).apply(samples / 65535)
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
-def test_exposure_is_a_socket_in_stops(load, composited, plate_file, codes, estimate):
-    _, group = load(plate_file, exposure=1.5)
+def test_exposure_is_a_socket_in_stops(node_of, composited, plate_file, codes, estimate):
+    group = node_of(plate_file, exposure=1.5)
     assert group.inputs["Exposure"].default_value == 1.5
     expected = estimate(plate_file).curve.inverse(codes / 255) * 2**1.5
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 3 * CODES
@@ -60,13 +53,13 @@ def test_exposure_is_a_socket_in_stops(load, composited, plate_file, codes, esti
 
 @pytest.mark.skipif(not IS_BLENDER_5, reason="the working space is the config's before Blender 5.0")
 @pytest.mark.parametrize("space", ["ACEScg", "Linear Rec.2020"])
-def test_another_working_space(load, composited, plate_file, codes, estimate, space):
+def test_another_working_space(node_of, composited, plate_file, codes, estimate, space):
     """The EXR, which Blender writes as linear Rec.709 or says otherwise, holds the same light."""
     import PyOpenColorIO as OCIO
 
     from blender_addon.scene.color_management import running_config
 
-    _, group = load(plate_file)
+    group = node_of(plate_file)
     bpy.ops.wm.set_working_color_space(working_space=space, convert_colors=False)
     try:
         pixels = np.ascontiguousarray(composited(group.outputs[0])[..., :3])
@@ -78,15 +71,13 @@ def test_another_working_space(load, composited, plate_file, codes, estimate, sp
     assert np.abs(pixels - expected).max() < 5e-6
 
 
-def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    tree = new_tree()
+def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(image, tree):
     plate, blur = tree.nodes.new("CompositorNodeImage"), tree.nodes.new("CompositorNodeBlur")
     plate.image = image
     tree.links.new(plate.outputs["Image"], blur.inputs["Image"])
     for exposure in (0, 1):  # the second time it is only brought up to date
-        bpy.ops.crf.estimate_response(image=image.name, apply="NODES", exposure=exposure)
-        (group,) = (node for node in tree.nodes if node.type == "GROUP")
+        run(image, "NODES", exposure=exposure)
+        group = group_node()
         assert blur.inputs["Image"].links[0].from_node == group
         assert group.inputs["Image"].links[0].from_node == plate
         assert group.inputs["Exposure"].default_value == exposure
@@ -94,10 +85,9 @@ def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate
         assert len([image for image in bpy.data.images if image.name.endswith("LUT")]) == 1
 
 
-def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
-    tree = new_tree()
+def test_the_active_node_of_the_compositor(image, tree, in_editor):
     node = tree.nodes.new("CompositorNodeImage")
-    node.image = bpy.data.images.load(str(plate_file))
+    node.image = image
     tree.nodes.active = node
     with in_editor("NODE_EDITOR") as space:
         space.node_tree = tree
@@ -107,9 +97,9 @@ def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
 
 
 def test_a_clip(addon, plate_file, composited, codes, estimate):
-    clip = bpy.data.movieclips.load(str(plate_file))
-    assert bpy.ops.crf.estimate_response(clip=clip.name, apply="NODES") == {"FINISHED"}
-    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
+    clip = load(plate_file, "clip")
+    run(clip, "NODES")
+    group = group_node()
     shown = group.inputs["Image"].links[0].from_node.clip
     assert (shown.filepath, shown.colorspace_settings.name) == (clip.filepath, "Non-Color")
     assert clip.colorspace_settings.name == "sRGB"
@@ -117,23 +107,11 @@ def test_a_clip(addon, plate_file, composited, codes, estimate):
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
-def new_tree():
-    """Return the scene's empty compositor tree."""
-    from blender_addon.scene.compositor import compositor_tree
-
-    tree = compositor_tree(bpy.context.scene)
-    tree.nodes.clear()
-    return tree
-
-
 def test_the_frames_of_a_sequence(addon, tmp_path, codes, composited, estimate):
-    """A new node shows the file of each frame number on that frame."""
     frames = {number: np.roll(codes, number, axis=0) for number in (7, 8, 10)}
     paths = [write_image(tmp_path / f"shot.{number:04d}.png", pixels) for number, pixels in frames.items()]
-    image = bpy.data.images.load(str(paths[0]))
-    image.source = "SEQUENCE"
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
-    group = next(node for node in scene_tree().nodes if node.type == "GROUP")
+    run(load_sequence(paths[0]), "NODES")
+    group = group_node()
     curve = estimate(*paths).curve
     for number in (10, 8):
         bpy.context.scene.frame_set(number)

@@ -5,14 +5,14 @@ import pytest
 from tests.helpers.cameras import photograph
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, drawn_in, estimate, groups, labels, load
 
 
 @pytest.fixture
 def images(addon, tmp_path, codes):
     """Three plates; the first one has an estimate."""
     paths = [write_image(tmp_path / f"{name}.png", codes) for name in ("one", "two", "three")]
-    images = [bpy.data.images.load(str(path)) for path in paths]
+    images = [load(path) for path in paths]
     bpy.ops.crf.estimate_response(image="one.png", exposure=1.5)
     return images
 
@@ -22,37 +22,36 @@ def copy(*names, is_clip=False, is_chosen=True):
     return bpy.ops.crf.copy_response(image="one.png", targets=targets)
 
 
-def test_each_gets_a_stored_response_that_says_where_it_is_from(images, in_editor):
-    from tests.blender.test_addon_panel import drawn_in, labels
-
+def test_each_gets_a_response_without_verdict_that_says_where_it_is_from(images, in_editor):
     one, two, three = images
+    one["camera_response"]["verdict"] = "good"
     assert copy("two.png") == {"FINISHED"}
     stored = two["camera_response"]
     assert stored["brightness"].to_list() == one["camera_response"]["brightness"].to_list()
     assert (stored["origin"], stored["exposure"]) == ("From one.png", 1.5)
     assert "camera_response" not in three
     assert "origin" not in one["camera_response"]
-    assert "From one.png" in " ".join(labels(drawn_in(two, in_editor)))
+    words = labels(drawn_in(two, in_editor))
+    assert (words[0], "Good" in words, "From one.png" in " ".join(words)) == ("Copied", False, True)
 
 
 def test_it_is_applied_as_to_the_first(images, tree):
     images[0].camera_response_settings.apply = "NODES"
     copy("two.png", "three.png")
-    groups = [node for node in tree.nodes if node.type == "GROUP"]
-    assert {node.node_tree["camera_response_of"] for node in groups} == set(images[1:])
-    assert {node.inputs["Exposure"].default_value for node in groups} == {1.5}
+    assert {node.node_tree["camera_response_of"] for node in groups(tree)} == set(images[1:])
+    assert {node.inputs["Exposure"].default_value for node in groups(tree)} == {1.5}
 
 
 def test_the_origin_stays_until_a_new_estimate(images):
     copy("two.png")
-    bpy.ops.crf.apply_response(image="two.png", apply="NODES")
+    apply(images[1])
     assert images[1]["camera_response"]["origin"] == "From one.png"
-    bpy.ops.crf.estimate_response(image="two.png")
+    estimate(images[1])
     assert "origin" not in images[1]["camera_response"]
 
 
 def test_a_clip_gets_it_too(images, tmp_path):
-    clip = bpy.data.movieclips.load(str(tmp_path / "two.png"))
+    clip = load(tmp_path / "two.png", "clip")
     copy(clip.name, is_clip=True)
     assert clip["camera_response"]["origin"] == "From one.png"
     assert "camera_response" not in images[1]
@@ -72,7 +71,7 @@ def test_what_is_not_to_be_trusted_is_stored_only(images, tree):
     images[0].camera_response_settings.apply = "NODES"
     copy("two.png")
     assert images[1]["camera_response"]["origin"] == "From one.png"
-    assert not [node for node in tree.nodes if node.type == "GROUP"]
+    assert groups(tree) == []
 
 
 def test_nothing_happens_if_one_plate_cannot_be_used(images):
@@ -90,7 +89,7 @@ def test_a_plate_of_another_camera_is_named(addon, plate, tmp_path, capfd):
     from blender_addon.ui.more.other_plates import other_camera
 
     one, same, two = (
-        bpy.data.images.load(str(photograph(plate, tmp_path / f"{name}.jpg", Make=make, Model="X")))
+        load(photograph(plate, tmp_path / f"{name}.jpg", Make=make, Model="X"))
         for name, make in (("one", "Canon"), ("same", "Canon"), ("two", "NIKON"))
     )
     bpy.ops.crf.estimate_response(image=one.name)
@@ -100,20 +99,10 @@ def test_a_plate_of_another_camera_is_named(addon, plate, tmp_path, capfd):
     assert "two.jpg: its file names another camera, " in capfd.readouterr().out
 
 
-def test_the_verdict_does_not_go_with_the_response(images, in_editor):
-    from tests.blender.test_addon_panel import drawn_in, labels
-
-    images[0]["camera_response"]["verdict"] = "good"
-    copy("two.png")
-    words = labels(drawn_in(images[1], in_editor))
-    assert words[0] == "Copied"
-    assert "Good" not in words
-
-
 def test_the_list_offers_other_plates_and_ticks_selected_nodes(images, tree, in_editor):
     from blender_addon.ui.more.other_plates import _selected, other_plates
 
-    bpy.ops.crf.apply_response(image="one.png", apply="NODES")  # makes hidden copies
+    apply(images[0])  # makes hidden copies
     bpy.data.images.new("linear", 8, 8, float_buffer=True)
     assert set(other_plates(images[0])) == set(images[1:])
     node = tree.nodes.new("CompositorNodeImage")

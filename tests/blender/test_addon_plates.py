@@ -7,34 +7,39 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
-
-from .test_addon_panel import drawn_in, operators  # noqa: E402 - after the skip
+from .helpers import (
+    IS_BLENDER_5,
+    apply,
+    bpy,
+    drawn_in,
+    estimate,
+    group_node,
+    load,
+    load_sequence,
+    operators,
+    paint,
+    plates,
+)
 
 
 @pytest.fixture
-def compositor(addon, plate_file, in_editor):
+def compositor(image, tree, in_editor):
     """An estimated plate in the compositor; gives the image, the nodes and the function that finds the active plate."""
-    from blender_addon.scene.compositor import compositor_tree
-    from blender_addon.scene.plates import active_datablock
-
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
-    tree = compositor_tree(bpy.context.scene)
+    estimate(image, "NODES")
 
     def active(node):
         tree.nodes.active = node
         with in_editor("NODE_EDITOR") as space:
-            if bpy.app.version >= (5, 0, 0):
+            if IS_BLENDER_5:
                 space.node_tree = tree
-            return active_datablock(bpy.context)
+            return plates.active_datablock(bpy.context)
 
     return image, tree, active
 
 
 def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
     image, tree, active = compositor
-    (group,) = (node for node in tree.nodes if node.type == "GROUP")
+    group = group_node()
     (source,) = (node for node in tree.nodes if node.type == "IMAGE")
     assert active(source) == image
     assert active(group) == image
@@ -48,14 +53,13 @@ def test_the_node_group_of_a_plate_stands_for_the_plate(compositor):
 
 
 def test_errors_name_a_packed_plate_and_not_the_temporary_file(addon, tmp_path, codes):
-    image = bpy.data.images.load(str(write_image(tmp_path / "small.png", codes[:30, :40])))
+    image = load(write_image(tmp_path / "small.png", codes[:30, :40]))
     image.pack()
     with pytest.raises(RuntimeError, match=r"Error: small\.png: "):
         bpy.ops.crf.estimate_response(image=image.name)
 
 
 def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon, tmp_path, codes, in_editor):
-    from blender_addon.scene.plates import obstacle, plate_of
     from blender_addon.work.frame_files import frames_of
 
     names = [write_image(tmp_path / f"shot.{n}.png", codes).name for n in range(1001, 1006)]
@@ -63,7 +67,7 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
     first = str(tmp_path / names[0])
     bpy.ops.image.open(filepath=first, directory=str(tmp_path), files=files, use_udim_detecting=True)
     (image,) = (image for image in bpy.data.images if image.source == "TILED")
-    assert "set Source to Image Sequence" in obstacle(image)
+    assert "set Source to Image Sequence" in plates.obstacle(image)
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image
         assert ("crf.read_as_sequence", "SEQUENCE") in operators(drawn_in(image, in_editor))
@@ -72,8 +76,8 @@ def test_frames_taken_for_udim_tiles_become_a_sequence_as_the_message_says(addon
         bpy.context.scene.frame_set(1)
         assert Path(image.filepath_from_user(image_user=space.image_user)).name == "shot.1001.png"
     assert image.source == "SEQUENCE"
-    assert obstacle(image) == ""
-    assert frames_of(plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
+    assert plates.obstacle(image) == ""
+    assert frames_of(plates.plate_of(image)).numbers == (1001, 1002, 1003, 1004, 1005)
 
 
 @pytest.mark.parametrize("kind", ["BLANK", "UV_GRID", "COLOR_GRID"])
@@ -82,37 +86,31 @@ def test_what_blender_generates_is_refused_until_it_is_painted(addon, codes, kin
     image.generated_type = kind
     with pytest.raises(RuntimeError, match="Blank images and test grids have no camera response"):
         bpy.ops.crf.estimate_response(image=image.name)
-    pixels = np.ones((256, 256, 4), np.float32)
-    pixels[..., :3] = codes / 255
-    image.pixels.foreach_set(pixels.ravel())
-    assert bpy.ops.crf.estimate_response(image=image.name, apply="NODES") == {"FINISHED"}
+    paint(image, codes / 255)
+    estimate(image, "NODES")
 
 
 def test_a_packed_image_that_blender_generates_is_not_taken_from_its_packed_file(addon, tmp_path, codes):
     """Blender shows a test grid, until Source is set back."""
-    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    image = load(write_image(tmp_path / "plate.png", codes))
     image.pack()
-    bpy.ops.crf.estimate_response(image=image.name)
+    estimate(image)
     image.source = "GENERATED"
     for operator in (bpy.ops.crf.estimate_response, bpy.ops.crf.apply_response):
         with pytest.raises(RuntimeError, match="not its packed file: set Source to Single Image"):
             operator(image=image.name, apply="BAKE", folder=str(tmp_path / "out"))
     assert not (tmp_path / "out").exists()
     image.source = "FILE"
-    assert bpy.ops.crf.apply_response(image=image.name, apply="BAKE", folder=str(tmp_path / "out")) == {"FINISHED"}
+    apply(image, "BAKE", folder=str(tmp_path / "out"))
 
 
 def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon, tmp_path, codes):
-    from blender_addon.scene.plates import plate_of
-
-    image = bpy.data.images.load(str(write_image(tmp_path / "plate.png", codes)))
+    image = load(write_image(tmp_path / "plate.png", codes))
     image.pack()
     image.source = "GENERATED"
     image.generated_width = image.generated_height = 256
-    pixels = np.ones((256, 256, 4), np.float32)
-    pixels[..., :3] = codes / 255  # the bottom row first
-    image.pixels.foreach_set(pixels.ravel())
-    np.testing.assert_array_equal(plate_of(image).content, codes[::-1])
+    paint(image, codes[::-1] / 255)
+    np.testing.assert_array_equal(plates.plate_of(image).content, codes[::-1])
 
 
 @pytest.mark.parametrize(
@@ -125,7 +123,7 @@ def test_what_is_painted_over_a_packed_image_counts_where_blender_shows_it(addon
 def test_frames_that_are_gone_are_told_in_the_words_of_blender(addon, tmp_path, codes, name, words):
     """Without a placeholder such as %04d, which the command has; a still is a sequence as a movie clip."""
     frame = write_image(tmp_path / name, codes)
-    clip = bpy.data.movieclips.load(str(frame))
+    clip = load(frame, "clip")
     frame.unlink()
     assert clip.source == "SEQUENCE"
     with pytest.raises(RuntimeError, match=words):
@@ -135,7 +133,6 @@ def test_frames_that_are_gone_are_told_in_the_words_of_blender(addon, tmp_path, 
 def test_frames_that_are_no_sequence_are_told(addon, tmp_path, codes):
     for number in ("0001", "20260101"):
         write_image(tmp_path / f"IMG_{number}.png", codes)
-    image = bpy.data.images.load(str(tmp_path / "IMG_0001.png"))
-    image.source = "SEQUENCE"
+    image = load_sequence(tmp_path / "IMG_0001.png")
     with pytest.raises(RuntimeError, match=r"IMG_####\.png: .* too far apart; .*; move those away"):
         bpy.ops.crf.estimate_response(image=image.name)

@@ -5,7 +5,8 @@ import pytest
 
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import bpy, groups, load, load_sequence, reopen
+from .helpers import estimate as run
 
 CODES = 1e-6
 
@@ -24,8 +25,7 @@ def twins(addon, tmp_path, codes):
     found = []
     for folder in ("a", "b"):
         (tmp_path / folder).mkdir()
-        path = write_image(tmp_path / folder / "IMG_0001.png", codes)
-        found.append(bpy.data.images.load(str(path)))
+        found.append(load(write_image(tmp_path / folder / "IMG_0001.png", codes)))
     return found
 
 
@@ -33,18 +33,6 @@ def add_node(tree, image, kind="CompositorNodeImage"):
     node = tree.nodes.new(kind)
     node.image = image
     return node
-
-
-def apply(image, mode="NODES", **choices):
-    assert bpy.ops.crf.estimate_response(image=image.name, apply=mode, **choices) == {"FINISHED"}
-
-
-def groups(tree):
-    return [node for node in tree.nodes if node.type == "GROUP"]
-
-
-def first_group_behind(socket):
-    return next(node for link in socket.links for node in (link.to_node,) if node.type == "GROUP")
 
 
 def group_with(tree, image):
@@ -58,7 +46,6 @@ def group_with(tree, image):
 
 class TestTwoPlatesOfOneName:
     def test_they_have_two_groups_and_two_luts(self, twins, tree, composited, codes, monkeypatch):
-        """The second response does not touch the first plate."""
         from blender_addon.scene import node_group
         from crfnet_core import ResponseCurve
 
@@ -68,7 +55,7 @@ class TestTwoPlatesOfOneName:
             node_group, "build_group", lambda plate, name, _curve, stops: build(plate, name, curves[plate], stops)
         )
         for image in twins:
-            apply(image)
+            run(image, "NODES")
         found = [group_with(tree, image) for image in twins]
         assert [node.node_tree.name for node in found] == ["Camera Response IMG_0001", "Camera Response IMG_0001 (b)"]
         for image, node in zip(twins, found, strict=True):
@@ -77,14 +64,13 @@ class TestTwoPlatesOfOneName:
 
     def test_they_stay_apart_after_renaming_saving_and_appending(self, twins, tree, tmp_path):
         for image in twins:
-            apply(image)
+            run(image, "NODES")
         names = {group_with(tree, image).node_tree.name for image in twins}
         twins[1].name = "renamed"
         saved = str(tmp_path / "shot.blend")
-        bpy.ops.wm.save_as_mainfile(filepath=saved)
-        bpy.ops.wm.open_mainfile(filepath=saved)
+        reopen(saved)
         before = {group.name for group in bpy.data.node_groups}
-        apply(bpy.data.images["renamed"], exposure=1)
+        run(bpy.data.images["renamed"], "NODES", exposure=1)
         assert {group.name for group in bpy.data.node_groups} == before
         bpy.ops.wm.read_factory_settings(use_empty=True)
         with bpy.data.libraries.load(saved) as (source, target):
@@ -98,9 +84,7 @@ def test_an_exported_config_knows_no_frame_by_its_number_alone(addon, tmp_path, 
     import PyOpenColorIO as OCIO
 
     paths = [write_image(tmp_path / f"{number:04d}.png", codes) for number in range(1, 4)]
-    image = bpy.data.images.load(str(paths[0]))
-    image.source = "SEQUENCE"
-    apply(image, "EXPORT", folder=str(tmp_path / "config"))
+    run(load_sequence(paths[0]), "EXPORT", folder=str(tmp_path / "config"))
     config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
     for path in ("/elsewhere/holiday.png", "/elsewhere/0001.png", str(paths[0])):
         assert not config.getColorSpaceFromFilepath(path)[0].startswith("CRF")
@@ -119,7 +103,7 @@ class TestNothingIsLinearizedTwice:
     )
     def test_whatever_stands_between(self, image, tree, between):
         source = add_node(tree, image)
-        apply(image)
+        run(image, "NODES")
         (group,) = groups(tree)
         socket = source.outputs["Image"]
         for kind in between:
@@ -127,14 +111,14 @@ class TestNothingIsLinearizedTwice:
             tree.links.new(socket, node.inputs["Image"] if "Image" in node.inputs else node.inputs[0])
             socket = node.outputs[0]
         tree.links.new(socket, group.inputs["Image"])
-        apply(image, exposure=1)
+        run(image, "NODES", exposure=1)
         assert groups(tree) == [group]
         assert group.inputs["Exposure"].default_value == 1
 
     @pytest.mark.parametrize("is_outside", [True, False])
     def test_in_or_behind_a_group_of_the_user(self, image, tree, is_outside):
         """Either the response's group is in the user's, or the plate's node is."""
-        apply(image)
+        run(image, "NODES")
         (group,) = groups(tree)
         source = group.inputs["Image"].links[0].from_node
         mine = bpy.data.node_groups.new("Mine", "CompositorNodeTree")
@@ -172,7 +156,7 @@ class TestNothingIsLinearizedTwice:
 class TestTheRestStaysAsItIs:
     def test_the_plate_keeps_its_color_space(self, image, tree):
         users = image.users
-        apply(image)
+        run(image, "NODES")
         assert image.colorspace_settings.name == "sRGB"
         assert image.users > users  # its copy and its group know it
         assert not image.is_dirty
@@ -182,16 +166,16 @@ class TestTheRestStaysAsItIs:
     def test_in_every_color_space(self, addon, tree, tmp_path, composited, codes, estimate, space, depth):
         """Some limit their values, so that what an Image node delivers could not be undone."""
         path = write_image(tmp_path / "plate.png", codes.astype(depth) * (257 if depth == "uint16" else 1))
-        image = bpy.data.images.load(str(path))
+        image = load(path)
         image.colorspace_settings.name = space
-        apply(image)
+        run(image, "NODES")
         expected = estimate(path).curve.inverse(codes / 255)
         assert np.abs(composited(groups(tree)[0].outputs[0])[..., :3] - expected).max() < CODES
         assert image.colorspace_settings.name == space
 
     def test_the_lut_is_hidden_and_the_copy_stands_behind_its_plate(self, image, tree):
         """A leading dot hides the LUT; neither it nor the copy outlives its user."""
-        apply(image)
+        run(image, "NODES")
         others = [other for other in bpy.data.images if other != image and other.type == "IMAGE"]
         assert sorted(other.name for other in others) == [".Camera Response plate LUT", "plate.png code values"]
         assert not any(datablock.use_fake_user for datablock in (*others, *bpy.data.node_groups))

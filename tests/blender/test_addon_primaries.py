@@ -3,41 +3,26 @@
 import numpy as np
 import pytest
 
+from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
+from tests.helpers.color_profiles import matrix_profile, write_tagged
+from tests.helpers.configs import converted, loaded
 from tests.helpers.images import read_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, curve_of, estimate, group_node, linear_shown, load
 
 
 @pytest.fixture
 def image(addon, tmp_path, codes):
     """The plate, encoded in Display P3, with its estimate."""
-    from crfnet_core.colorimetry import DISPLAY_P3
-    from tests.helpers.color_profiles import matrix_profile, write_tagged
-
-    image = bpy.data.images.load(str(write_tagged(tmp_path / "p3.png", codes, matrix_profile(DISPLAY_P3))))
-    bpy.ops.crf.estimate_response(image=image.name)
+    image = load(write_tagged(tmp_path / "p3.png", codes, matrix_profile(DISPLAY_P3)))
+    estimate(image)
     return image
 
 
 @pytest.fixture
 def expected(image, codes):
     """Its light in linear Rec.709, white = 1."""
-    from blender_addon.scene import stored_estimate
-    from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
-
-    light = stored_estimate.restored(image).curve.inverse(codes / 255)
-    return light @ conversion_matrix(DISPLAY_P3, REC709).T
-
-
-def apply(image, mode, **choices):
-    assert bpy.ops.crf.apply_response(image=image.name, apply=mode, **choices) == {"FINISHED"}
-
-
-def group_node(part):
-    from blender_addon.scene.node_links import compositor_trees
-
-    nodes = (node for tree in compositor_trees() for node in tree.nodes if node.type == "GROUP")
-    return next(node for node in nodes if part in node.node_tree.name)
+    return curve_of(image).inverse(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T
 
 
 def test_in_nodes(image, expected, composited):
@@ -52,26 +37,14 @@ def test_in_baked_files(image, expected, tmp_path):
 
 
 def test_in_a_config(image, expected, tmp_path, codes):
-    import PyOpenColorIO as OCIO
-
     apply(image, "EXPORT", folder=str(tmp_path / "config"))
-    config = OCIO.Config.CreateFromFile(str(tmp_path / "config" / "config.ocio"))
+    config = loaded(tmp_path / "config" / "config.ocio")
     linear = "Linear Rec.709" if config.getColorSpace("Linear Rec.709") else "lin_rec709_scene"
-    pixels = (codes / 255).astype(np.float32)
-    config.getProcessor("CRF p3", linear).getDefaultCPUProcessor().applyRGB(pixels)
-    assert np.abs(pixels - expected).max() < 5e-6
+    assert np.abs(converted(config, "CRF p3", linear, codes / 255) - expected).max() < 5e-6
 
 
 def test_in_the_comparison(image, expected, in_editor):
-    from blender_addon.ui.image_editor import comparison
-
-    with in_editor("IMAGE_EDITOR") as space:
-        space.image = image
-        assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
-        pixels = np.empty(256 * 256 * 4, np.float32)
-        space.image.pixels.foreach_get(pixels)
-        comparison.end_all()
-    assert np.abs(pixels.reshape(256, 256, 4)[::-1, :, :3] - expected).max() < 1e-6
+    assert np.abs(linear_shown(image, in_editor)[..., :3] - expected).max() < 1e-6
 
 
 def test_the_look_gives_the_code_values_back(image, codes, composited):
@@ -90,8 +63,8 @@ def test_a_loaded_response_is_for_the_same_primaries(image, expected, tmp_path, 
 
 
 def test_plates_without_tags_have_no_matrix(addon, plate_file):
-    image = bpy.data.images.load(str(plate_file))
-    bpy.ops.crf.estimate_response(image=image.name, apply="NODES")
+    image = load(plate_file)
+    estimate(image, "NODES")
     assert "Rec.709" in image["camera_response"]["primaries"]
     assert len([node for node in group_node("Response").node_tree.nodes if node.type == "MATH"]) < 16
 

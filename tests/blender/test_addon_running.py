@@ -6,17 +6,7 @@ import time
 import numpy as np
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
-
-from .test_addon_modal import Interface  # noqa: E402 - after the skip
-
-
-@pytest.fixture
-def interface(addon):
-    from blender_addon.ui import running
-
-    yield Interface()
-    running.stop()
+from .helpers import Panel, bpy, operators
 
 
 class Waiting:
@@ -106,14 +96,12 @@ def test_one_run_at_a_time(waiting, image):
 def test_the_panel_shows_the_progress_and_cancels(waiting, in_editor, image):
     from blender_addon.ui.panel import ResponsePanel
 
-    from .test_addon_panel import Panel
-
     panel = Panel()
     with in_editor("IMAGE_EDITOR") as space:
         space.image = image
         ResponsePanel.draw(panel, bpy.context)
     assert ("progress", 0.0, "Estimating plate ...") in panel.layout.drawn
-    drawn = [entry[1] for entry in panel.layout.drawn if entry[0] == "operator"]
+    drawn = [name for name, _ in operators(panel.layout.drawn)]
     assert "crf.cancel_run" in drawn
     assert ("set", "enabled", False) in panel.layout.drawn  # the settings, which no longer count for this run
     assert ("set", "enabled", True) not in panel.layout.drawn

@@ -2,7 +2,7 @@
 
 import pytest
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import apply, bpy, compositor_tree, groups
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -13,19 +13,10 @@ def twice(image):
     return linearized_twice(image)
 
 
-def apply_nodes(image):
-    assert bpy.ops.crf.apply_response(image=image.name, apply="NODES") == {"FINISHED"}
-
-
-def groups(tree):
-    return [node for node in tree.nodes if node.type == "GROUP"]
-
-
 def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
-    """Both hold the same node group, but neither is behind the other."""
     for _ in range(2):
         tree.nodes.new("CompositorNodeImage").image = image
-    apply_nodes(image)
+    apply(image)
     first, second = groups(tree)
     assert first.node_tree == second.node_tree
     assert twice(image) == ""
@@ -34,14 +25,12 @@ def test_two_nodes_of_a_tree_are_linearized_once_each(image, tree):
 
 
 def test_two_scenes_are_linearized_once_each(image, tree):
-    from blender_addon.scene.compositor import compositor_tree
-
-    apply_nodes(image)
+    apply(image)
     other = bpy.data.scenes.new("Other")
     with bpy.context.temp_override(scene=other):
-        apply_nodes(image)
+        apply(image)
     assert twice(image) == ""
-    bpy.ops.crf.apply_response(image=image.name, apply="NODES", exposure=1)
+    apply(image, exposure=1)
     nodes = [groups(shown) for shown in (tree, compositor_tree(other))]
     assert [[node.inputs["Exposure"].default_value for node in each] for each in nodes] == [[1], [1]]
 

@@ -11,7 +11,7 @@ from crfnet.luts.lut1d import inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.images import write_image
 
-bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+from .helpers import load, scene_tree
 
 LUT = inverse_response_lut(ResponseCurve.gamma(2.2), length=5101, domain=(-0.125, 1.125))
 
@@ -31,13 +31,11 @@ bpy.context.scene.view_settings.view_transform = "Standard"
 
 @pytest.mark.parametrize(("name", "samples"), [("codes.png", CODES), ("floats.exr", FLOATS)])
 def test_blender_linearizes_a_plate(addon, composited, rendered_anew, tmp_path, tolerance, name, samples):
-    from blender_addon.scene.compositor import compositor_tree
-
     write_lut(tmp_path / "plate01.spi1d", LUT)
     space = PlateColorSpace("CRF plate01", "plate01.spi1d", aliases=("crf_plate01",))
     write_config(tmp_path / "config.ocio", portable_config([space]), check={"CRF plate01": LUT})
-    node = compositor_tree(bpy.context.scene).nodes.new("CompositorNodeImage")
-    node.image = bpy.data.images.load(str(write_image(tmp_path / name, samples)))
+    node = scene_tree().nodes.new("CompositorNodeImage")
+    node.image = load(write_image(tmp_path / name, samples))
     composited(node.outputs["Image"], size=(16, 16))
     pixels, log = rendered_anew(tmp_path / "config.ocio", CODE)
     assert "color management: error" not in log.lower()

@@ -156,7 +156,6 @@ def user(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def look(tmp_path_factory):
-    """The folder that the operator exports to."""
     return tmp_path_factory.mktemp("look")
 
 

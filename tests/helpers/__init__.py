@@ -7,5 +7,6 @@ processes      start a process that Control-C can interrupt
 configs        a plate's colour space, and pixels through OpenColorIO
 folders        what lies in a folder
 plates         plates to linearise, and what became of them
+refusals       errors by their kind, code and facts
 posteriors     evidence, and a small bank of responses, whose posteriors can be worked out by hand
 """

@@ -30,6 +30,21 @@ def converted(config: OCIO.Config, source: str, target: str, pixels: ArrayLike) 
     return pixels
 
 
+def through_lut(
+    path: Path,
+    pixels: ArrayLike,
+    direction: OCIO.TransformDirection = OCIO.TRANSFORM_DIR_FORWARD,
+    optimization: OCIO.OptimizationFlags = OCIO.OPTIMIZATION_LOSSLESS,
+) -> NDArray[np.float32]:
+    """Return pixels, shape (..., 3), or gray ones of another shape, through the LUT of a file, which is read anew."""
+    OCIO.ClearAllCaches()
+    gray = np.array(pixels, dtype=np.float32)
+    values = gray if gray.shape[-1:] == (3,) else np.repeat(gray[..., None], 3, axis=-1)
+    processor = OCIO.Config.CreateRaw().getProcessor(OCIO.FileTransform(src=str(path), direction=direction))
+    processor.getOptimizedCPUProcessor(optimization).applyRGB(values)
+    return values if values is gray else values[..., 0]
+
+
 def loaded(path: Path) -> OCIO.Config:
     """Return the config in a file, and read LUTs anew."""
     OCIO.ClearAllCaches()

@@ -5,6 +5,7 @@ import shutil
 import pytest
 
 from tests.helpers.images import read_image
+from tests.helpers.stacks import StackOptions, light_of, make_stack
 
 
 @pytest.fixture
@@ -29,6 +30,16 @@ def linear(crfnet, look, plate, tmp_path_factory):
     path = tmp_path_factory.mktemp("linear") / "linear.exr"
     assert crfnet("linearize", plate, "--lut", look / "plate.spi1d", "--out", path, "--depth", "float").code == 0
     return read_image(path)
+
+
+@pytest.fixture(scope="session")
+def stack(root, true_response, tmp_path_factory):
+    """A stack of 6 frames of a small picture, in PNG."""
+    light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2]
+    header = {"Make": "Canon", "Model": "Canon EOS 20D", "Exif__PhotographicSensitivity": 100}
+    return make_stack(
+        tmp_path_factory.mktemp("stack"), light, true_response, StackOptions(frames=6, quality=0), **header
+    )
 
 
 @pytest.fixture

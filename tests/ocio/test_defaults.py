@@ -9,10 +9,6 @@ from crfnet_core.posterior import DEFAULT_PRIOR, UNUSUAL, Family, Verdict, packa
 from crfnet_core.response.metrics import brightness_percent
 
 
-def test_the_lut_length_is_exact_on_8_bit_codes():
-    assert (defaults.LUT_LENGTH - 1) % 255 == 0
-
-
 def test_the_largest_exposure_of_white_fits_into_half_floats():
     assert np.finfo(np.float16).max > 2**defaults.MAX_EXPOSURE
 

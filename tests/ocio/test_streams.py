@@ -49,8 +49,7 @@ def test_a_damaged_png_gives_one_line(tmp_path, command):
     content[len(content) // 2] ^= 0xFF
     path.write_bytes(content)
     (tmp_path / "a.cube").write_text("LUT_1D_SIZE 2\n0 0 0\n1 1 1\n")
-    more = ["--lut", tmp_path / "a.cube", "--out", tmp_path / "a.exr"]
-    more = more if command == "linearize" else ["--out", tmp_path / "out"]
+    more = {"estimate": ["--out", "out"], "linearize": ["--lut", "a.cube", "--out", "a.exr"]}[command]
     done = subprocess.run([CRFNET, command, path, *more], capture_output=True, text=True, check=False, cwd=tmp_path)
     assert done.returncode == BAD_INPUT
     assert done.stderr.startswith(f"crfnet: error: {path}: this PNG file is damaged or cut short")

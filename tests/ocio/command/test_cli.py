@@ -23,23 +23,15 @@ class TestHelp:
         assert done.code == 0
         assert f"examples:\n  crfnet {command} " in done.out
 
-    def test_lists_every_command(self, crfnet):
-        out = crfnet("--help").out
-        assert all(command in out for command in COMMANDS)
-
     def test_version(self, crfnet):
         assert crfnet("--version").out.startswith("crfnet 0.")
 
     @pytest.mark.parametrize("shell", SHELLS)
-    def test_completion(self, crfnet, shell):
-        done = crfnet("completion", shell)
-        assert done.code == 0
-        assert "linearize" in done.out
-
-    @pytest.mark.skipif(shutil.which("bash") is None, reason="needs bash")
-    def test_bash_accepts_the_completion(self, crfnet):
-        script = crfnet("completion", "bash").out
-        subprocess.run(["bash", "-n"], input=script, text=True, check=True)
+    def test_the_shell_accepts_the_completion(self, crfnet, shell):
+        script = crfnet("completion", shell).out
+        assert "linearize" in script
+        if shutil.which(shell):
+            subprocess.run([shell, "-n"], input=script, text=True, check=True)
 
 
 class TestInfo:

@@ -5,9 +5,8 @@ import json
 import numpy as np
 import pytest
 
-from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.errors import PlateError
-from crfnet.luts.files import read_lut
+from crfnet.luts.files import read_lut, write_lut
 from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.luts.response import response_of_lut
 from crfnet.pipeline.calibrations import response_to_compare
@@ -15,26 +14,18 @@ from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image
+from tests.helpers.refusals import refused
 from tests.helpers.stacks import StackOptions, emor_response, light_of, make_stack
 
 FILES = {"eos20d.spi1d", "eos20d.cube", "eos20d.clf", "eos20d.json", "eos20d_sheet.png", "config.ocio"}
 
 
 @pytest.fixture(scope="module")
-def frames(root, true_response, tmp_path_factory):
-    """A stack of 6 frames of a small picture, in PNG."""
-    light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2]
-    options = StackOptions(frames=6, quality=0)
-    header = {"Make": "Canon", "Model": "Canon EOS 20D", "Exif__PhotographicSensitivity": 100}
-    return make_stack(tmp_path_factory.mktemp("frames"), light, true_response, options, **header)
-
-
-@pytest.fixture(scope="module")
-def camera(crfnet, frames, look, tmp_path_factory):
+def camera(crfnet, stack, look, tmp_path_factory):
     """The output folder of a calibration, and what it printed."""
     folder = tmp_path_factory.mktemp("calibration") / "camera"
     arguments = ("--out", folder, "--name", "eos20d", "--compare", look / "plate.json")
-    done = crfnet("calibrate", *frames, *arguments)
+    done = crfnet("calibrate", *stack, *arguments)
     assert (done.code, done.err) == (0, "")
     return folder, done.out
 
@@ -43,14 +34,8 @@ def test_writes_what_it_says(camera):
     folder, out = camera
     assert set(listed(folder)) == FILES
     assert all(name in out for name in FILES)
-
-
-def test_says_in_words_what_was_measured(camera):
-    out = camera[1]
     assert "6 frames of Canon EOS 20D, ISO 100, f/8, 1/60 s to 0.5 s (5.0 stops)." in out
     assert "The response is measured: the shape of the linear light to 0.0" in out
-    assert "white is reached." in out
-    assert "their exposures were read as exact powers of two" in out
     assert "The other response is off by " in out
     assert "Warning" not in out
 
@@ -97,39 +82,34 @@ def test_the_document_says_all(camera):
     assert found["files"]["linear"] == []
 
 
-def test_the_config_converts_as_the_lut(camera, frames, oiiotool, tmp_path):
-    """OpenColorIO agrees, and other plates are not caught by a file rule."""
+def test_the_config_converts_as_the_lut(camera, stack, oiiotool, tmp_path):
     folder, converted, looked_up = camera[0], tmp_path / "a.exr", tmp_path / "b.exr"
     convert = ("--colorconvert", "CRF eos20d", "scene_linear", "-d", "float", "-o", converted)
-    oiiotool("--colorconfig", folder / "config.ocio", frames[3], *convert)
-    oiiotool(frames[3], "--ociofiletransform", folder / "eos20d.spi1d", "-d", "float", "-o", looked_up)
+    oiiotool("--colorconfig", folder / "config.ocio", stack[3], *convert)
+    oiiotool(stack[3], "--ociofiletransform", folder / "eos20d.spi1d", "-d", "float", "-o", looked_up)
     np.testing.assert_allclose(read_image(converted), read_image(looked_up), atol=1e-5)
     config = (folder / "config.ocio").read_text(encoding="utf-8")
     assert "as crfnet measured it from 6 exposures" in config
     assert "stack_00" not in config
 
 
-def test_times_from_a_list(crfnet, frames, tmp_path):
-    """Exact powers of two in place of EXIF's rounded ones, in the order of the frames."""
+def test_times_from_a_list(crfnet, stack, tmp_path):
     times = ",".join(str(2**index) for index in range(6))
-    done = crfnet("calibrate", *frames, "--times", times, "--out", tmp_path, "--no-sheet", "--json")
+    done = crfnet("calibrate", *stack, "--times", times, "--out", tmp_path, "--no-sheet", "--json")
     assert (done.code, done.err) == (0, "")
     assert [frame["seconds"] for frame in json.loads(done.out)["frames"]] == [1, 2, 4, 8, 16, 32]
 
 
 @pytest.mark.parametrize(
-    ("arguments", "message"),
+    ("arguments", "code"),
     [
-        (("--times", "1,1,1,1,1,1"), "to nearly everything white; --times states them in place of EXIF"),
-        (("--name", "a/b"), "'a/b' cannot be the name of a file"),
-        (("--compare", "none.json"), "none.json: cannot be opened"),
+        (("--times", "1,1,1,1,1,1"), "exposures_span"),
+        (("--name", "a/b"), "not_a_file_name"),
+        (("--compare", "none.json"), "not_opened"),
     ],
 )
-def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, message):
-    done = crfnet("calibrate", *frames, "--out", tmp_path / "out", *arguments)
-    assert done.code == BAD_INPUT
-    assert message in done.err
-    assert len(done.err.splitlines()) == 1
+def test_bad_input_is_refused(crfnet, stack, tmp_path, arguments, code):
+    assert crfnet("calibrate", *stack, "--out", tmp_path / "out", *arguments).refusal == code
     assert not (tmp_path / "out").exists()
 
 
@@ -139,24 +119,16 @@ def test_bad_input_is_refused_in_one_line(crfnet, frames, tmp_path, arguments, m
 )
 def test_a_document_without_a_response_is_refused(tmp_path, text):
     (tmp_path / "other.json").write_text(text)
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "no_response_in_file"):
         response_to_compare(tmp_path / "other.json")
-    assert caught.value.code == "no_response_in_file"
 
 
-def test_what_is_there_stays_there(crfnet, frames, tmp_path):
+def test_what_is_there_stays_there(crfnet, stack, tmp_path):
     (tmp_path / "eos20d.cube").write_text("mine")
-    done = crfnet("calibrate", *frames, "--out", tmp_path, "--name", "eos20d")
-    assert done.code == BAD_INPUT
-    assert "eos20d.cube: exists already" in done.err
+    assert crfnet("calibrate", *stack, "--out", tmp_path, "--name", "eos20d").refusal == "file_exists"
     assert tree(tmp_path) == {"eos20d.cube": b"mine"}
 
 
 def test_a_response_from_a_lut_is_gamma(tmp_path):
-    """`response_to_compare` on a LUT of gamma 2.2."""
-    from crfnet.luts.files import write_lut
-    from crfnet.luts.lut1d import inverse_response_lut
-    from crfnet.pipeline import response_to_compare
-
     write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
     assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01

@@ -18,9 +18,7 @@ def test_log_footage_is_answered_with_the_curves_that_fit(crfnet, tmp_path):
     path = as_file(tmp_path / "vlog.png", log_picture("Panasonic V-Log"), Make="Panasonic", Model="DC-S5")
     done = crfnet("estimate", path, "--out", tmp_path / "look", "--no-sheet")
     assert done.code == 0
-    assert "The estimate is not to be trusted: give it the color space of the log curve" in done.out
     assert 'in ACES configs "V-Log V-Gamut"' in done.out
-    assert "Warning: log footage: black lies at code" in done.out
     found = json.loads((tmp_path / "look" / "vlog.json").read_text(encoding="utf-8"))
     assert (found["verdict"], found["recognition"]["kind"]) == ("do not trust", "log footage")
     assert found["recognition"]["curves"] == ["Panasonic V-Log"]
@@ -29,7 +27,6 @@ def test_log_footage_is_answered_with_the_curves_that_fit(crfnet, tmp_path):
 def test_limited_range_is_answered_with_the_option_of_ffmpeg(crfnet, tmp_path):
     limited = (16 + 219 * ordinary_picture().astype(float)) / 255
     done = crfnet("estimate", as_file(tmp_path / "a.png", limited), "--out", tmp_path / "look", "--no-sheet")
-    assert "The estimate is not to be trusted: expand the range first" in done.out
     assert "scale=in_range=limited:out_range=full" in done.out
     found = json.loads((tmp_path / "look" / "a.json").read_text(encoding="utf-8"))
     assert found["recognition"]["kind"] == "limited range"
@@ -40,10 +37,7 @@ def test_a_frame_that_calls_itself_log_is_refused_and_nothing_is_written(crfnet,
     path = as_file(tmp_path / "scan.dpx", ordinary_picture(), dpx__Transfer="Printing density")
     out = tmp_path / ("look" if command == "estimate" else "linear.exr")
     arguments = (command, path, "--out", out, "--model", fixed_model)
-    done = crfnet(*arguments)
-    assert done.code == 2
-    assert done.err.startswith(f"crfnet: error: {path}: is encoded as Cineon log")
-    assert done.err.count("\n") == 1
+    assert crfnet(*arguments).refusal == "tagged_encoding"
     assert not out.exists()
     assert crfnet(*arguments, "--ignore-metadata").code == 0
 
@@ -52,8 +46,6 @@ def test_a_phones_heic_gives_a_linear_plate(crfnet, fixed_model, root, tmp_path)
     """The test files are smaller than a window, so the plate is made with a LUT."""
     crfnet("estimate", root / "tests/data/plate.jpg", "--out", tmp_path, "--no-sheet", "--model", fixed_model)
     shutil.copy(root / "tests/data/heif/phone.heic", tmp_path / "IMG_0001.HEIC")
-    done = crfnet(
-        *("linearize", tmp_path / "IMG_0001.HEIC", "--lut", tmp_path / "plate.spi1d", "--out", tmp_path / "linear.exr")
-    )
-    assert (done.code, done.err) == (0, "")
+    plate, lut = tmp_path / "IMG_0001.HEIC", tmp_path / "plate.spi1d"
+    assert crfnet("linearize", plate, "--lut", lut, "--out", tmp_path / "linear.exr").code == 0
     assert read_image(tmp_path / "linear.exr").shape == (64, 48, 3)

@@ -10,10 +10,8 @@ from tests.helpers.images import read_image, write_image
 
 
 def test_a_sequence_with_a_gap(crfnet, look, frames):
-    done = crfnet(
-        *("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d"),
-        *("--out", frames / "linear" / "shot.%04d.exr"),
-    )
+    lut = ("--lut", look / "plate.spi1d")
+    done = crfnet("linearize", frames / "shot.####.jpg", *lut, "--out", frames / "linear" / "shot.%04d.exr")
     assert done.code == 0
     assert "4 frames" in done.out
     assert "Missing frames: 4." in done.out
@@ -54,10 +52,7 @@ def test_an_untagged_exr_is_linearized_only_if_the_user_says_that_it_is_encoded(
     values = np.full((4, 4, 3), 0.5, np.float32)
     plate = write_image(tmp_path / "plate.exr", values)
     arguments = ("linearize", plate, "--lut", look / "plate.spi1d", "--out", tmp_path / "linear.exr")
-    refused = crfnet(*arguments)
-    assert refused.code == 2
-    assert refused.err.startswith(f"crfnet: error: {plate}: does not say whether its values are linear")
-    assert refused.err.count("\n") == 1
+    assert crfnet(*arguments).refusal == "exr_untagged"
     assert not (tmp_path / "linear.exr").exists()
     assert crfnet(*arguments, "--encoded").code == 0
     assert read_image(tmp_path / "linear.exr").max() < 0.5
@@ -68,9 +63,7 @@ def test_a_lut_from_light_to_codes_is_inverted(crfnet, look, plate, tmp_path):
     write_lut(forward, forward_lut(read_lut(look / "plate.spi1d")))
     arguments = ("linearize", plate, "--depth", "float", "--out")
     done = crfnet(*arguments, tmp_path / "a.exr", "--lut", forward)
-    assert (
-        "forward.cube: LUT of the format .cube, one table, from light to code values; its inverse is used." in done.out
-    )
+    assert "from light to code values; its inverse is used." in done.out
     assert "plate.spi1d" not in crfnet(*arguments, tmp_path / "b.exr", "--lut", look / "plate.spi1d").out
     assert np.abs(read_image(tmp_path / "a.exr") - read_image(tmp_path / "b.exr")).max() < 1e-4
     document = json.loads(crfnet("info", forward, "--json").out)

@@ -14,10 +14,23 @@ import pytest
 
 from crfnet.cli.arguments.parts import BAD_INPUT
 from crfnet.cli.commands import printing
-from tests.helpers.folders import listed
+from tests.helpers.folders import listed, tree
 from tests.helpers.processes import start_interruptible
 
 CRFNET = Path(sys.executable).with_name("crfnet")
+
+
+#: Run the command, which says "ready" and waits where it would write the config.
+WAITING = (
+    "import sys, time, crfnet.pipeline.delivery as f, crfnet.cli.main;"
+    "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
+    "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
+)
+
+
+@pytest.fixture
+def arguments(plate, fixed_model, tmp_path):
+    return ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
 
 
 def test_prints_names_that_the_encoding_lacks(plate, fixed_model, tmp_path):
@@ -47,13 +60,8 @@ def test_a_reader_that_leaves_is_no_error_message(look):
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
-def test_a_signal_leaves_nothing_and_no_traceback(plate, fixed_model, tmp_path, number):
-    code = (
-        "import sys, time, crfnet.pipeline.delivery as f, crfnet.cli.main;"
-        "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
-        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
-    )
-    command = [sys.executable, "-c", code, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
+def test_a_signal_leaves_nothing_and_no_traceback(arguments, tmp_path, number):
+    command = [sys.executable, "-c", WAITING, *arguments]
     with start_interruptible(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
         process.stdout.readline()
         time.sleep(0.1)
@@ -93,14 +101,8 @@ def test_works_without_anywhere_to_print_to(look, tmp_path, closed):
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
-def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fixed_model, tmp_path):
-    code = (
-        "import sys, time, crfnet.pipeline.delivery as f, crfnet.cli.main;"
-        "f.write_config = lambda *a, **k: (print('ready', flush=True), time.sleep(60));"
-        "sys.exit(crfnet.cli.main.main(sys.argv[1:]))"
-    )
-    arguments = ["estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
-    with start_interruptible([sys.executable, "-c", code, *arguments], stdout=subprocess.PIPE, text=True) as process:
+def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, arguments, tmp_path):
+    with start_interruptible([sys.executable, "-c", WAITING, *arguments], stdout=subprocess.PIPE, text=True) as process:
         process.stdout.readline()
         process.kill()
     assert all(path.name.startswith(".crfnet-") for path in (tmp_path / "out").iterdir())
@@ -108,35 +110,23 @@ def test_a_killed_estimate_leaves_no_files_and_can_be_run_again(look, plate, fix
     assert listed(tmp_path / "out") == listed(look)
 
 
-def test_a_backend_that_matplotlib_does_not_know_does_not_matter(plate, fixed_model, tmp_path):
-    command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
-    environment = {**os.environ, "MPLBACKEND": "nonsense"}
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment)
+def test_variables_for_other_programs_do_not_matter(look, arguments, tmp_path):
+    """A backend that matplotlib does not know, and what a studio hides of its configs."""
+    variables = {"MPLBACKEND": "nonsense", "OCIO_ACTIVE_VIEWS": "ACES", "OCIO_INACTIVE_COLORSPACES": "ACES"}
+    command = [CRFNET, *arguments, "--depth", "float"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=os.environ | variables)
     assert (done.returncode, done.stderr) == (0, "")
-    assert (tmp_path / "out" / "plate_sheet.png").exists()
+    assert tree(tmp_path / "out") == tree(look)
 
 
-@pytest.mark.parametrize("name", ["OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_COLORSPACES"])
-def test_what_a_studio_hides_of_its_configs_does_not_matter(look, plate, fixed_model, tmp_path, name):
-    command = [CRFNET, "estimate", plate, "--out", tmp_path / "out", "--model", fixed_model]
-    done = subprocess.run(command, capture_output=True, text=True, check=False, env={**os.environ, name: "ACES"})
-    assert (done.returncode, done.stderr) == (0, "")
-    assert (tmp_path / "out" / "config.ocio").read_bytes() == (look / "config.ocio").read_bytes()
-
-
-def test_an_estimate_gives_no_warning_of_python_and_leaves_the_home_empty(plate, fixed_model, tmp_path):
+def test_an_estimate_gives_no_warning_of_python_and_leaves_the_home_empty(arguments, tmp_path):
     """matplotlib would write a list of fonts there; what is not closed is a ResourceWarning."""
     (tmp_path / "home").mkdir()
-    command = [sys.executable, "-W", "error", "-m", "crfnet", "estimate", plate, "--model", fixed_model]
     names = ("MPLCONFIGDIR", "XDG_CACHE_HOME", "XDG_CONFIG_HOME", "XDG_DATA_HOME")
     environment = {name: value for name, value in os.environ.items() if name not in names}
-    done = subprocess.run(
-        [*command, "--out", tmp_path / "out"],
-        env=environment | {"HOME": str(tmp_path / "home")},
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    environment["HOME"] = str(tmp_path / "home")
+    command = [sys.executable, "-W", "error", "-m", "crfnet", *arguments]
+    done = subprocess.run(command, env=environment, capture_output=True, text=True, check=False)
     assert (done.returncode, done.stderr) == (0, "")
     assert listed(tmp_path / "home") == []
     assert "plate_sheet.png" in listed(tmp_path / "out")

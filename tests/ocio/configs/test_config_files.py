@@ -18,11 +18,11 @@ from crfnet.luts.lut1d import Lut1D, inverse_response_lut
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import LUT, SPACE, converted, loaded
 from tests.helpers.folders import listed
+from tests.helpers.refusals import refused
 
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder with the plate's LUT."""
     write_lut(tmp_path / "plate01.spi1d", LUT)
     return tmp_path
 
@@ -50,9 +50,8 @@ class TestWriting:
     def test_it_is_replaced_only_when_asked(self, folder):
         path = folder / "config.ocio"
         path.write_text("mine")
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "exists"):
             write_config(path, portable_config([SPACE]), check={"CRF plate01": LUT})
-        assert caught.value.code == "exists"
         assert path.read_text() == "mine"
         write_config(path, portable_config([SPACE]), check={"CRF plate01": LUT}, overwrite=True)
         assert loaded(path).getColorSpace("CRF plate01") is not None
@@ -72,15 +71,13 @@ class TestWriting:
         ],
     )
     def test_a_config_that_converts_otherwise_is_not_written(self, folder, check, code):
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, code):
             write_config(folder / "config.ocio", portable_config([SPACE]), check=check)
-        assert caught.value.code == code
         assert listed(folder) == ["plate01.spi1d"]
 
     def test_a_config_without_its_lut_is_not_written(self, tmp_path):
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_invalid"):
             write_config(tmp_path / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
-        assert caught.value.code == "config_invalid"
         assert list(tmp_path.iterdir()) == []
 
 
@@ -89,17 +86,14 @@ class TestLoading:
         write_config(folder / "config.ocio", portable_config([SPACE]), check={"CRF plate01": LUT})
         assert load_config(folder / "config.ocio").getColorSpace("CRF plate01") is not None
         assert role_name(folder / "config.ocio", OCIO.ROLE_SCENE_LINEAR) == "Linear Rec.709"
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "role_absent"):
             role_name(folder / "config.ocio", "nonsense")
-        assert caught.value.code == "role_absent"
 
     @pytest.mark.parametrize("text", ["", "no config"])
     def test_another_file_is_refused(self, tmp_path, text):
         (tmp_path / "config.ocio").write_text(text)
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_refused"):
             load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_refused"
-        assert "\n" not in str(caught.value)
 
     @pytest.mark.parametrize("depth", [3, 9])
     def test_nested_aliases_are_refused_before_they_multiply(self, tmp_path, depth):
@@ -107,9 +101,8 @@ class TestLoading:
         lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
         lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, depth + 1)]
         (tmp_path / "config.ocio").write_text("\n".join([*lines, portable_config([]).serialize()]))
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_aliases"):
             load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_aliases"
 
     def test_a_few_aliases_and_stars_in_texts_are_accepted(self, tmp_path):
         text = portable_config([]).serialize().replace("name: crfnet", "name: &title crfnet")
@@ -120,9 +113,8 @@ class TestLoading:
     def test_a_config_of_many_megabytes_is_refused(self, tmp_path):
         with (tmp_path / "config.ocio").open("wb") as file:
             file.truncate(MAX_CONFIG_SIZE + 1)
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_unreadable"):
             load_config(tmp_path / "config.ocio")
-        assert caught.value.code == "config_unreadable"
 
 
 def test_ociocheck_passes(folder):

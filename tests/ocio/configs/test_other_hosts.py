@@ -24,14 +24,12 @@ def test_oiiotool_with_the_lut(linear, look, plate, oiiotool, tolerance, tmp_pat
     np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
 
 
-def test_oiiotool_with_the_config(linear, look, plate, oiiotool, tolerance, tmp_path):
+@pytest.mark.parametrize(
+    ("rule", "convert"), [((), ("--colorconvert", "CRF plate", "scene_linear")), (("--autocc",), ())]
+)
+def test_oiiotool_with_the_config_and_with_its_file_rule(
+    linear, look, plate, oiiotool, tolerance, tmp_path, rule, convert
+):
     out = tmp_path / "out.exr"
-    convert = ("--colorconvert", "CRF plate", "scene_linear")
-    oiiotool("--colorconfig", look / "config.ocio", plate, *convert, "-d", "float", "-o", out)
-    np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)
-
-
-def test_oiiotool_with_the_file_rule(linear, look, plate, oiiotool, tolerance, tmp_path):
-    out = tmp_path / "out.exr"
-    oiiotool("--colorconfig", look / "config.ocio", "--autocc", plate, "-d", "float", "-o", out)
+    oiiotool("--colorconfig", look / "config.ocio", *rule, plate, *convert, "-d", "float", "-o", out)
     np.testing.assert_allclose(read_image(out), linear, atol=tolerance.plate)

@@ -14,6 +14,7 @@ from crfnet.errors import ConfigError
 from crfnet.luts.files import write_lut
 from crfnet_core.colorimetry import ADOBE_RGB, AP0, AP1, DISPLAY_P3, REC709, REC2020, conversion_matrix
 from tests.helpers.configs import LUT, SPACE, converted, loaded
+from tests.helpers.refusals import refused
 
 BUILT_IN = ("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", "studio-config-v2.1.0_aces-v1.3_ocio-v2.3")
 
@@ -51,7 +52,6 @@ def added(config, *spaces):
 
 @pytest.fixture
 def folder(tmp_path):
-    """A folder with the plate's LUT."""
     write_lut(tmp_path / "plate01.spi1d", LUT)
     return tmp_path
 
@@ -66,9 +66,8 @@ def folder(tmp_path):
     ],
 )
 def test_a_space_that_no_config_can_have_is_refused(name, lut_file, exposure, code):
-    with pytest.raises(ConfigError) as caught:
+    with refused(ConfigError, code):
         PlateColorSpace(name, lut_file, exposure=exposure)
-    assert caught.value.code == code
 
 
 class TestAdding:
@@ -80,9 +79,8 @@ class TestAdding:
         np.testing.assert_allclose(result, [[1, 1, 1], [0.43963298, 0.08977644, 0.01754117]], atol=1e-6)
 
     def test_a_config_without_any_way_from_rec709_is_refused(self):
-        with pytest.raises(ConfigError) as caught:
+        with refused(ConfigError, "config_without_rec709"):
             added(small_config(), SPACE)
-        assert caught.value.code == "config_without_rec709"
 
 
 class TestPrimaries:

@@ -1,8 +1,8 @@
 """Views "as photographed": CG and plate through the camera's response, and highlights above the plate's white."""
 
 import math
-from typing import ClassVar
 
+import colour
 import numpy as np
 import PyOpenColorIO as OCIO
 import pytest
@@ -12,7 +12,7 @@ from crfnet.configs.plate_views import KNEE, SOFTNESS, active_views, roll_off, v
 from crfnet.configs.portable import MOST_PLATES_WITH_VIEWS, portable_config
 from crfnet.luts.files import write_lut
 from crfnet_core.colorimetry import DISPLAY_P3, REC709, conversion_matrix
-from tests.helpers.configs import loaded
+from tests.helpers.configs import converted, loaded
 from tests.helpers.looks import LUT
 
 CLIPPED, ROLLED_OFF = view_names("CRF plate")
@@ -41,17 +41,12 @@ def linear(tmp_path):
     def convert(config, codes):
         write_lut(tmp_path / "plate.spi1d", LUT, overwrite=True)
         (tmp_path / "linear.ocio").write_text(config.serialize())
-        pixels = (np.array(codes) / 255).astype(np.float32)
-        loaded(tmp_path / "linear.ocio").getProcessor("CRF plate", "scene_linear").getDefaultCPUProcessor().applyRGB(
-            pixels
-        )
-        return pixels
+        return converted(loaded(tmp_path / "linear.ocio"), "CRF plate", "scene_linear", np.array(codes) / 255)
 
     return convert
 
 
 def with_plate(**options):
-    """The portable config with the plate and its views."""
     return portable_config([PlateColorSpace("CRF plate", "plate.spi1d", **options)])
 
 
@@ -94,18 +89,13 @@ def test_a_video_display_shows_the_same_colors(shown):
     assert video == pytest.approx((srgb + 0.055) / 1.055, abs=1e-4)
 
 
-class TestOtherPrimaries:
-    """A photograph in Display P3, as phones take them."""
-
-    OPTIONS: ClassVar = {"exposure": 1, "primaries": DISPLAY_P3}
-
-    def test_an_srgb_display_shows_the_same_colors(self, linear, shown):
-        """Within its gamut: decoded by the sRGB curve, display and plate differ by the matrix between the primaries."""
-        codes = np.array([[120, 100, 90], [60, 64, 70]])
-        curve = lambda x: np.where(x <= 0.04045, x / 12.92, ((x + 0.055) / 1.055) ** 2.4)  # noqa: E731
-        config = with_plate(**self.OPTIONS)
-        result = curve(shown(config, "sRGB", CLIPPED, linear(config, codes)))
-        np.testing.assert_allclose(result, curve(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T, atol=1e-4)
+def test_an_srgb_display_shows_the_same_colors_of_a_photograph_in_display_p3(linear, shown):
+    """Within its gamut: decoded by the sRGB curve, display and plate differ by the matrix between the primaries."""
+    codes = np.array([[120, 100, 90], [60, 64, 70]])
+    config = with_plate(exposure=1, primaries=DISPLAY_P3)
+    result = colour.models.eotf_sRGB(shown(config, "sRGB", CLIPPED, linear(config, codes)))
+    expected = colour.models.eotf_sRGB(codes / 255) @ conversion_matrix(DISPLAY_P3, REC709).T
+    np.testing.assert_allclose(result, expected, atol=1e-4)
 
 
 class TestRollOff:

@@ -8,6 +8,7 @@ from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.errors import ConfigError
 from tests.helpers.configs import REC709_TO_AP1, SPACE, converted
+from tests.helpers.refusals import refused
 
 
 def test_it_is_valid_and_of_profile_2_0():
@@ -75,6 +76,5 @@ def test_an_alias_that_is_taken_is_left_out():
 
 @pytest.mark.parametrize("name", ["sRGB", "lin_rec709", "scene_linear", "crf PLATE01"])
 def test_names_that_are_taken_are_refused(name):
-    with pytest.raises(ConfigError) as caught:
+    with refused(ConfigError, "color_space_exists"):
         portable_config([SPACE, PlateColorSpace(name, "a.spi1d")])
-    assert caught.value.code == "color_space_exists"

@@ -10,6 +10,7 @@ from hypothesis.extra.numpy import arrays
 from crfnet.errors import LutError
 from crfnet.luts.lut1d import MAX_COMMENT, MAX_END_SLOPE, Lut1D, inverse_response_lut, strictly_increasing
 from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.refusals import refused
 
 EXTENDED = (-0.125, 1.125)
 
@@ -23,11 +24,7 @@ def codes(bits):
 
 
 def ocio_applied(lut, values, direction=OCIO.TRANSFORM_DIR_FORWARD):
-    """Values through OpenColorIO's own 1D LUT.
-
-    Each LUT gets a config of its own, because a config mixes up LUTs in its cache. Nothing is optimized, because
-    OpenColorIO would replace a LUT within 1e-5 of the identity by the identity.
-    """
+    """Values through OpenColorIO's own 1D LUT; not optimized, or one that is nearly the identity would become it."""
     table = OCIO.Lut1DTransform(length=lut.values.size, inputHalfDomain=False)
     table.setData(np.repeat(lut.values, 3).astype(np.float32))
     low, high = lut.domain
@@ -55,13 +52,9 @@ def test_a_large_array_has_the_values_of_its_rows(domain):
     np.testing.assert_array_equal(lut.apply(pixels), np.stack([lut.apply(row) for row in pixels]))
 
 
-def test_apply_over_a_domain():
+def test_apply_and_its_inverse_over_a_domain():
     lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
     assert lut.apply([-2, -1, -0.5, 0, 0.5, 1, 2]).tolist() == [-1, -1, -0.5, 0, 2, 4, 4]
-
-
-def test_apply_inverse_interpolates_clamps_and_takes_nan_for_the_first_input():
-    lut = Lut1D([-1.0, 0.0, 4.0], domain=(-1.0, 1.0))
     assert lut.apply_inverse([-2, -0.5, 0, 2, 4, 9, np.nan]).tolist() == [-1, -0.5, 0, 0.5, 1, 1, -1]
 
 
@@ -93,9 +86,8 @@ def test_pixels_keep_their_shape_and_are_not_written():
     ],
 )
 def test_other_tables_are_refused(values, domain, code):
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, code):
         Lut1D(values, domain)
-    assert caught.value.code == code
 
 
 def test_a_table_is_its_own_and_single_precision():
@@ -134,22 +126,15 @@ def test_strictly_increasing_moves_values_by_no_more_than_their_number_of_units(
 
 
 @pytest.mark.parametrize(
-    ("length", "domain", "bits"),
+    ("bits", "domain", "length"),
     [
-        (256, (0, 1), 8),
-        (4081, (0, 1), 8),
-        (16321, (0, 1), 8),
-        (1024, (0, 1), 10),
-        (4093, (0, 1), 10),
-        (4096, (0, 1), 12),
-        (65536, (0, 1), 8),
-        (65536, (0, 1), 16),
-        (2551, EXTENDED, 8),
-        (5101, EXTENDED, 8),
-        (10231, EXTENDED, 10),
+        *((8, (0, 1), length) for length in (256, 4081, 16321, 65536)),
+        *((10, (0, 1), length) for length in (1024, 4093)),
+        *((12, (0, 1), 4096), (16, (0, 1), 65536)),
+        *((8, EXTENDED, 2551), (8, EXTENDED, 5101), (10, EXTENDED, 10231)),
     ],
 )
-def test_the_documented_lengths_are_exact_on_codes(length, domain, bits, tolerance):
+def test_the_documented_lengths_are_exact_on_codes(bits, domain, length, tolerance):
     curve = ResponseCurve.gamma(2.2)
     lut = inverse_response_lut(curve, length=length, domain=domain)
     wanted = curve.inverse(np.arange(2**bits) / (2**bits - 1))
@@ -184,16 +169,14 @@ def test_the_slope_beyond_a_clipped_end_is_bounded():
 
 @pytest.mark.parametrize("domain", [(0.1, 1), (0, 0.9), (-np.inf, 1), (0, np.inf), (np.nan, 1)])
 def test_domains_that_do_not_hold_the_response_are_refused(domain):
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, "lut_domain_short"):
         inverse_response_lut(ResponseCurve.gamma(), domain=domain)
-    assert caught.value.code == "lut_domain_short"
 
 
 @pytest.mark.parametrize("length", [-1, 0, 1, 65537])
 def test_lengths_out_of_range_are_refused(length):
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, "lut_length", length=length):
         inverse_response_lut(ResponseCurve.gamma(), length=length)
-    assert (caught.value.code, caught.value.facts["length"]) == ("lut_length", length)
 
 
 @settings(max_examples=100, deadline=None)
@@ -214,9 +197,8 @@ def test_any_response_gives_a_lut_that_opencolorio_evaluates_alike_and_inverts(c
 def test_code_values_are_refused(true_response, step):
     """Clipped, all but the first would be white."""
     lut = inverse_response_lut(true_response)
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, "lut_codes", largest=255):
         step(lut, np.array([[[0, 128, 255]]], np.uint8))
-    assert str(caught.value).startswith("found integers up to 255, but the LUT ends at 1: divide code values")
     np.testing.assert_array_equal(step(lut, np.array([0, 1])), [0, 1])
 
 

@@ -12,6 +12,8 @@ from crfnet.errors import LutError
 from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import Lut1D, inverse_response_lut, strictly_increasing
 from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.configs import through_lut
+from tests.helpers.refusals import refused
 
 SUFFIXES = tuple(WRITERS)
 EXTENDED = (-0.125, 1.125)
@@ -29,15 +31,6 @@ def codes(bits):
     return (np.arange(2**bits) / (2**bits - 1)).astype(np.float32)
 
 
-def ocio_applied(path, values, direction=OCIO.TRANSFORM_DIR_FORWARD, optimization=OCIO.OPTIMIZATION_LOSSLESS):
-    """Values through OpenColorIO's reader and CPU processor."""
-    OCIO.ClearAllCaches()
-    transform = OCIO.FileTransform(src=str(path), direction=direction)
-    pixels = np.repeat(np.asarray(values, dtype=np.float32), 3)
-    OCIO.Config.CreateRaw().getProcessor(transform).getOptimizedCPUProcessor(optimization).applyRGB(pixels)
-    return pixels[::3]
-
-
 @pytest.mark.parametrize("name", CURVES)
 @pytest.mark.parametrize("suffix", SUFFIXES)
 class TestRoundTrip:
@@ -47,19 +40,19 @@ class TestRoundTrip:
         lut = inverse_response_lut(CURVES[name], length=length, domain=domain)
         write_lut(path, lut)
         values = np.append(np.linspace(-0.5, 2, 5000, dtype=np.float32), np.float32([np.inf, -np.inf]))
-        assert np.abs(ocio_applied(path, values) - lut.apply(values)).max() < tolerance.lut
-        assert ocio_applied(path, [np.nan]) == lut.apply(np.float32([np.nan])) == np.float32(lut.values[0])
-        backwards = ocio_applied(path, values, OCIO.TRANSFORM_DIR_INVERSE)
+        assert np.abs(through_lut(path, values) - lut.apply(values)).max() < tolerance.lut
+        assert through_lut(path, [np.nan]) == lut.apply(np.float32([np.nan])) == np.float32(lut.values[0])
+        backwards = through_lut(path, values, OCIO.TRANSFORM_DIR_INVERSE)
         assert np.abs(backwards - lut.apply_inverse(values)).max() < tolerance.lut
 
     @pytest.mark.parametrize(("length", "bits"), [(4081, 8), (4093, 10)])
     def test_opencolorio_gives_all_codes_back(self, tmp_path, suffix, name, length, bits):
         path = tmp_path / f"a{suffix}"
         write_lut(path, inverse_response_lut(CURVES[name], length=length))
-        linear = ocio_applied(path, codes(bits))
+        linear = through_lut(path, codes(bits))
         # Hosts use the default optimization, whose inverse is approximate; it must still give every code back.
         for optimization in (OCIO.OPTIMIZATION_LOSSLESS, OCIO.OPTIMIZATION_DEFAULT):
-            back = ocio_applied(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)
+            back = through_lut(path, linear, OCIO.TRANSFORM_DIR_INVERSE, optimization)
             assert np.rint(back * (2**bits - 1)).tolist() == list(range(2**bits))
 
 
@@ -89,25 +82,18 @@ def test_any_table_is_read_back_bit_for_bit_by_us_and_by_opencolorio(tmp_path, v
     assert np.array_equal(steps[1].getData()[::3], lut.values.astype(np.float32))
 
 
-@pytest.mark.parametrize("suffix", SUFFIXES)
-class TestFiles:
-    def test_a_file_is_replaced_only_when_asked(self, tmp_path, suffix):
-        path = tmp_path / f"a{suffix}"
-        path.write_text("mine")
-        with pytest.raises(LutError):
-            write_lut(path, Lut1D([0, 1]))
-        assert path.read_text() == "mine"
-        write_lut(path, Lut1D([0, 1]), overwrite=True)
-        assert read_lut(path) == Lut1D([0, 1])
-
-    def test_capital_suffixes_are_known(self, tmp_path, suffix):
-        path = tmp_path / f"A{suffix.upper()}"
+@pytest.mark.parametrize("suffix", [*SUFFIXES, *map(str.upper, SUFFIXES)])
+def test_a_file_is_replaced_only_when_asked(tmp_path, suffix):
+    path = tmp_path / f"a{suffix}"
+    path.write_text("mine")
+    with refused(LutError, "exists"):
         write_lut(path, Lut1D([0, 1]))
-        assert read_lut(str(path)) == Lut1D([0, 1])
+    assert path.read_text() == "mine"
+    write_lut(path, Lut1D([0, 1]), overwrite=True)
+    assert read_lut(str(path)) == Lut1D([0, 1])
 
 
 @pytest.mark.parametrize("name", ["a.3dl", "a", "a.spi3d"])
 def test_other_suffixes_are_not_written(tmp_path, name):
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, "lut_suffix"):
         write_lut(tmp_path / name, Lut1D([0, 1]))
-    assert caught.value.code == "lut_suffix"

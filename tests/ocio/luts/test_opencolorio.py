@@ -11,6 +11,8 @@ from crfnet.luts.files import WRITERS, read_lut, write_lut
 from crfnet.luts.lut1d import MAX_LENGTH, Lut1D
 from crfnet.luts.opencolorio import MAX_FILE_SIZE
 from crfnet.luts.rgb_lut import RgbLut1D
+from tests.helpers.configs import through_lut
+from tests.helpers.refusals import refused
 
 ROWS = ("0", "0.1", "0.3", "0.6", "1")
 LUT = Lut1D([0, 0.1, 0.3, 0.6, 1])
@@ -45,14 +47,6 @@ def csp(rows=ROWS, *, shaper=IDENTITY, kind="1D"):
     return f"CSPLUTV100\n{kind}\n\n{shaper * 3}\n{len(rows)}\n{body}"
 
 
-def through_opencolorio(path, pixels):
-    OCIO.ClearAllCaches()
-    values = np.repeat(np.asarray(pixels, dtype=np.float32), 3)
-    processor = OCIO.Config.CreateRaw().getProcessor(OCIO.FileTransform(src=str(path)))
-    processor.getOptimizedCPUProcessor(OCIO.OPTIMIZATION_NONE).applyRGB(values)
-    return values[::3]
-
-
 @pytest.mark.parametrize(
     ("name", "text", "expected"),
     [
@@ -77,7 +71,8 @@ def test_what_opencolorio_reads_is_read_alike(tmp_path, name, text, expected):
     lut = read_lut(tmp_path / name)
     assert expected is None or lut == expected
     pixels = np.linspace(-1, 3, 4001)
-    np.testing.assert_allclose(lut.apply(pixels), through_opencolorio(tmp_path / name, pixels), atol=3e-5)
+    judged = through_lut(tmp_path / name, pixels, optimization=OCIO.OPTIMIZATION_NONE)
+    np.testing.assert_allclose(lut.apply(pixels), judged, atol=3e-5)
 
 
 TWICE = value_range(0, 2).replace("</Range>", "<minInValue>-1</minInValue></Range>")
@@ -107,29 +102,22 @@ MATRIX = '<Matrix inBitDepth="32f" outBitDepth="32f"><Array dim="3 3">1 0 0 0 2 
         ("a.tif", "x", "lut_suffix"),
         *((f"a.{make.__name__}", make(rows=ROWS[::-1]), "lut_not_increasing") for make in (clf, cube, spi1d, csp)),
         *((f"a.{make.__name__}", make(rows=["0", "nan", *ROWS[2:]]), "lut_not_increasing") for make in (clf, cube)),
-        *(
-            (f"a.{make.__name__}", make(rows=("-3.4e38", "0", "1", "2", "3.4e38")), "lut_invalid")
-            for make in (cube, spi1d)
-        ),
+        ("a.cube", cube(rows=("-3.4e38", "0", "1", "2", "3.4e38")), "lut_invalid"),
     ],
 )
 def test_other_files_are_refused(tmp_path, name, text, code):
     path = tmp_path / name
     path.write_text(text, encoding="utf-8", errors="surrogateescape")
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, code, path=path):
         read_lut(path)
-    assert caught.value.code == code
-    assert str(caught.value).startswith(f"{path}: ")
-    assert str(caught.value).isprintable()
 
 
 @pytest.mark.parametrize("make", [cube, spi1d])
 def test_decimal_commas_are_refused(tmp_path, make):
     """OpenColorIO reads "0,1" as 0."""
     (tmp_path / f"a.{make.__name__}").write_text(make(rows=[row.replace(".", ",") for row in ROWS]))
-    with pytest.raises(LutError) as caught:
+    with refused(LutError, "lut_not_increasing", entry=1):
         read_lut(tmp_path / f"a.{make.__name__}")
-    assert (caught.value.code, caught.value.facts["entry"]) == ("lut_not_increasing", 1)
 
 
 @pytest.mark.parametrize("suffix", WRITERS)
@@ -142,21 +130,14 @@ def test_names_are_names(tmp_path, monkeypatch, suffix, name):
 
 
 @pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no named pipes here")
-def test_absent_files_folders_pipes_and_devices_are_refused(tmp_path):
+def test_absent_and_long_files_folders_pipes_and_devices_are_refused(tmp_path):
     os.mkfifo(tmp_path / "pipe.cube")
+    (tmp_path / "long.cube").write_bytes(b"#" * (MAX_FILE_SIZE + 1))
     (tmp_path / "zero.cube").symlink_to("/dev/zero")
     (tmp_path / "folder.cube").mkdir()
-    for name in ("absent", "pipe", "zero", "folder"):
-        with pytest.raises(LutError) as caught:
+    for name in ("absent", "long", "pipe", "zero", "folder"):
+        with refused(LutError, "lut_unreadable"):
             read_lut(tmp_path / f"{name}.cube")
-        assert caught.value.code == "lut_unreadable"
-
-
-def test_a_file_has_a_bounded_size(tmp_path):
-    (tmp_path / "a.cube").write_bytes(b"#" * (MAX_FILE_SIZE + 1))
-    with pytest.raises(LutError) as caught:
-        read_lut(tmp_path / "a.cube")
-    assert caught.value.code == "lut_unreadable"
 
 
 @pytest.mark.parametrize("suffix", WRITERS)

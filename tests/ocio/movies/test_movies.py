@@ -53,7 +53,7 @@ def bars(frames):
 def refusal(path, call=read_stream):
     with pytest.raises(PlateError) as caught:
         call(path)
-    assert "\n" not in str(caught.value)
+    assert str(caught.value).isprintable()
     return caught.value.code
 
 
@@ -78,9 +78,8 @@ def test_all_frames_are_there_in_order(tmp_path, name):
 @pytest.mark.parametrize("name", ["h264", "hevc 10 bits", "transport stream"])
 def test_key_frames_are_decoded_alone(tmp_path, name):
     file, count, options = MOVIES[name]
-    frames = MovieFrames.find(
-        write_movie(tmp_path / file, 3 * count, **{**options, "options": {**options["options"], "g": "8"}})
-    )
+    options = options | {"options": options["options"] | {"g": "8"}}
+    frames = MovieFrames.find(write_movie(tmp_path / file, 3 * count, **options))
     keys = frames.movie.key_numbers
     assert len(keys) >= 2 or name.startswith("hevc")
     everything = dict(frames.photos(frames.numbers))

@@ -13,6 +13,7 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.metadata.color_tags import ColorTags
 from tests.helpers.crafted_files import png, png_chunk
 from tests.helpers.images import write_image
+from tests.helpers.refusals import refused
 
 
 def write_exr(path, values, names, **attributes):
@@ -42,35 +43,25 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
 
 
 @pytest.mark.parametrize(
-    ("channels", "attributes", "code"),
-    [
-        (("R", "G", "B"), {"colorInteropID": "lin_ap1_scene"}, "plate_is_linear"),
-        (("R", "G"), {}, "exr_channels"),
-        (("left.R", "left.G", "left.B"), {}, "exr_channels"),
-        (("A",), {}, "exr_channels"),
-        (("Z",), {}, "exr_channels"),
-        (("mask.R",), {}, "exr_channels"),
-    ],
+    "channels", [("R", "G"), ("left.R", "left.G", "left.B"), ("A",), ("Z",), ("mask.R",)], ids="".join
 )
-def test_other_exr_files_are_refused(tmp_path, channels, attributes, code):
-    path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels, **attributes)
-    with pytest.raises(PlateError) as caught:
+def test_an_exr_without_colors_is_refused(tmp_path, channels):
+    path = write_exr(tmp_path / "a.exr", np.zeros((1, 1, len(channels))), channels)
+    with refused(PlateError, "exr_channels", path=path):
         read_frame(path)
-    assert (caught.value.code, caught.value.facts["path"]) == (code, path)
 
 
-@pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
-def test_an_untagged_exr_is_refused_unless_it_is_stated_to_be_encoded(tmp_path, tag):
-    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), **tag)
-    with pytest.raises(PlateError) as caught:
-        read_frame(path)
-    assert caught.value.code == "exr_untagged"
-    np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, [[[0.5, 0.5, 0.5]]])
-
-
-def test_an_exr_tagged_as_encoded_is_read(tmp_path):
-    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="srgb_rec709_scene")
-    np.testing.assert_array_equal(read_frame(path).samples, [[[0.5, 0.5, 0.5]]])
+@pytest.mark.parametrize(
+    ("space", "code"), [("lin_rec709_scene", "plate_is_linear"), ("", "exr_untagged"), ("unknown", "exr_untagged")]
+)
+@pytest.mark.parametrize("read", [read_frame, read_color_tags])
+def test_an_exr_whose_tag_does_not_say_that_it_is_encoded_is_refused(tmp_path, read, space, code):
+    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID=space)
+    with refused(PlateError, code, path=path):
+        read(path)
+    if not space:
+        np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, [[[0.5, 0.5, 0.5]]])
+        assert read_color_tags(path, is_encoded=True).primaries is None
 
 
 def test_a_cut_exr_is_refused(tmp_path):
@@ -78,44 +69,27 @@ def test_a_cut_exr_is_refused(tmp_path):
     whole = path.read_bytes()
     for size in (0, 100, len(whole) // 2):
         path.write_bytes(whole[:size])
-        with pytest.raises(PlateError) as caught:
+        with pytest.raises(PlateError):
             read_frame(path)
-        assert str(caught.value).startswith(f"{path}: ")
-        assert "\n" not in str(caught.value)
         assert not oiio.geterror()
 
 
 def test_a_file_tagged_linear_is_refused(tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(png(1, 1, bytes(4), chunks=png_chunk(b"gAMA", struct.pack(">I", 100_000))))
-    with pytest.raises(PhotoError) as caught:
+    with refused(PhotoError, "tagged_linear"):
         read_frame(path)
-    assert caught.value.code == "tagged_linear"
     assert read_frame(path, is_encoded=True).largest == 255
 
 
-def test_an_encoded_exr_has_the_primaries_of_its_name(tmp_path):
-    pixels = np.full((4, 4, 3), 0.5, np.float32)
-    path = write_image(tmp_path / "a.exr", pixels, colorInteropID="srgb_p3d65_scene")
-    assert read_frame(path).color == ColorTags(DISPLAY_P3, source="colorInteropID")
-    assert read_color_tags(path) == ColorTags(DISPLAY_P3, source="colorInteropID")
+def test_an_exr_that_is_tagged_as_encoded_has_the_primaries_of_the_tag(tmp_path):
+    path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), colorInteropID="srgb_p3d65_scene")
+    np.testing.assert_array_equal(read_frame(path).samples, [[[0.5, 0.5, 0.5]]])
+    assert read_frame(path).color == read_color_tags(path) == ColorTags(DISPLAY_P3, source="colorInteropID")
 
 
-def test_the_tags_alone_are_refused_where_the_frame_is(tmp_path):
-    pixels = np.full((4, 4, 3), 0.5, np.float32)
-    for space, code in (("lin_rec709_scene", "plate_is_linear"), ("", "exr_untagged")):
-        path = write_image(tmp_path / "a.exr", pixels, colorInteropID=space)
-        for read in (read_frame, read_color_tags):
-            with pytest.raises(PlateError) as caught:
-                read(path)
-            assert caught.value.code == code
-    assert read_color_tags(path, is_encoded=True).primaries is None
-
-
-def test_the_error_of_a_damaged_exr_is_printable(tmp_path):
+def test_an_exr_with_a_damaged_header_is_refused(tmp_path):
     path = write_exr(tmp_path / "a.exr", np.zeros((4, 4, 3)), ("R", "G", "B"))
     path.write_bytes(path.read_bytes().replace(b"channels\0chlist\0", b"channels\0chl\xa7\x1bt\0", 1))
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "exr_unreadable", path=path):
         read_frame(path, is_encoded=True)
-    assert str(caught.value).startswith(f"{path}: cannot be read (")
-    assert str(caught.value).isprintable()

@@ -9,6 +9,7 @@ from crfnet.errors import PlateError
 from crfnet.plates.frame_numbers import MAX_FRAMES, format_frames, parse_frames
 from crfnet.plates.frame_pattern import FramePattern
 from crfnet.plates.frames import FrameSequence, find_frames, sample_frames
+from tests.helpers.refusals import refused
 
 
 def touch(folder, *names):
@@ -25,10 +26,8 @@ def names(sequence):
     [
         ("plate.%04d.png", 7, "plate.0007.png"),
         ("plate.%d.png", 7, "plate.7.png"),
-        ("plate.%04d.png", 12345, "plate.12345.png"),
         ("plate.%04d.png", -3, "plate.-003.png"),
-        ("plate.####.exr", 7, "plate.0007.exr"),
-        ("plate.#.exr", 7, "plate.0007.exr"),
+        ("plate.#.exr", 12345, "plate.12345.exr"),
         ("plate_@@@@@.exr", 7, "plate_00007.exr"),
         ("a@2x.%03d.png", 1, "a@2x.001.png"),
         ("shot.$F4.png", 7, "shot.0007.png"),
@@ -53,20 +52,14 @@ def test_a_name_without_a_placeholder_is_not_a_pattern(name):
 
 @pytest.mark.parametrize("name", ["a.%04d.%04d.png", "a.##.##.png", "@a@.png", "$F.$F4.png"])
 def test_several_placeholders_are_refused(name):
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "several_placeholders", count=2):
         FramePattern.parse(name)
-    assert (caught.value.code, caught.value.facts["count"]) == ("several_placeholders", 2)
 
 
-def test_a_single_file_has_no_frame_numbers(tmp_path):
-    touch(tmp_path, "plate.png")
-    assert find_frames(tmp_path / "plate.png") == FrameSequence((tmp_path / "plate.png",), (), ())
-    assert find_frames(str(tmp_path / "plate.png")).paths == (tmp_path / "plate.png",)
-
-
-def test_a_file_whose_name_looks_like_a_pattern_is_found(tmp_path):
-    touch(tmp_path, "a@2x.png", "a52x.png")
-    assert names(find_frames(tmp_path / "a@2x.png")) == ["a@2x.png"]
+@pytest.mark.parametrize("name", ["plate.png", "a@2x.png"])
+def test_a_single_file_has_no_frame_numbers_whatever_its_name(tmp_path, name):
+    touch(tmp_path, name, "a52x.png")
+    assert find_frames(str(tmp_path / name)) == FrameSequence((tmp_path / name,), (), ())
 
 
 @pytest.mark.parametrize("pattern", ["p.%04d.png", "p.####.png", "p.#.png", "p.@@@@.png"])
@@ -113,9 +106,8 @@ def test_a_folder_with_one_sequence_is_that_sequence(tmp_path, files, numbers):
 
 def test_a_folder_with_several_sequences_lists_them(tmp_path):
     touch(tmp_path, *(f"{shot}.{number:04d}.png" for shot in "ab" for number in (1, 2)))
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "several_sequences", patterns="a.%04d.png, b.%04d.png"):
         find_frames(tmp_path)
-    assert (caught.value.code, caught.value.facts["patterns"]) == ("several_sequences", "a.%04d.png, b.%04d.png")
 
 
 def test_the_add_on_needs_no_fileseq(tmp_path, monkeypatch):
@@ -146,23 +138,20 @@ def test_a_specification_stands_for_ascending_numbers(frames, numbers):
 
 @pytest.mark.parametrize("frames", ["", "a", "1-", "1-2-3", "1;2", "1,,2", "1.5", "٣", "1-5x0", "1-2x0.5"])
 def test_a_malformed_specification_is_refused(frames):
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "bad_frames"):
         parse_frames(frames)
-    assert caught.value.code == "bad_frames"
 
 
 def test_an_endless_range_is_refused_at_once():
     for frames in ("0-999999999", "1-5000000"):
-        with pytest.raises(PlateError) as caught:
+        with refused(PlateError, "too_many_frames", most=MAX_FRAMES):
             parse_frames(frames)
-        assert (caught.value.code, caught.value.facts["most"]) == ("too_many_frames", MAX_FRAMES)
 
 
 def test_frames_that_are_too_far_apart_are_refused(tmp_path):
     touch(tmp_path, "p.1.png", "p.20261121.png")
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "frames_far_apart"):
         find_frames(tmp_path / "p.%d.png")
-    assert caught.value.code == "frames_far_apart"
     assert find_frames(tmp_path / "p.%d.png", "1").numbers == (1,)
 
 
@@ -183,9 +172,8 @@ def test_what_cannot_be_found_is_named(tmp_path, name, frames, code):
     touch(tmp_path, "p.0001.png", "p.0002.png")
     (tmp_path / "empty").mkdir()
     touch(tmp_path / "empty", "readme.txt", "p.0001.png", ".p.0002.png")
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, code):
         find_frames(tmp_path / name, frames)
-    assert caught.value.code == code
 
 
 @pytest.mark.parametrize(

@@ -26,13 +26,6 @@ def test_8_bit_codes_become_the_entries_of_the_lut(tmp_path, out):
     np.testing.assert_allclose(pixels, (codes / 255) ** 2.2, atol=1e-3)
 
 
-def test_half_is_the_rounded_float_and_the_default(tmp_path, out):
-    linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
-    pixels, spec = read_exr(out / "a.exr")
-    assert str(spec.format) == "half"
-    np.testing.assert_array_equal(pixels, LUT.apply(SMALL[..., :3] / 255).astype(np.float16))
-
-
 @pytest.mark.parametrize("stops", [-2, 1, 0.5])
 def test_the_exposure_is_in_stops(tmp_path, out, stops):
     path = write_image(tmp_path / "a.png", SMALL[..., :3])
@@ -130,7 +123,6 @@ def test_metadata_that_remains_true_is_kept(tmp_path, out):
     )
     linearize(plate, out / "a.exr", LUT)
     result = attributes(read_exr(out / "a.exr")[1])
-    assert result["compression"] == "zips"
     assert result["colorInteropID"] == "lin_rec709_scene"
     assert result["crfnet:response"] == "photograph plate.jpg | model test"
     assert (result["Make"], result["Orientation"], result["DateTime"]) == ("Canon", 1, "2001:02:03 04:05:06")

@@ -14,13 +14,12 @@ from crfnet_core.errors import CRFNetError, PhotoError
 from tests.helpers.folders import listed, tree
 from tests.helpers.images import read_image, write_image
 from tests.helpers.plates import LUT, SMALL, linearize, write_sequence
+from tests.helpers.refusals import refused
 
 
 def refusal(*arguments, **options):
-    """The code of the error by which plates are refused."""
     with pytest.raises(CRFNetError) as caught:
         linearize(*arguments, **options)
-    assert "\n" not in str(caught.value)
     return caught.value.code
 
 
@@ -51,10 +50,9 @@ def test_a_finished_plate_of_another_size_is_that_of_another_plate(tmp_path, out
     linearize(write_image(tmp_path / "a.png", SMALL[..., :3]), out / "a.exr", LUT)
     before, (height, width) = tree(out), SMALL.shape[:2]
     other = write_image(tmp_path / "b.png", SMALL[:, 1:, :3])
-    with pytest.raises(PlateError) as caught:
+    difference = f"{width} x {height} pixels, not {width - 1} x {height}"
+    with refused(PlateError, "finished_differs", difference=difference):
         linearize(other, out / "a.exr", LUT)
-    assert caught.value.code == "finished_differs"
-    assert caught.value.facts["difference"] == f"{width} x {height} pixels, not {width - 1} x {height}"
     assert tree(out) == before
     linearize(other, out / "a.exr", LUT, overwrite=True)
     assert tree(out) != before
@@ -114,9 +112,8 @@ def test_a_failed_write_leaves_nothing(tmp_path, out, monkeypatch):
 def test_a_full_disk_is_named(tmp_path):
     (tmp_path / "full.exr").symlink_to("/dev/full")
     spec = oiio.ImageSpec(90, 70, 4, "half")
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "exr_not_written"):
         exr.write_exr(tmp_path / "full.exr", spec, SMALL.astype(np.float16), name=Path("a.exr"))
-    assert caught.value.code == "exr_not_written"
 
 
 def test_a_file_whose_end_is_lost_is_refused(tmp_path, monkeypatch):
@@ -130,9 +127,8 @@ def test_a_file_whose_end_is_lost_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(exr, "_is_whole", lose)
     spec = oiio.ImageSpec(90, 70, 4, "half")
     spec.attribute("compression", "zips")
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "exr_not_written"):
         exr.write_exr(tmp_path / "a.exr", spec, SMALL.astype(np.float16), name=Path("a.exr"))
-    assert caught.value.code == "exr_not_written"
 
 
 def test_metadata_that_is_not_utf_8_is_kept_in_part():

@@ -16,6 +16,7 @@ from tests.helpers.folders import listed, tree
 from tests.helpers.images import write_image
 from tests.helpers.plates import LUT, SMALL, linearize, read_exr, write_sequence
 from tests.helpers.processes import start_interruptible
+from tests.helpers.refusals import refused
 
 ROOT = Path(__file__).parents[3]
 
@@ -112,9 +113,8 @@ def test_frames_that_another_process_finishes_meanwhile_are_left_alone(tmp_path,
 def test_gaps_are_named_although_a_frame_failed(tmp_path, out):
     pattern = write_sequence(tmp_path, (1, 2, 4, 9))
     (tmp_path / "plate.0002.png").write_bytes(b"\x89PNG\r\n\x1a\n")
-    with pytest.raises(PlateError) as caught:
+    with refused(PlateError, "frames_failed", gaps="; missing are 3, 5-8"):
         linearize(pattern, out / "a.%d.exr", LUT)
-    assert caught.value.facts["gaps"] == "; missing are 3, 5-8"
 
 
 @pytest.mark.skipif(sys.platform == "win32", reason="needs POSIX signals")
@@ -153,6 +153,4 @@ def test_a_failing_callback_stops_the_run_cleanly(tmp_path, out):
 
     with pytest.raises(KeyboardInterrupt):
         linearize(write_sequence(tmp_path, range(40)), out / "a.%d.exr", LUT, workers=1, progress=stop)
-    names = listed(out)
-    assert 1 <= len(names) < 40
-    assert not any(name.startswith(".") for name in names)
+    assert 1 <= len(list(out.glob("a.*.exr"))) == len(listed(out)) < 40

@@ -8,6 +8,7 @@ from crfnet.cli.main import main
 from crfnet.luts.files import write_lut
 from crfnet.luts.lut1d import Lut1D
 from crfnet.plates import exr
+from tests.helpers.images import write_image
 from tests.helpers.reference_exr import OpenEXR, read_reference
 
 
@@ -18,19 +19,9 @@ def lut(tmp_path):
     return path
 
 
-def write_plate(path, pixels):
-    """Write 8-bit codes as PNG, with straight alpha."""
-    header = oiio.ImageSpec(pixels.shape[1], pixels.shape[0], pixels.shape[2], "uint8")
-    header.attribute("oiio:UnassociatedAlpha", 1)
-    output = oiio.ImageOutput.create(str(path))
-    output.open(str(path), header)
-    output.write_image(pixels)
-    output.close()
-
-
 def linearized(lut, tmp_path, codes, *options):
-    """Return the linear plate that the command writes of 8-bit codes."""
-    write_plate(tmp_path / "plate.png", codes)
+    """Return the linear plate that the command writes of 8-bit codes, with straight alpha."""
+    write_image(tmp_path / "plate.png", codes, oiio__UnassociatedAlpha=1)
     main(["linearize", str(tmp_path / "plate.png"), "--lut", str(lut), "--out", str(tmp_path / "l.exr"), *options])
     return tmp_path / "l.exr"
 

@@ -1,0 +1,20 @@
+"""Refusals: errors by their kind, code and facts, whatever their sentences are."""
+
+from __future__ import annotations
+
+import contextlib
+from collections.abc import Iterator
+
+import pytest
+
+from crfnet_core.errors import CRFNetError
+
+
+@contextlib.contextmanager
+def refused(kind: type[CRFNetError], code: str, **facts: object) -> Iterator[None]:
+    """Check that the block raises an error of this kind and code, with these facts among its own, said on one line."""
+    with pytest.raises(kind) as caught:
+        yield
+    found = {name: caught.value.facts.get(name) for name in facts}
+    assert (caught.value.code, found) == (code, facts)
+    assert str(caught.value).isprintable()
