@@ -127,10 +127,22 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
+        _seek_color(source)
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
     finally:
         source.close()
+
+
+def _seek_color(source: Any) -> None:
+    """Go to the first part of an OpenEXR file that has R, G and B, if there is one: depth or a mask may come first."""
+    part = 0
+    while source.seek_subimage(part, 0):
+        if set(source.spec().channelnames) >= set("RGB"):
+            return
+        part += 1
+    source.seek_subimage(0, 0)
+    oiio_message(source)
 
 
 def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
@@ -156,7 +168,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 def _plane(source: Any, channel: int) -> Float32Array | None:
     """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(0, 0, channel, channel + 1, "float")
+    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
     return None if plane is None else np.asarray(plane)[..., 0]
 
 
@@ -168,7 +180,8 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() > MAX_PIXELS:
         raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
     names = set(header.channelnames)
-    if header.deep or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY]):
+    is_float = str(header.format) in ("half", "float")
+    if header.deep or not is_float or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY]):
         raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
     if space in UNTAGGED and not is_encoded:
         raise PlateError("exr_untagged", path=path)

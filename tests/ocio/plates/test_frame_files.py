@@ -59,6 +59,31 @@ def test_other_exr_files_are_refused(tmp_path, channels, attributes, code):
     assert (caught.value.code, caught.value.facts["path"]) == (code, path)
 
 
+@pytest.mark.parametrize("first", [("Z",), ("Y",), ("X", "Y", "Z")])
+def test_the_first_part_with_colors_is_read(tmp_path, first):
+    """Depth, a mask or normals may come before it."""
+    parts = [oiio.ImageSpec(4, 3, len(names), oiio.FLOAT) for names in (first, "RGB")]
+    for part, names in zip(parts, (first, "RGB"), strict=True):
+        part.channelnames = tuple(names)
+        part.attribute("oiio:subimagename", names[0])
+    path = tmp_path / "a.exr"
+    output = oiio.ImageOutput.create(str(path))
+    assert output.open(str(path), tuple(parts))
+    assert output.write_image(np.full((3, 4, len(first)), 7, np.float32))
+    assert output.open(str(path), parts[1], "AppendSubimage")
+    values = np.random.default_rng(0).random((3, 4, 3), np.float32)
+    assert output.write_image(values)
+    output.close()
+    np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, values)
+
+
+def test_an_exr_of_whole_numbers_is_refused(tmp_path):
+    path = write_image(tmp_path / "a.exr", np.zeros((2, 2, 3), np.uint32), names="RGB", depth="uint")
+    with pytest.raises(PlateError) as caught:
+        read_frame(path, is_encoded=True)
+    assert caught.value.code == "exr_channels"
+
+
 @pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
 def test_an_untagged_exr_is_refused_unless_it_is_stated_to_be_encoded(tmp_path, tag):
     path = write_exr(tmp_path / "a.exr", np.full((1, 1, 3), 0.5), ("R", "G", "B"), **tag)
