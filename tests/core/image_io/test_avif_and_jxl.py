@@ -1,6 +1,7 @@
 """AVIF of more than 8 bits and AVIF with XMP; lossy JPEG XL."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
@@ -9,7 +10,9 @@ from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
+from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
+from tests.helpers.images import write_image
 
 
 def test_xmp_does_not_turn_avif(tmp_path):
@@ -58,6 +61,14 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
     assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
 
 
+@pytest.mark.parametrize("name", ["alpha10.avif", "cropped8.avif"])
+def test_avif_that_no_decoder_reads_in_full_is_refused(root, name):
+    """PyAV leaves out alpha, by which the colors may be multiplied; Pillow and PyAV do not crop."""
+    with pytest.raises(PhotoError) as caught:
+        read_codes(root / "tests" / "data" / "heif" / name)
+    assert caught.value.code == "coding_not_read"
+
+
 @pytest.mark.parametrize("quality", [90, 100])
 def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
     """OpenImageIO would return linear light."""
@@ -79,3 +90,18 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
         with pytest.raises(PhotoError) as caught:
             read(tmp_path / "a.jxl")
         assert caught.value.code == "jxl_linear"
+
+
+def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
+    header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
+    header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
+    with pytest.raises(PhotoError) as caught:
+        checked_bit_depth(Path("a.jxl"), header, "JPEG XL")
+    assert caught.value.code == "jxl_linear"
+
+
+def test_alpha_of_jpeg_xl_is_straight(tmp_path):
+    codes = np.dstack([colored_ramp(8), 255 - colored_ramp(8)[..., :1]])
+    values = read_codes(write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100"))
+    np.testing.assert_array_equal(values.alpha, codes[..., -1])
+    np.testing.assert_allclose(values.pixels(), codes[..., :3] / 255, atol=1e-6)
