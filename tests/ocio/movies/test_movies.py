@@ -122,6 +122,24 @@ def test_a_damaged_frame_fails_and_the_others_keep_their_numbers(tmp_path):
     assert all(shown in (None, number) for number, shown in enumerate(numbers, 1))
 
 
+def test_what_follows_damage_up_to_the_next_key_frame_fails(tmp_path):
+    """The decoder predicts it from a damaged frame and does not complain."""
+    path = write_movie(tmp_path / "a.mp4", 24, options={"g": "8", "bf": "0", "sc_threshold": "0"})
+    with av.open(str(path)) as container:
+        packets = [packet for packet in container.demux(video=0) if packet.size]
+        place, size = packets[10].pos, packets[10].size
+    content = bytearray(path.read_bytes())
+    content[place : place + size] = bytes(size)
+    path.write_bytes(content)
+    assert bars(MovieFrames.find(path)) == [*range(1, 11), *[None] * 6, *range(17, 25)]
+
+
+def test_side_data_of_an_unknown_kind_is_passed_over(tmp_path):
+    """Of frames with EXIF, PyAV raises at any question for side data."""
+    path = write_movie(tmp_path / "a.mov", codec="tiff", form="rgb24")
+    assert bars(MovieFrames.find(path)) == [1, 2, 3, 4, 5, 6]
+
+
 CHANGES = {
     "range": {"tags": {"color_range": 2, "colorspace": 1}},
     "interlacing": {"is_interlaced": True},
