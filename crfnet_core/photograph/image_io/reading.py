@@ -105,7 +105,7 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
 
 @dataclass(frozen=True)
 class _OpenFile:
-    """A file that OpenImageIO has opened, at the picture that is read."""
+    """A file that OpenImageIO has opened, at the picture that is read; BMP by Pillow."""
 
     path: Path
     kind: str
@@ -152,8 +152,7 @@ class _OpenFile:
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
         if self.kind == "BMP":
-            with _opened_bmp(self.path) as image:
-                return np.atleast_3d(np.asarray(image))
+            return np.atleast_3d(np.asarray(self.source))
         values = _samples(self.source, self.header)
         problem = problems.oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
@@ -177,8 +176,12 @@ def _named_errors(path: Path) -> Iterator[None]:
 @contextmanager
 def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
-    if kind == "BMP":
-        yield _OpenFile(path, kind, None, _bmp_header(path), None)
+    if kind == "BMP":  # of which OpenImageIO ignores the masks of channels, and refuses sound runs (RLE)
+        try:
+            with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+                yield _OpenFile(path, kind, image, _bmp_header(path, image), None)
+        except (OSError, SyntaxError, ValueError) as problem:
+            raise problems.damaged(path, kind, str(problem)) from None
         return
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
@@ -220,25 +223,14 @@ def _seek_picture(source: Any) -> None:
     problems.oiio_message(source)
 
 
-@contextmanager
-def _opened_bmp(path: Path) -> Iterator[BmpImageFile]:
-    """Yield a BMP file, opened by Pillow: OpenImageIO ignores the masks of channels, and refuses sound runs (RLE)."""
-    try:
-        with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
-            yield image
-    except (OSError, SyntaxError, ValueError) as problem:
-        raise problems.damaged(path, "BMP", str(problem)) from None
-
-
-def _bmp_header(path: Path) -> Any:
+def _bmp_header(path: Path, image: BmpImageFile) -> Any:
     """Return the header of a BMP file, whose alpha is straight; refuse a palette other than of all grays."""
-    with _opened_bmp(path) as image:
-        if image.mode in ("1", "P"):
-            raise PhotoError("palette", path=path, kind="a BMP file with a palette")
-        header = oiio.ImageSpec(*image.size, len(image.getbands()), oiio.UINT8)
-        header.attribute("oiio:UnassociatedAlpha", 1)
-        if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
-            header.attribute("oiio:BitsPerSample", 5)
+    if image.mode in ("1", "P"):
+        raise PhotoError("palette", path=path, kind="a BMP file with a palette")
+    header = oiio.ImageSpec(*image.size, len(image.getbands()), oiio.UINT8)
+    header.attribute("oiio:UnassociatedAlpha", 1)
+    if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
+        header.attribute("oiio:BitsPerSample", 5)
     return header
 
 

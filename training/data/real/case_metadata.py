@@ -15,7 +15,7 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
     (`is_original`), `read_photo` finds all of it: prefer that.
 
     `row`: a row of DATA/real_bodies/cases.csv. `crop`: the JPEG file in its column `crop`, cut without recompression:
-    it has the original's quantization tables and subsampling, but its JFIF segment is of the program that cut it.
+    it has the original's quantization tables, but its JFIF segment is of the program that cut it.
     """
     jpeg = read_jpeg_header(crop)
     width, height = (int(side) for side in row["original_size"].split("x"))
@@ -28,7 +28,6 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
         iso=round(float(row["iso"])) if row["iso"] else None,
         luma_table=jpeg.luma_table,
         chroma_table=jpeg.chroma_table,
-        subsampling=jpeg.subsampling,
         file_format="JPEG",
     )
 
