@@ -7,6 +7,7 @@ decoded by PyAV, which is an optional dependency.
 from __future__ import annotations
 
 import re
+import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -114,7 +115,10 @@ def _avif(path: Path, main: Any) -> _Picture:
     Of `main`, by pi-heif, which is None for some files, the pixels are not used. Neither Pillow nor PyAV crops.
     """
     bit_depth = main.info["bit_depth"] if main else 8
-    with AvifImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+    with (
+        warnings.catch_warnings(action="ignore"),
+        AvifImageFile(path) as image,
+    ):  # not Image.open, which refuses 200 megapixels
         check_size(path, *image.size)
         info = dict(image.info)
         if main and sorted(main.size) != sorted(image.size):

@@ -180,8 +180,8 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         try:
             with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
                 yield _OpenFile(path, kind, image, _bmp_header(path, image), None)
-        except (OSError, SyntaxError, ValueError) as problem:
-            raise problems.damaged(path, kind, str(problem)) from None
+        except (OSError, SyntaxError, ValueError) as failure:
+            raise problems.damaged(path, kind, str(failure)) from None
         return
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
