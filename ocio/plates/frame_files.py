@@ -23,6 +23,9 @@ from ..errors import PlateError
 #: Names of the one channel of a gray picture; any other is depth, a mask or other data.
 GRAY = ("Y", "R")
 
+#: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
+MOST_BRIGHTNESS = 2
+
 #: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
 UNTAGGED = ("", "unknown", "data")
 
@@ -157,6 +160,8 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
     samples = np.stack([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
+    if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
+        raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
     alpha = planes[header.alpha_channel]  # (H, W)
@@ -180,8 +185,12 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() > MAX_PIXELS:
         raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
     names = set(header.channelnames)
-    is_float = str(header.format) in ("half", "float")
-    if header.deep or not is_float or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY]):
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
+    if (
+        header.deep
+        or not kinds <= {"half", "float"}
+        or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY])
+    ):
         raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
     if space in UNTAGGED and not is_encoded:
         raise PlateError("exr_untagged", path=path)

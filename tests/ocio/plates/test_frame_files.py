@@ -77,11 +77,13 @@ def test_the_first_part_with_colors_is_read(tmp_path, first):
     np.testing.assert_array_equal(read_frame(path, is_encoded=True).samples, values)
 
 
-def test_an_exr_of_whole_numbers_is_refused(tmp_path):
-    path = write_image(tmp_path / "a.exr", np.zeros((2, 2, 3), np.uint32), names="RGB", depth="uint")
+@pytest.mark.parametrize(("depth", "code"), [("uint", "exr_channels"), ("float", "exr_codes")])
+def test_an_exr_of_code_values_is_refused(tmp_path, depth, code):
+    values = np.full((2, 2, 3), 128, np.uint32 if depth == "uint" else np.float32)
+    path = write_image(tmp_path / "a.exr", values, names="RGB", depth=depth)
     with pytest.raises(PlateError) as caught:
         read_frame(path, is_encoded=True)
-    assert caught.value.code == "exr_channels"
+    assert caught.value.code == code
 
 
 @pytest.mark.parametrize("tag", [{}, {"colorInteropID": "unknown"}])
