@@ -110,6 +110,7 @@ class MovieStream:
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
             interlaced if self.picture.is_interlaced else "",
+            "its alpha is left out" if self.metadata.get("alpha_mode") == "1" else "",  # of VP8 and VP9, not decoded
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
 

@@ -82,3 +82,8 @@ def test_the_container_counts_where_frames_have_no_tags(tmp_path):
     movie = read_stream(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le", tags=tags))
     assert movie.picture.coding.matrix == "BT.2020"
     assert (movie.color.primaries, movie.color.transfer) == (REC2020, "PQ")
+
+
+def test_alpha_that_is_not_decoded_is_named(tmp_path):
+    movie = read_stream(write_movie(tmp_path / "a.webm", codec="libvpx-vp9", metadata={"alpha_mode": "1"}))
+    assert "its alpha is left out" in str(movie)
