@@ -12,7 +12,6 @@ from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
 from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
-from tests.helpers.images import write_image
 
 
 def test_xmp_does_not_turn_avif(tmp_path):
@@ -98,10 +97,3 @@ def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
     with pytest.raises(PhotoError) as caught:
         checked_bit_depth(Path("a.jxl"), header, "JPEG XL")
     assert caught.value.code == "jxl_linear"
-
-
-def test_alpha_of_jpeg_xl_is_straight(tmp_path):
-    codes = np.dstack([colored_ramp(8), 255 - colored_ramp(8)[..., :1]])
-    values = read_codes(write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100"))
-    np.testing.assert_array_equal(values.alpha, codes[..., -1])
-    np.testing.assert_allclose(values.pixels(), codes[..., :3] / 255, atol=1e-6)
