@@ -19,7 +19,9 @@ SENTENCES: Mapping[str, str] = {
     "cannot_list": "{folder}: cannot be listed ({problem}); check the folder",
     "exceeds_half": "values up to {peak:.6g} do not fit into half floats; ask for float, or for less exposure",
     "exposure_out_of_range": "an exposure of {stops:g} stops is out of range; give one like -2 or 1.5",
-    "exr_channels": "{path}: needs channels R, G and B, or a gray one; found {channels}",
+    "exr_channels": "{path}: needs channels R, G and B, or a gray one, of half or float samples; found {channels}",
+    "exr_codes": "{path}: most values lie above {most}, but encoded brightness lies in [0, 1]: divide code values by"
+    " the largest, such as 255",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"

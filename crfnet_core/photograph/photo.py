@@ -123,6 +123,20 @@ class CodeValues:
     header: Any  # an OpenImageIO.ImageSpec, with all that OpenImageIO read
     metadata: FileMetadata
 
+    @classmethod
+    def from_samples(cls, samples: NDArray[Any], bit_depth: int, header: Any, metadata: FileMetadata) -> CodeValues:
+        """Return decoded samples, shape (H, W, C), as three channels and the alpha that `header` names."""
+        channels, alpha = samples.shape[2], header.alpha_channel
+        has_alpha = 0 < alpha < channels
+        return cls(
+            codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
+            alpha=samples[..., alpha] if has_alpha else None,
+            bit_depth=bit_depth,
+            is_associated=has_alpha and not header.get_int_attribute("oiio:UnassociatedAlpha"),
+            header=header,
+            metadata=metadata,
+        )
+
     @property
     def largest(self) -> int:
         """The largest code, such as 255 for 8 bits."""

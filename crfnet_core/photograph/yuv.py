@@ -61,20 +61,18 @@ class Coding:
         return f"{self.matrix}, {'full' if self.is_full_range else 'limited'} range"
 
     @classmethod
-    def from_frame(cls, frame: VideoFrame, *, is_still: bool, nclx: tuple[int, bool] | None = None) -> Coding | None:
+    def from_frame(cls, frame: VideoFrame, *, is_still: bool, codes: Sequence[int] = ()) -> Coding | None:
         """Return the coding of a decoded frame; None if its matrix or its samples are not read.
 
-        For a still picture (JPEG or AVIF), untagged means BT.601 in full range. `nclx` holds the matrix and the full
-        range flag of the container, which override the frame's.
+        `codes` are matrix and range by the container; they override the frame's. For a still picture (JPEG or AVIF),
+        untagged means BT.601 in full range.
         """
         form, bits = frame.format, bit_depth(frame)
         if form.is_bit_stream or not 8 <= bits <= 16 or form.name.endswith(("f16le", "f32le")):
             return None
         if form.is_rgb or form.has_palette:
             return cls("RGB", 0.0, 0.0, is_full_range=True, is_centered=False)
-        matrix, color_range = int(frame.colorspace), int(frame.color_range)
-        if nclx:
-            matrix, color_range = nclx[0], _FULL_RANGE if nclx[1] else 1
+        matrix, color_range = codes or (int(frame.colorspace), int(frame.color_range))
         if len(form.components) < 3:  # gray has no matrix; untagged it is full range, as FFmpeg takes it
             is_full, is_assumed = color_range in (0, _FULL_RANGE), color_range == 0 and not is_still
             assumptions = ("does not say its range: full taken, as it is gray",) if is_assumed else ()

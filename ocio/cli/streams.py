@@ -45,13 +45,12 @@ def own_stderr() -> Iterator[None]:
 
 
 def shown(text: str) -> str:
-    """Return a text as the command prints it: control characters, as names of files hold them, are question marks.
+    """Return a line as the command prints it: control characters, as names of files hold them, are question marks.
 
     What is not Unicode in a name stays: the streams escape it.
     """
     return "".join(
-        character if character.isprintable() or character == "\n" or "\ud800" <= character <= "\udfff" else "?"
-        for character in text
+        character if character.isprintable() or "\ud800" <= character <= "\udfff" else "?" for character in text
     )
 
 

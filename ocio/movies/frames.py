@@ -6,6 +6,7 @@ from bisect import insort
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
+from math import inf
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -102,17 +103,30 @@ def decoded(movie: MovieStream, numbers: Iterable[int]) -> Iterator[tuple[int, V
 
 
 def _in_order(container: InputContainer, stream: VideoStream) -> Iterator[VideoFrame | None]:
-    """Yield all frames as shown; None in the place, by its time, of a packet that cannot be decoded."""
+    """Yield all frames as shown; None for each that is damaged or may be predicted from a damaged one.
+
+    A packet that cannot be decoded has its place by its time. What follows it in the file up to the next key frame is
+    taken for damaged, as decoders predict from what they have.
+    """
     damaged: list[int] = []
-    for packet in container.demux(stream):
-        frames = decoded_packet(packet)
-        if frames is None and packet.pts is not None and not packet.is_discard:
-            insort(damaged, packet.pts)
+    order: dict[int | None, int] = {}
+    lost = inf  # the place in the file of the first damage since the last key frame
+    for index, packet in enumerate(container.demux(stream)):
+        frames, order[packet.pts] = decoded_packet(packet), index
+        if frames is None:
+            lost = min(lost, index)
+            if packet.pts is not None and not packet.is_discard:
+                insort(damaged, packet.pts)
         for frame in frames or ():
             while damaged and frame.pts is not None and damaged[0] < frame.pts:
                 damaged.pop(0)
                 yield None
-            yield None if frame.is_corrupt else frame
+            place = order.pop(frame.pts, index)
+            if frame.is_corrupt:
+                lost = min(lost, place)
+            elif frame.key_frame and place > lost:
+                lost = inf
+            yield None if frame.is_corrupt or place > lost else frame
     yield from (None for _ in damaged)
 
 
@@ -140,7 +154,7 @@ def _decoded_alone(stream: VideoStream, packet: Any) -> VideoFrame | None:
 
 def _check_form(movie: MovieStream, number: int, frame: VideoFrame) -> None:
     """Refuse a frame of another size, coding, turn or interlacing than the first."""
-    picture = Picture.from_frame(movie.path, frame, movie.codec)
+    picture = Picture.from_frame(movie.path, frame, movie.codec, movie.container)
     if picture != movie.picture:
         raise PlateError("movie_changes", path=movie.path, frame=number, form=picture, first=movie.picture)
 

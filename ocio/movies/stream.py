@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
 
+from crfnet_core.errors import one_line
 from crfnet_core.photograph.image_io import MAX_PIXELS
 from crfnet_core.photograph.metadata.color_tags import ColorTags, cicp_tags
 from crfnet_core.photograph.metadata.file_metadata import LONGEST_TEXT, FileMetadata
@@ -28,6 +29,10 @@ if TYPE_CHECKING:
 
 #: The time of a frame, in the time base of its stream, and whether it is a key frame.
 Entry: TypeAlias = tuple[int | None, bool]
+
+#: Matrix, range, primaries and transfer: code points of ITU-T H.273, but the range is FFmpeg's; and of none.
+ColorCodes: TypeAlias = tuple[int, ...]
+UNSPECIFIED: ColorCodes = (2, 0, 2, 2)
 
 #: Codecs whose pictures are JPEG: their chroma lies between the luma samples, and their range is full.
 JPEG_CODECS = ("mjpeg", "mjpegb")
@@ -59,12 +64,13 @@ class Picture:
     is_interlaced: bool
 
     @classmethod
-    def from_frame(cls, path: Path, frame: VideoFrame, codec: str) -> Picture:
+    def from_frame(cls, path: Path, frame: VideoFrame, codec: str, container: ColorCodes) -> Picture:
         """Return the form of a decoded frame; raise a PlateError if its samples are not read."""
-        coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS)
+        codes = stated_codes(frame, container)
+        coding = Coding.from_frame(frame, is_still=codec in JPEG_CODECS, codes=codes[:2])
         if coding is None:
-            raise undecodable(path, f"pixels of {frame.format.name}, matrix {int(frame.colorspace)} of H.273")
-        return cls(frame.width, frame.height, frame.format.name, coding, _turn(frame), frame.interlaced_frame)
+            raise undecodable(path, f"pixels of {frame.format.name}, matrix {codes[0]} of H.273")
+        return cls(frame.width, frame.height, frame.format.name, coding, _turn(path, frame), frame.interlaced_frame)
 
     @property
     def size(self) -> tuple[int, int]:
@@ -91,6 +97,7 @@ class MovieStream:
     metadata: Mapping[str, str]  # of the file and of its video, by FFmpeg's names in lower case
     frame_count: int
     key_numbers: tuple[int, ...]  # of the frames that are decoded alone, ascending, from 1
+    container: ColorCodes  # of the container, which count where the frames do not state theirs
 
     def __str__(self) -> str:
         """Return one line for people: the movie, and the values taken for properties that it does not state."""
@@ -103,6 +110,7 @@ class MovieStream:
             f"timecode {self.metadata['timecode']}" if "timecode" in self.metadata else "",
             *(f"the stream {assumption}" for assumption in self.picture.coding.assumptions),
             interlaced if self.picture.is_interlaced else "",
+            "its alpha is left out" if self.metadata.get("alpha_mode") == "1" else "",  # of VP8 and VP9, not decoded
         ]
         return f"{self.path.name}: {'; '.join(filter(None, parts))}"
 
@@ -122,9 +130,8 @@ class MovieStream:
         )
 
     def _text(self, names: tuple[str, ...]) -> str:
-        """Return the printable characters of the first metadata present."""
-        text = next((self.metadata[name] for name in names if name in self.metadata), "")
-        return "".join(filter(str.isprintable, text[:LONGEST_TEXT])).strip()
+        """Return the first metadata present, on one line of printable characters."""
+        return one_line(next((self.metadata[name][:LONGEST_TEXT] for name in names if name in self.metadata), ""))
 
 
 def check_progressive(movie: MovieStream) -> None:
@@ -149,10 +156,11 @@ def read_stream(path: Path) -> MovieStream:
             raise PlateError("plate_too_large", path=path, width=context.width, height=context.height)
         if dolby_vision_profile(stream) == IPT_PROFILE:
             raise PlateError("dolby_vision", path=path, profile=IPT_PROFILE)
+        codes = _color_codes(context)  # decoding overwrites them
         packets, frame = _survey(container, stream)
         if frame is None:
             raise undecodable(path, "it holds no frame")
-        return _described(path, container, stream, _shown(packets, frame), frame)
+        return _described(path, container, stream, _shown(packets, frame), frame, codes)
 
 
 def video_packets(container: InputContainer, stream: VideoStream) -> Iterator[Any]:
@@ -168,6 +176,17 @@ def decoded_packet(packet: Any) -> list[Any] | None:
         return list(packet.decode())
     except av.FFmpegError:
         return None
+
+
+def stated_codes(frame: VideoFrame, container: ColorCodes) -> ColorCodes:
+    """Return the code points of a frame, or of its container where the frame has none, as in ProRes."""
+    codes = zip(_color_codes(frame), container, UNSPECIFIED, strict=True)
+    return tuple(other if own == none else own for own, other, none in codes)
+
+
+def _color_codes(source: Any) -> ColorCodes:
+    """Return the code points of a frame or of a codec's context."""
+    return int(source.colorspace), int(source.color_range), int(source.color_primaries), int(source.color_trc)
 
 
 def _survey(container: InputContainer, stream: VideoStream) -> tuple[list[Entry], VideoFrame | None]:
@@ -203,13 +222,18 @@ def _is_before(time: int | None, other: int | None) -> bool:
 
 
 def _described(
-    path: Path, container: InputContainer, stream: VideoStream, packets: list[Entry], frame: VideoFrame
+    path: Path,
+    container: InputContainer,
+    stream: VideoStream,
+    packets: list[Entry],
+    frame: VideoFrame,
+    codes: ColorCodes,
 ) -> MovieStream:
-    """Return the description of a movie by its stream, its packets and its first frame."""
+    """Return the description of a movie by its stream, its packets, its first frame and the container's color codes."""
     codec = stream.codec_context.codec.canonical_name
     parts = [*(other.metadata for other in container.streams), container.metadata, stream.metadata]
     metadata = {key.lower(): value for part in parts for key, value in part.items()}
-    picture = Picture.from_frame(path, frame, codec)
+    picture = Picture.from_frame(path, frame, codec, codes)
     aspect = stream.sample_aspect_ratio or Fraction(1)
     return MovieStream(
         path=path,
@@ -218,16 +242,17 @@ def _described(
         bit_depth=bit_depth(frame),
         pixel_aspect=1 / aspect if picture.turn[0] == 0 else aspect,
         rate=Fraction(stream.average_rate or 0),
-        color=_color_tags(frame, metadata),
+        color=_color_tags(stated_codes(frame, codes), metadata),
         metadata=metadata,
         frame_count=len(packets),
         key_numbers=_key_numbers(packets),
+        container=codes,
     )
 
 
-def _color_tags(frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
-    """Return primaries and transfer function as the stream tags them, or else the log curve that metadata names."""
-    tags = cicp_tags((frame.color_primaries, frame.color_trc))
+def _color_tags(codes: ColorCodes, metadata: Mapping[str, str]) -> ColorTags:
+    """Return primaries and transfer function as the movie tags them, or else the log curve that metadata names."""
+    tags = cicp_tags(codes[2:])
     texts = {name: "".join(metadata.get(name, "").lower().split()) for name in LOG_TAGS}
     curves = [curve for name, marks in LOG_TAGS.items() for mark, curve in marks.items() if mark in texts[name]]
     if tags.transfer or not curves:
@@ -235,9 +260,17 @@ def _color_tags(frame: VideoFrame, metadata: Mapping[str, str]) -> ColorTags:
     return ColorTags(tags.primaries, curves[0], " and ".join(filter(None, (tags.source, "the maker's entry"))))
 
 
-def _turn(frame: VideoFrame) -> Turn:
-    """Return the turn of the display matrix; as stored for other angles than quarter turns."""
-    matrix: Any = frame.side_data.get("DISPLAYMATRIX")
+def _turn(path: Path, frame: VideoFrame) -> Turn:
+    """Return the turn of the display matrix; as stored for other angles than quarter turns.
+
+    PyAV reads no side data of a frame that has any of a kind it does not know, such as EXIF, but gives the angle.
+    """
+    try:
+        matrix: Any = frame.side_data.get("DISPLAYMATRIX")
+    except ValueError:
+        if frame.rotation:
+            raise undecodable(path, "its frames are turned, and PyAV does not say whether mirrored, too") from None
+        matrix = None
     if matrix is None:
         return UPRIGHT
     values = np.frombuffer(matrix, np.int32)[[0, 1, 3, 4]] / 65536

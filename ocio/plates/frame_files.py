@@ -23,6 +23,9 @@ from ..errors import PlateError
 #: Names of the one channel of a gray picture; any other is depth, a mask or other data.
 GRAY = ("Y", "R")
 
+#: Brightness above which hardly any encoded value lies: overshoot of filters ends below.
+MOST_BRIGHTNESS = 2
+
 #: Values of colorInteropID that say nothing of an encoding (Color Interop Forum).
 UNTAGGED = ("", "unknown", "data")
 
@@ -127,10 +130,22 @@ def _opened_exr(path: Path, *, is_encoded: bool) -> Iterator[Any]:
     if source is None:
         raise PlateError("exr_unreadable", path=path, problem=first_line(problem))
     try:
+        _seek_color(source)
         _check_encoded_exr(path, source.spec(), is_encoded=is_encoded)
         yield source
     finally:
         source.close()
+
+
+def _seek_color(source: Any) -> None:
+    """Go to the first part of an OpenEXR file that has R, G and B, if there is one: depth or a mask may come first."""
+    part = 0
+    while source.seek_subimage(part, 0):
+        if set(source.spec().channelnames) >= set("RGB"):
+            return
+        part += 1
+    source.seek_subimage(0, 0)
+    oiio_message(source)
 
 
 def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> EncodedFrame:
@@ -145,6 +160,8 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
     if problem or any(plane is None for plane in planes.values()):
         raise PlateError("exr_damaged", path=path, problem=first_line(problem))
     samples = np.stack([planes[channel] for channel in channels], axis=2)  # (H, W, 3)
+    if 2 * np.count_nonzero(samples > MOST_BRIGHTNESS) > samples.size:
+        raise PlateError("exr_codes", path=path, most=MOST_BRIGHTNESS)
     if header.alpha_channel < 0:
         return EncodedFrame(samples, 1, None, header, header_color_tags(header, "OpenEXR"))
     alpha = planes[header.alpha_channel]  # (H, W)
@@ -156,7 +173,7 @@ def _read_encoded_exr(path: Path, *, is_encoded: bool, is_divided: bool) -> Enco
 
 def _plane(source: Any, channel: int) -> Float32Array | None:
     """Return one channel, shape (H, W); files may hold many others, such as render passes."""
-    plane = source.read_image(0, 0, channel, channel + 1, "float")
+    plane = source.read_image(source.current_subimage(), 0, channel, channel + 1, "float")
     return None if plane is None else np.asarray(plane)[..., 0]
 
 
@@ -168,7 +185,12 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
     if header.image_pixels() > MAX_PIXELS:
         raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
     names = set(header.channelnames)
-    if header.deep or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY]):
+    kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
+    if (
+        header.deep
+        or not kinds <= {"half", "float"}
+        or not (names >= set("RGB") or names - {"A"} in [{name} for name in GRAY])
+    ):
         raise PlateError("exr_channels", path=path, channels=", ".join(header.channelnames))
     if space in UNTAGGED and not is_encoded:
         raise PlateError("exr_untagged", path=path)

@@ -149,6 +149,8 @@ class TestIccProfiles:
             (b"curv" + bytes(8), True),
             (b"curv" + struct.pack(">IIH", 0, 1, 256), True),
             (b"curv" + struct.pack(">II2H", 0, 2, 0, 65535), True),
+            (b"curv" + struct.pack(">II2H", 0, 2, 2000, 65535), True),  # a lifted black
+            (b"curv" + struct.pack(">II2H", 0, 2, 65535, 65535), False),  # no range
             (b"curv" + struct.pack(">IIH", 0, 1, round(1.1 * 256)), False),
             (b"para" + struct.pack(">IHHi", 0, 0, 0, 65536), True),
             (b"para" + struct.pack(">IHHi", 0, 0, 0, round(1.8 * 65536)), False),

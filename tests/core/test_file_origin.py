@@ -114,6 +114,7 @@ def test_developed_from_a_raw_file_or_not(fields, is_developed):
         ("D-Log_x", "DJI D-Log"),
         ("Rec2100 PQ_x", "PQ"),
         ("Rec2100 HLG_x", "HLG"),
+        *(("RGB_D65_202_Rel_HLG", "HLG"), ("RGB_D65_202_Per_PeQ", "PQ")),  # by libjxl
         *(("ARRI LogC3", "ARRI LogC3"), ("LogC_EI800", "ARRI LogC3"), ("S-Log3 S-Gamut3.Cine", "Sony S-Log3")),
         *(("BMDFilm", "Blackmagic Film Gen 5"), ("REDWideGamutRGB Log3G10", "RED Log3G10"), ("Apple Log", "Apple Log")),
         ("Rec.2100 Hybrid Log curve", "HLG"),

@@ -44,20 +44,19 @@ def test_exif_is_read(tmp_path, name):
 
 
 @pytest.mark.parametrize(("quality", "subsampling"), [(50, "4:4:4"), (75, "4:2:2"), (92, "4:2:0")])
-def test_tables_and_subsampling_of_the_ijg_library(tmp_path, quality, subsampling):
+def test_tables_of_the_ijg_library(tmp_path, quality, subsampling):
     path = tmp_path / "a.jpg"
     jpeg(path, Compression=f"jpeg:{quality}", jpeg__subsampling=subsampling)
     metadata = read(path)
     assert metadata.luma_table == scaled_table(ANNEX_K_LUMA, quality)
     assert metadata.chroma_table == scaled_table(ANNEX_K_CHROMA, quality)
-    assert metadata.subsampling == subsampling
     assert metadata.has_jfif
     assert file_origin(metadata).jpeg_quality == quality
 
 
-def test_a_gray_jpeg_has_one_table_and_no_subsampling(tmp_path):
+def test_a_gray_jpeg_has_one_table(tmp_path):
     metadata = read(write_image(tmp_path / "a.jpg", np.zeros((16, 16, 1), np.uint8), Compression="jpeg:80"))
-    assert (metadata.chroma_table, metadata.subsampling) == ((), "")
+    assert metadata.chroma_table == ()
     assert file_origin(metadata).jpeg_quality == 80
 
 
@@ -131,7 +130,7 @@ def test_damaged_metadata_is_no_error(tmp_path):
 )
 def test_damaged_segments_leave_fields_empty(content):
     header = read_jpeg_header(content)
-    assert (header.luma_table, header.chroma_table, header.subsampling) == ((), (), "")
+    assert (header.luma_table, header.chroma_table) == ((), ())
 
 
 @pytest.mark.parametrize("quality", [1, 25, 50, 75, 95, 100])

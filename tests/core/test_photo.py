@@ -220,6 +220,24 @@ def test_bytes_and_open_files_are_read_as_their_file(tmp_path):
     assert [photo.path for photo in photos] == [Path("bytes"), Path("bytes"), path]
 
 
+@pytest.mark.parametrize("name", ["..", "/", "a" * 300, "a\0b", "a/b.jpg", 7])
+def test_the_name_of_an_open_file_is_a_name_only(tmp_path, name):
+    file = io.BytesIO(write_image(tmp_path / "a.png", CODES8).read_bytes())
+    file.name = name
+    np.testing.assert_array_equal(read_photo(file).pixels, read_photo(tmp_path / "a.png").pixels)
+
+
+@pytest.mark.parametrize("problem", [OSError(5, "Input/output error"), ValueError("read of closed file")])
+def test_a_file_that_cannot_be_read_is_refused(problem):
+    class Broken(io.BytesIO):
+        def read(self, size=-1):
+            raise problem
+
+    with pytest.raises(PhotoError) as caught:
+        read_photo(Broken())
+    assert caught.value.code == "cannot_open_photograph"
+
+
 def test_an_error_of_bytes_names_no_temporary_file():
     with pytest.raises(PhotoError) as caught:
         read_photo(b"a.png")

@@ -111,7 +111,7 @@ def test_untagged_video_follows_its_lines_and_untagged_stills_are_bt601_in_full_
 def test_the_container_overrides_the_frame():
     frame = av.VideoFrame(64, 64, "yuv420p")
     frame.colorspace, frame.color_range = 1, 1
-    coding = Coding.from_frame(frame, is_still=True, nclx=(9, True))
+    coding = Coding.from_frame(frame, is_still=True, codes=(9, 2))
     assert (coding.matrix, coding.is_full_range) == ("BT.2020", True)
 
 

@@ -1,13 +1,18 @@
-"""Check the header of an image file (size, depth, colors), and clean its texts."""
+"""Check the header of an image file (size, depth, colors), clean its texts, and add those of other segments."""
 
 from __future__ import annotations
 
+import os
+import tempfile
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import OpenImageIO as oiio
+from PIL import Image
 
 from crfnet_core.errors import PhotoError, one_line
+from crfnet_core.photograph.image_io import problems
 
 #: Largest photograph that is read, in pixels (200-megapixel cameras fit): at most 5 GB of memory.
 MAX_PIXELS = 250_000_000
@@ -15,10 +20,20 @@ MAX_PIXELS = 250_000_000
 #: PhotometricInterpretation of TIFF: white or black is zero, RGB, YCbCr; the two of camera raw; a palette; LogLuv.
 WHITE_IS_ZERO, READ_PHOTOMETRICS = 0, (0, 1, 2, 6)
 RAW_PHOTOMETRICS, PALETTE_PHOTOMETRIC, LINEAR_PHOTOMETRICS = (32803, 34892), 3, (32844, 32845)
-OTHER_PHOTOMETRICS = {4: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
+MASK = 4
+OTHER_PHOTOMETRICS = {MASK: "a mask", 5: "CMYK", 8: "CIE L*a*b*", 9: "CIE L*a*b*", 10: "CIE L*a*b*"}
 
-#: The profile that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
-LINEAR_JXL_PROFILE = "RGB_D65_SRG_Rel_Lin"
+#: The entry of a DPX header for the bytes behind each line.
+_LINE_PADDING = "dpx:EndOfLinePadding"
+
+#: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; ICC profiles fill many.
+_MOST_BYTES = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}
+
+#: The beginning of EXIF in a JPEG, which other formats may or may not have.
+_EXIF_NAME = b"Exif\0\0"
+
+#: The profiles that libjxl makes for a lossy picture whose own profile it cannot name: it decodes that to linear light.
+LINEAR_JXL_PROFILES = ("RGB_D65_SRG_Rel_Lin", "Gra_D65_Rel_Lin")
 
 
 def check_size(path: Path, width: int, height: int) -> None:
@@ -36,17 +51,27 @@ def checked_bit_depth(path: Path, header: Any, kind: str) -> int:
     check_size(path, header.width, header.height)
     if header.depth != 1:
         raise PhotoError("volume", path=path)
-    if kind == "JPEG XL" and header.get_string_attribute("ICCProfile:profile_description") == LINEAR_JXL_PROFILE:
+    if kind == "JPEG XL" and header.get_string_attribute("ICCProfile:profile_description") in LINEAR_JXL_PROFILES:
         raise PhotoError("jxl_linear", path=path)
-    _check_color(path, header)
+    _check_color(path, header, kind)
     sample = str(header.format)
     if sample in ("half", "float", "double"):
         raise PhotoError("scene_linear_file", path=path, kind=f"a file of {sample} samples")
     stored = {"uint8": 8, "uint16": 16}.get(sample, 0)
-    bits: int = header.get_int_attribute("oiio:BitsPerSample", stored)
+    bits = min(header.get_int_attribute("oiio:BitsPerSample", stored), stored)  # XMP may claim more
     if not stored or bits < 8:
         raise PhotoError("sample_type", path=path, bits=bits, kind=sample)
     return bits if bits in (8, 10, 12) else 16
+
+
+def check_dpx_lines(path: Path, header: Any) -> None:
+    """Refuse DPX whose lines end at whole words of 32 bits and whose header does not say so: they would be sheared."""
+    with path.open("rb") as file:
+        head = file.read(8)
+        stored = file.seek(0, os.SEEK_END) - int.from_bytes(head[4:], "big" if head.startswith(b"SDPX") else "little")
+    line = header.scanline_bytes()
+    if line % 4 and stored == (line + -line % 4) * header.height and not header.get_int_attribute(_LINE_PADDING):
+        raise PhotoError("coding_not_read", path=path, kind="DPX", problem="padded lines that its header does not name")
 
 
 def attribute_value(header: Any, attribute: Any) -> Any:
@@ -67,19 +92,42 @@ def with_plain_texts(header: Any) -> Any:
     return plain
 
 
-def _check_color(path: Path, header: Any) -> None:
+def with_segments(header: Any, info: Mapping[Any, Any]) -> Any:
+    """Return a header with what OpenImageIO reads in the EXIF, XMP and ICC profile of a JPEG of one pixel.
+
+    So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
+    """
+    complete = oiio.ImageSpec(header)
+    if exif := info.get("exif"):
+        info = {**info, "exif": _EXIF_NAME + exif.removeprefix(_EXIF_NAME)}
+    fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
+    if not fitting:
+        return complete
+    with tempfile.TemporaryDirectory() as folder:
+        carrier = Path(folder, "carrier.jpg")
+        Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
+        source = oiio.ImageInput.open(str(carrier))
+        problems.oiio_message()
+        carried = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
+        if source is not None:
+            source.close()
+    for attribute in carried.extra_attribs:
+        if attribute.name.isprintable() and not attribute.name.startswith(("jpeg:", "oiio:")):
+            value = attribute_value(carried, attribute)  # OpenImageIO's Python drops a single integer of 16 bits
+            complete.attribute(attribute.name, "int" if isinstance(value, int) else attribute.type, value)
+    return complete
+
+
+def _check_color(path: Path, header: Any, kind: str) -> None:
     """Refuse colors other than gray and RGB once decoded without a color conversion, and palettes."""
     photometric = header.get_int_attribute("tiff:PhotometricInterpretation", 2)
     if photometric in RAW_PHOTOMETRICS:
         raise PhotoError("camera_raw", path=path)
     if photometric in LINEAR_PHOTOMETRICS:
         raise PhotoError("scene_linear_file", path=path, kind="LogLuv TIFF")
-    # A BMP file with gray has a palette, but one channel.
-    is_bmp = header.nchannels >= 3 and header.get_int_attribute("bmp:bitsperpixel", 24) <= 8
-    tables = {"TIFF": photometric == PALETTE_PHOTOMETRIC, "PNG": header.get_int_attribute("png:palette"), "BMP": is_bmp}
-    if kind := next((kind for kind, has_table in tables.items() if has_table), ""):
+    if photometric == PALETTE_PHOTOMETRIC or (kind == "PNG" and header.get_int_attribute("png:palette")):
         raise PhotoError("palette", path=path, kind=f"a {kind} file with a palette")
     is_ink = header.get_string_attribute("jpeg:ColorSpace") in ("CMYK", "YCbCrK")
     if is_ink or photometric not in READ_PHOTOMETRICS:
-        kind = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
-        raise PhotoError("other_colors", path=path, kind=kind)
+        colors = "CMYK" if is_ink else OTHER_PHOTOMETRICS.get(photometric, f"TIFF photometric {photometric}")
+        raise PhotoError("other_colors", path=path, kind=colors)

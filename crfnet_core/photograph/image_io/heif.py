@@ -7,7 +7,7 @@ decoded by PyAV, which is an optional dependency.
 from __future__ import annotations
 
 import re
-import tempfile
+import warnings
 from collections.abc import Mapping
 from contextlib import suppress
 from dataclasses import dataclass, replace
@@ -17,22 +17,15 @@ from typing import Any
 import numpy as np
 import OpenImageIO as oiio
 from numpy.typing import NDArray
-from PIL import Image
 from PIL.AvifImagePlugin import AvifImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.header_checks import attribute_value, check_size, with_plain_texts
+from crfnet_core.photograph.image_io.header_checks import check_size, with_segments
 from crfnet_core.photograph.metadata.file_metadata import metadata_of_header
 from crfnet_core.photograph.orientation import EXIF_TURNS, UPRIGHT, upright
 from crfnet_core.photograph.photo import CodeArray, CodeValues
 from crfnet_core.photograph.yuv import Coding, rgb_codes
-
-#: EXIF's Orientation.
-_ORIENTATION = 0x0112
-
-#: Metadata, as pi-heif and Pillow name it -> the size from which a JPEG cannot carry it; ICC profiles fill many.
-_MOST_BYTES = {"exif": 65000, "xmp": 65000, "icc_profile": 1 << 24}
 
 #: Errors of the decoders for damaged files.
 _DAMAGE = (EOFError, IndexError, MemoryError, OSError, RuntimeError, StopIteration, SyntaxError, ValueError)
@@ -49,12 +42,13 @@ _CICP = ("color_primaries", "transfer_characteristics", "matrix_coefficients", "
 
 @dataclass(frozen=True)
 class _Picture:
-    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, upright, and its metadata."""
+    """A decoded picture: samples (H, W, C) on the scale of `bit_depth`, as stored or upright, and its metadata."""
 
     samples: NDArray[Any]
     bit_depth: int
     info: Mapping[Any, Any]
     is_associated: bool = False
+    is_upright: bool = True  # else EXIF turns it
 
 
 def read_heif(path: Path, kind: str) -> CodeValues:
@@ -75,7 +69,7 @@ def read_heif(path: Path, kind: str) -> CodeValues:
             main = pi_heif.open_heif(path, convert_hdr_to_8bit=False)
             check_size(path, *main.size)
         info = main.info if main else {}
-        picture = _heic(main) if kind == "HEIC" else _avif(path, info.get("bit_depth", 8))
+        picture = _heic(main) if kind == "HEIC" else _avif(path, main)
     except ImportError as problem:
         raise PhotoError("heif_package_missing", path=path, kind=kind, package=problem.name) from None
     except _DAMAGE as problem:
@@ -115,15 +109,24 @@ def _heic(main: Any) -> _Picture:
     return _Picture(np.atleast_3d(samples), bit_depth, info, is_associated=main.premultiplied_alpha)
 
 
-def _avif(path: Path, bit_depth: int) -> _Picture:
-    """Return the picture of an AVIF file, turned upright."""
-    with AvifImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+def _avif(path: Path, main: Any) -> _Picture:
+    """Return the picture of an AVIF file as stored; Pillow puts its boxes `irot` and `imir` into EXIF.
+
+    Of `main`, by pi-heif, which is None for some files, the pixels are not used. Neither Pillow nor PyAV crops.
+    """
+    bit_depth = main.info["bit_depth"] if main else 8
+    with (
+        warnings.catch_warnings(action="ignore"),
+        AvifImageFile(path) as image,
+    ):  # not Image.open, which refuses 200 megapixels
         check_size(path, *image.size)
-        exif, info = Image.Exif(), dict(image.info)
-        exif.load(info.get("exif", b""))  # `image.getexif` also believes XMP; Pillow puts `irot` and `imir` here
+        info = dict(image.info)
+        if main and sorted(main.size) != sorted(image.size):
+            raise PhotoError("coding_not_read", path=path, kind="AVIF", problem="it is cropped by the box clap")
+        if bit_depth > 8 and image.mode == "RGBA":
+            raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=f"{bit_depth} bits with alpha")
         samples = np.asarray(image) if bit_depth <= 8 else _deep_avif(path, bit_depth, image.size)
-    turn = EXIF_TURNS.get(exif.get(_ORIENTATION, 1), UPRIGHT)
-    return _Picture(upright(np.atleast_3d(samples), turn), max(8, bit_depth), info)
+    return _Picture(np.atleast_3d(samples), max(8, bit_depth), info, is_upright=False)
 
 
 def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
@@ -137,63 +140,30 @@ def _deep_avif(path: Path, bit_depth: int, size: tuple[int, int]) -> CodeArray:
         raise PhotoError("deep_avif_package_missing", path=path, bits=bit_depth) from None
     with av.open(str(path), metadata_errors="replace") as container:
         context = container.streams.video[0].codec_context
-        nclx = (int(context.colorspace), int(context.color_range) == 2) if context.color_range else None
+        codes = (int(context.colorspace), int(context.color_range)) if context.color_range else ()
         frame = next(container.decode(video=0))
     if (frame.width, frame.height) != size:
-        raise PhotoError("deep_avif_tiles", path=path, bits=bit_depth)
-    coding = Coding.from_frame(frame, is_still=True, nclx=nclx)
+        raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=f"{bit_depth} bits in tiles")
+    coding = Coding.from_frame(frame, is_still=True, codes=codes)
     if coding is None:
-        raise PhotoError("deep_avif_coding", path=path, samples=frame.format.name, matrix=int(frame.colorspace))
+        problem = f"{frame.format.name}, matrix {int(frame.colorspace)} of H.273"
+        raise PhotoError("coding_not_read", path=path, kind="AVIF", problem=problem)
     return rgb_codes(frame, coding, 2**bit_depth - 1)
 
 
 def _code_values(picture: _Picture, kind: str, cicp: tuple[int, ...], *, has_gain_map: bool) -> CodeValues:
-    """Return the samples as three channels and alpha, with a header as OpenImageIO would give it."""
-    samples, channels = picture.samples, picture.samples.shape[2]
-    header = _header(picture, cicp)
-    has_alpha = channels in (2, 4)
-    is_associated = picture.is_associated and has_alpha
-    alpha = ("multiplied" if is_associated else "straight") if has_alpha else ""
-    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map, alpha=alpha)
-    return CodeValues(
-        codes=samples[..., :3] if channels >= 3 else np.repeat(samples[..., :1], 3, axis=2),
-        alpha=samples[..., -1] if has_alpha else None,
-        bit_depth=picture.bit_depth,
-        is_associated=is_associated,
-        header=header,
-        metadata=metadata,
-    )
-
-
-def _header(picture: _Picture, cicp: tuple[int, ...]) -> Any:
-    """Return an OpenImageIO header with the metadata; the picture is upright, so its orientation is 1."""
-    height, width, channels = picture.samples.shape
-    header = oiio.ImageSpec(width, height, channels, picture.samples.dtype.name)
-    carried = _segment_header(picture.info)
-    for attribute in carried.extra_attribs:
-        if attribute.name.isprintable() and not attribute.name.startswith(("jpeg:", "oiio:")):
-            header.attribute(attribute.name, attribute.type, attribute_value(carried, attribute))
+    """Return the upright samples, with a header as OpenImageIO would give it."""
+    carried = with_segments(oiio.ImageSpec(), picture.info)
+    orientation = 1 if picture.is_upright else carried.get_int_attribute("Orientation", 1)
+    samples = upright(picture.samples, EXIF_TURNS.get(orientation, UPRIGHT))
+    height, width, channels = samples.shape
+    header = oiio.ImageSpec(width, height, channels, samples.dtype.name)
+    header.extra_attribs = carried.extra_attribs
+    header.alpha_channel = channels - 1 if channels in (2, 4) else -1
+    header.attribute("oiio:UnassociatedAlpha", int(not picture.is_associated))
     header.attribute("oiio:BitsPerSample", picture.bit_depth)
     header.attribute("Orientation", 1)
     if cicp:
         header.attribute("CICP", oiio.TypeDesc("int[4]"), cicp)
-    return header
-
-
-def _segment_header(info: Mapping[Any, Any]) -> Any:
-    """Return the header that OpenImageIO reads of a JPEG of one pixel with EXIF, XMP and ICC profile.
-
-    So their names are as in a JPEG of the same camera. Segments that do not fit into a JPEG are left out.
-    """
-    fitting = {name: info[name] for name, most in _MOST_BYTES.items() if 0 < len(info.get(name) or b"") < most}
-    if not fitting:
-        return oiio.ImageSpec()
-    with tempfile.TemporaryDirectory() as folder:
-        carrier = Path(folder, "carrier.jpg")
-        Image.new("RGB", (1, 1)).save(carrier, "JPEG", **fitting)
-        source = oiio.ImageInput.open(str(carrier))
-        problems.oiio_message()
-        header = oiio.ImageSpec() if source is None else with_plain_texts(source.spec())
-        if source is not None:
-            source.close()
-    return header
+    metadata = replace(metadata_of_header(header, kind), has_gain_map=has_gain_map)
+    return CodeValues.from_samples(samples, picture.bit_depth, header, metadata)

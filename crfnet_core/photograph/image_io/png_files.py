@@ -1,22 +1,32 @@
-"""PNG: the chunks in front of the pixels that describe the encoding of colors, which OpenImageIO leaves out.
+"""PNG: the chunks of colors, which OpenImageIO leaves out in part, and EXIF behind the pixels.
 
-Pillow leaves out cICP, and does not say whether it widened samples of fewer bits. Source: Portable Network Graphics
-(PNG) Specification (Third Edition), 4.3 and 11.3.2.
+OpenImageIO also leaves out profiles that libpng dislikes. Pillow leaves out cICP, and does not say whether it widened
+samples of fewer bits. Source: Portable Network Graphics (PNG) Specification (Third Edition), 4.3 and 11.3.2.
 """
 
 from __future__ import annotations
 
 import struct
+import zlib
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import OpenImageIO as oiio
 
+from crfnet_core.photograph.image_io.header_checks import with_segments
+
 #: The color type of IHDR whose pixels are the numbers of colors in a table.
 _PALETTE = 3
 
-#: Chunks that are read, of the header and of color -> the size of their content, in bytes; a profile has any.
-_CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4}
+#: Chunks that are read -> the size of their content, in bytes; a profile and EXIF have any.
+_CHUNKS = {b"IHDR": 13, b"cICP": 4, b"iCCP": None, b"sRGB": 1, b"cHRM": 32, b"gAMA": 4, b"eXIf": None}
+
+#: The only one of them that may stand behind the pixels.
+_EXIF = b"eXIf"
+
+#: Bytes of the largest profile that is read.
+_MOST_PROFILE = 1 << 24
 
 #: Chunks that override cHRM and gAMA.
 _BEFORE_CHROMATICITIES = {b"cICP", b"iCCP", b"sRGB"}
@@ -26,17 +36,17 @@ _UNIT = 100_000
 
 
 def with_color_chunks(header: Any, path: Path) -> Any:
-    """Return the header of a PNG file with the attributes of color that OpenImageIO leaves out.
+    """Return the header of a PNG file with EXIF, wherever it stands, and the attributes of color.
 
-    They are "png:palette", "oiio:BitsPerSample" below 8, "CICP", "png:sRGB", "chromaticities" and "png:gamma"; the last
-    two only where no other chunk describes the encoding.
+    They are the profile's, "png:palette", "oiio:BitsPerSample", "CICP", "png:sRGB", "chromaticities" and "png:gamma";
+    the last two only where no other chunk describes the encoding. Texts of these names are overridden.
     """
-    chunks, complete = _color_chunks(path), oiio.ImageSpec(header)
+    chunks, complete = _chunks(path), oiio.ImageSpec(header)
+    complete.erase_attribute("Orientation", oiio.TypeString)  # a text; EXIF has a number
+    complete = with_segments(complete, {"exif": chunks.get(_EXIF), "icc_profile": _profile(chunks)})
     bits, color_type = chunks.get(b"IHDR", bytes(10))[8:10]
-    if color_type == _PALETTE:
-        complete.attribute("png:palette", 1)
-    if 0 < bits < 8:  # OpenImageIO widens them to 8
-        complete.attribute("oiio:BitsPerSample", bits)
+    complete.attribute("png:palette", int(color_type == _PALETTE))
+    complete.attribute("oiio:BitsPerSample", bits)  # OpenImageIO widens fewer to 8
     if b"cICP" in chunks:
         complete.attribute("CICP", oiio.TypeDesc("int[4]"), tuple(chunks[b"cICP"]))
     if b"sRGB" in chunks:
@@ -50,17 +60,26 @@ def with_color_chunks(header: Any, path: Path) -> Any:
     return complete
 
 
-def _color_chunks(path: Path) -> dict[bytes, bytes]:
-    """Return name -> content of the chunks of color; a chunk of another size than its own is left out."""
-    chunks = {}
+def _profile(chunks: Mapping[bytes, bytes]) -> bytes:
+    """Return the ICC profile; empty if it is absent or damaged."""
+    _, _, compressed = chunks.get(b"iCCP", b"").partition(b"\0")  # behind its name; a byte names the only method
+    try:
+        return zlib.decompressobj().decompress(compressed[1:], _MOST_PROFILE)
+    except zlib.error:
+        return b""
+
+
+def _chunks(path: Path) -> dict[bytes, bytes]:
+    """Return name -> content of `_CHUNKS`; one of another size than its own, or behind the pixels, is left out."""
+    chunks, is_behind = {}, False
     with path.open("rb") as file:
         file.seek(8)  # behind the signature
         while len(start := file.read(8)) == 8:
             size, name = struct.unpack(">I4s", start)
-            if name == b"IDAT":
-                break
             following = file.tell() + size + 4  # behind the checksum
-            if name in _CHUNKS and len(content := file.read(size)) == (_CHUNKS[name] or size):
+            is_behind = is_behind or name == b"IDAT"
+            is_read = name == _EXIF or (name in _CHUNKS and not is_behind)
+            if is_read and len(content := file.read(size)) == (_CHUNKS[name] or size):
                 chunks[name] = content
             file.seek(following)
     return chunks

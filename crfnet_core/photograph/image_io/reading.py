@@ -17,8 +17,14 @@ from PIL.BmpImagePlugin import BmpImageFile
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import problems
-from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, file_kind, tiff_directory
-from crfnet_core.photograph.image_io.header_checks import WHITE_IS_ZERO, checked_bit_depth, with_plain_texts
+from crfnet_core.photograph.image_io.file_kinds import EXTRA_SAMPLES, RAW_SUFFIXES, file_kind, tiff_directory
+from crfnet_core.photograph.image_io.header_checks import (
+    MASK,
+    WHITE_IS_ZERO,
+    check_dpx_lines,
+    checked_bit_depth,
+    with_plain_texts,
+)
 from crfnet_core.photograph.image_io.heif import read_heif
 from crfnet_core.photograph.image_io.jpeg_files import JpegFile, base_image, checked_jpeg
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
@@ -29,8 +35,11 @@ from crfnet_core.photograph.photo import CodeValues, Photo
 #: Rows read at a time.
 _ROWS = 256
 
-#: Pages of a TIFF file that are searched for the first that is not a reduced picture.
+#: Pages of a TIFF file that are searched for the largest.
 _MOST_PAGES = 64
+
+#: Formats whose alpha is straight, and of which OpenImageIO does not say so.
+STRAIGHT_KINDS = ("JPEG 2000", "JPEG XL")
 
 #: The formats that OpenImageIO's wheel does not read.
 HEIF_KINDS = ("HEIC", "AVIF")
@@ -42,8 +51,8 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     The formats are JPEG, HEIC, PNG, TIFF, WebP, AVIF, JPEG XL, JPEG 2000, DPX and BMP. The values are divided by
     the largest code and turned upright, and nothing else happens to them: no color space, profile or gamma is applied.
     Alpha is dropped, after dividing by it where the file stores associated color. Gray is replicated. Of several frames
-    or layers the first is read, of a TIFF file the first that is not a thumbnail; of an HDR photograph with a gain map
-    (Ultra HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
+    or layers the first is read, of a TIFF file the first of the largest; of an HDR photograph with a gain map (Ultra
+    HDR, HEIC) the base picture: `FileMetadata.has_gain_map` is set.
 
     Parameters
     ----------
@@ -58,13 +67,14 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
         encoded photograph: CMYK, palettes, scene-linear, camera raw.
     """
     if isinstance(source, str | os.PathLike):
-        return Photo.from_codes(read_codes(source), Path(source))
-    content = source.read() if hasattr(source, "read") else source
-    if not isinstance(content, bytes | bytearray | memoryview):
-        raise PhotoError("photograph_source", kind=type(source).__name__)
+        path = Path(os.fsdecode(source))
+        return Photo.from_codes(read_codes(path), path)
     name = getattr(source, "name", None)
     path = Path(name) if isinstance(name, str) and name else Path("bytes")
-    return Photo.from_codes(_codes_of_content(content, path), path)
+    content = _content(source, path) if hasattr(source, "read") else source
+    if not isinstance(content, bytes | bytearray | memoryview):
+        raise PhotoError("photograph_source", kind=type(source).__name__)
+    return Photo.from_codes(_codes_of_content(bytes(content), path), path)
 
 
 def read_codes(path: str | os.PathLike[str]) -> CodeValues:
@@ -95,7 +105,7 @@ def read_metadata(path: str | os.PathLike[str]) -> FileMetadata:
 
 @dataclass(frozen=True)
 class _OpenFile:
-    """A file that OpenImageIO has opened, at the picture that is read."""
+    """A file that OpenImageIO has opened, at the picture that is read; BMP by Pillow."""
 
     path: Path
     kind: str
@@ -126,16 +136,7 @@ class _OpenFile:
         if bit_depth in (10, 12):
             values = values >> (16 - bit_depth)  # OpenImageIO widens codes to 16 bits and repeats their top bits below
         values = upright(values, self.turn)
-        alpha = self.header.alpha_channel
-        has_alpha = 0 < alpha < values.shape[2]
-        return CodeValues(
-            codes=values[..., :3] if values.shape[2] >= 3 else np.repeat(values[..., :1], 3, axis=2),
-            alpha=values[..., alpha] if has_alpha else None,
-            bit_depth=bit_depth,
-            is_associated=has_alpha and not self.header.get_int_attribute("oiio:UnassociatedAlpha"),
-            header=self._upright_header(),
-            metadata=self.metadata(),
-        )
+        return CodeValues.from_samples(values, bit_depth, self._upright_header(), self.metadata())
 
     def _upright_header(self) -> Any:
         """Return the header of the upright picture: sides and windows are exchanged where rows become columns."""
@@ -151,7 +152,7 @@ class _OpenFile:
     def _decoded(self) -> NDArray[Any]:
         """Return the samples as stored, shape (H, W, 1 to 4); refuse damage among them."""
         if self.kind == "BMP":
-            return _bmp_samples(self.path)
+            return np.atleast_3d(np.asarray(self.source))
         values = _samples(self.source, self.header)
         problem = problems.oiio_message(self.source)
         problem = self.jpeg.damage(problem) if self.jpeg else problem
@@ -175,6 +176,13 @@ def _named_errors(path: Path) -> Iterator[None]:
 @contextmanager
 def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
     """Yield an open file of a known format, or refuse it as damaged."""
+    if kind == "BMP":  # of which OpenImageIO ignores the masks of channels, and refuses sound runs (RLE)
+        try:
+            with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
+                yield _OpenFile(path, kind, image, _bmp_header(path, image), None)
+        except (OSError, SyntaxError, ValueError) as failure:
+            raise problems.damaged(path, kind, str(failure)) from None
+        return
     jpeg = checked_jpeg(path) if kind == "JPEG" else None
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # color as stored, not multiplied by alpha
@@ -188,6 +196,11 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
         header = with_plain_texts(source.spec())
         if kind == "TIFF" and header.nchannels > 4 and EXTRA_SAMPLES not in tiff_directory(path):
             header.alpha_channel = -1  # OpenImageIO takes the fourth channel for alpha
+        if kind in STRAIGHT_KINDS:
+            header.attribute("oiio:UnassociatedAlpha", 1)
+            header.alpha_channel = header.nchannels - 1 if header.nchannels in (2, 4) else -1
+        if kind == "DPX":
+            check_dpx_lines(path, header)
         if kind == "JPEG" and str(header.format) == "half":  # Ultra HDR, of which OpenImageIO makes linear light
             with tempfile.TemporaryDirectory() as folder:
                 base = Path(folder, "base.jpg")
@@ -201,23 +214,24 @@ def _opened(path: Path, kind: str) -> Iterator[_OpenFile]:
 
 
 def _seek_picture(source: Any) -> None:
-    """Go to the first page of a TIFF file that is not marked as a reduced picture, if there is one."""
-    for page in range(_MOST_PAGES):
-        if not source.seek_subimage(page, 0):
-            break
-        if not source.spec().get_int_attribute("tiff:subfiletype") & 1:
-            return
-    source.seek_subimage(0, 0)
+    """Go to the first of the largest pages of a TIFF file, without masks: thumbnails, marked or not, are smaller."""
+    sizes: list[int] = []
+    while len(sizes) < _MOST_PAGES and source.seek_subimage(len(sizes), 0):
+        header = source.spec()
+        sizes.append(header.image_pixels() * (header.get_int_attribute("tiff:PhotometricInterpretation") != MASK))
+    source.seek_subimage(sizes.index(max(sizes)) if sizes else 0, 0)
     problems.oiio_message(source)
 
 
-def _bmp_samples(path: Path) -> NDArray[np.uint8]:
-    """Return the samples of a BMP file, by Pillow, as OpenImageIO ignores the masks of channels."""
-    try:
-        with BmpImageFile(path) as image:  # not Image.open, which refuses 200 megapixels
-            return np.atleast_3d(np.asarray(image))
-    except (OSError, SyntaxError, ValueError) as problem:
-        raise problems.damaged(path, "BMP", str(problem)) from None
+def _bmp_header(path: Path, image: BmpImageFile) -> Any:
+    """Return the header of a BMP file, whose alpha is straight; refuse a palette other than of all grays."""
+    if image.mode in ("1", "P"):
+        raise PhotoError("palette", path=path, kind="a BMP file with a palette")
+    header = oiio.ImageSpec(*image.size, len(image.getbands()), oiio.UINT8)
+    header.attribute("oiio:UnassociatedAlpha", 1)
+    if "BGR;1" in str(image.tile[0].args):  # BGR;15 and BGR;16
+        header.attribute("oiio:BitsPerSample", 5)
+    return header
 
 
 def _samples(source: Any, header: Any) -> NDArray[Any] | None:
@@ -236,10 +250,18 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     return values
 
 
-def _codes_of_content(content: bytes | bytearray | memoryview, path: Path) -> CodeValues:
+def _content(source: Any, path: Path) -> Any:
+    """Return all that an open file holds."""
+    try:
+        return source.read()
+    except (OSError, ValueError) as problem:  # closed files and texts are a ValueError
+        raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
+
+
+def _codes_of_content(content: bytes, path: Path) -> CodeValues:
     """Return the integer samples of the content of a file; errors name the path, which need not exist."""
     with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder, path.name)
+        copy = Path(folder, "photograph" + (path.suffix if path.suffix.lower() in RAW_SUFFIXES else ""))
         copy.write_bytes(content)
         try:
             return read_codes(copy)

@@ -39,30 +39,30 @@ TRANSFERS = {8: "linear", 9: "log 100:1", 10: "log 316:1", 16: "PQ", 18: "HLG"}
 #: writes it into every DPX, and Blender into all but log.
 DPX_TRANSFERS = {"Printing density": "Cineon log", "Logarithmic": "log"}
 
-#: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first.
-#: A name may end at an underscore, which does not end a word for `\b`.
+#: Words of an ICC profile's description, in lower case -> the encoding that it names; special ones come first. PeQ is
+#: libjxl's name of PQ.
 PROFILE_TRANSFERS = (
     (r"\bs-?log ?3", "Sony S-Log3"),
     (r"\bs-?log ?2", "Sony S-Log2"),
-    (r"\bs-?log(?![a-z0-9])", "Sony S-Log"),
+    (r"\bs-?log\b", "Sony S-Log"),
     (r"\blog ?c ?4", "ARRI LogC4"),
-    (r"\blog ?c(?: ?3)?(?![a-z0-9])", "ARRI LogC3"),
+    (r"\blog ?c(?: ?3)?\b", "ARRI LogC3"),
     (r"\b(?:canon|c)-? ?log ?3", "Canon Log 3"),
     (r"\b(?:canon|c)-? ?log ?2", "Canon Log 2"),
-    (r"\b(?:canon|c)-? ?log(?![a-z0-9])", "Canon Log"),
+    (r"\b(?:canon|c)-? ?log\b", "Canon Log"),
     (r"\bv-?log", "Panasonic V-Log"),
     (r"log3g10", "RED Log3G10"),
     (r"log3g12", "RED Log3G12"),
-    (r"\bd-?log(?![a-z0-9])", "DJI D-Log"),
+    (r"\bd-?log\b", "DJI D-Log"),
     (r"\bapple ?log", "Apple Log"),
     (r"\bf-?log ?2", "Fujifilm F-Log2"),
-    (r"\bf-?log(?![a-z0-9])", "Fujifilm F-Log"),
+    (r"\bf-?log\b", "Fujifilm F-Log"),
     (r"\bn-?log", "Nikon N-Log"),
     (r"\bblackmagic.*film|\bbmdfilm", "Blackmagic Film Gen 5"),
     (r"\bcineon|\bprinting density", "Cineon log"),
     (r"\blogarithmic", "log"),
-    (r"\bpq(?![a-z0-9])|\bst ?2084", "PQ"),
-    (r"\bhlg(?![a-z0-9])|\bhybrid log", "HLG"),
+    (r"\bpe?q\b|\bst ?2084", "PQ"),
+    (r"\bhlg\b|\bhybrid log", "HLG"),
 )
 
 
@@ -99,5 +99,5 @@ def with_named_transfer(color: ColorTags, dpx: str, profile: str) -> ColorTags:
 
 def profile_transfer(profile: str) -> str:
     """Return the encoding that an ICC profile's description names; empty if none."""
-    text = profile.casefold()
+    text = profile.casefold().replace("_", " ")  # which would not end a word for `\b`
     return next((name for words, name in PROFILE_TRANSFERS if re.search(words, text)), "")

@@ -39,7 +39,6 @@ class FileMetadata:
     exif_size: tuple[int, int] | None = None  # EXIF PixelXDimension and PixelYDimension, by the camera or an editor
     luma_table: Table = ()  # quantization tables of a JPEG file
     chroma_table: Table = ()
-    subsampling: str = ""  # of chroma in a JPEG file, such as "4:2:0"
     has_jfif: bool = False  # a JPEG segment that libraries write; cameras begin with EXIF instead
     has_adobe: bool = False  # a JPEG segment of Adobe's programs, and of other encoders for CMYK and RGB
     interop_index: str = ""  # EXIF InteroperabilityIndex of a JPEG file, such as "R98"

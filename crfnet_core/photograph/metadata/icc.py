@@ -7,6 +7,7 @@ Pillow's ImageCms (LittleCMS) reads them. Source: ISO 15076-1:2010 (ICC.1:2010, 
 from __future__ import annotations
 
 import io
+import re
 from typing import Any, cast
 
 import numpy as np
@@ -32,13 +33,17 @@ SAME_WHITE = 0.02
 #: Largest difference in L* between the gray ramp of a linear profile and linear light: gamma 1.05 has 2.2, sRGB 23.
 SAME_LIGHTNESS = 1.5
 
+#: Least range of L* of the ramp; a damaged profile may make it flat.
+LEAST_LIGHTNESS = 30
+
 #: The codes of the ramp.
 _RAMP = np.arange(8, 256, 8, dtype=np.uint8)
 
 #: Color space of a profile -> Pillow's mode of its pictures.
 _MODES = {"RGB": "RGB", "GRAY": "L"}
 
-_TAG_TABLE, _MAX_TAGS = 132, 200
+#: The element `cicp`: its type, four zeros, and the code points. Pillow does not hand it out.
+_CICP = re.compile(rb"cicp\0{4}(....)", re.DOTALL)
 
 
 def read_icc(profile: bytes) -> ColorTags:
@@ -55,28 +60,23 @@ def read_icc(profile: bytes) -> ColorTags:
 
 def _color_tags(profile: bytes, opened: ImageCms.ImageCmsProfile) -> ColorTags:
     """Return the tags of a profile."""
-    tags, facts = _tags(profile), cast(Any, opened.profile)
+    facts = cast(Any, opened.profile)
     space = facts.xcolor_space.strip()
     is_linear = space in _MODES and _is_linear(opened, _MODES[space])
     if space != "RGB":
         return ColorTags(transfer="linear", source=SOURCE) if is_linear else ColorTags()
-    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in tags
-    codes = cicp_tags(tags.get(b"cicp", b"")[8:12])
+    is_matrix = facts.is_matrix_shaper and facts.connection_space.strip() == "XYZ" and b"A2B0" not in profile
+    codes = cicp_tags(element[1] if (element := _CICP.search(profile)) else b"")
     primaries = (_primaries(facts) if is_matrix else None) or codes.primaries
     transfer = codes.transfer or ("linear" if is_linear else "")
     return ColorTags(primaries, transfer, SOURCE if primaries else TABLES)
 
 
-def _tags(profile: bytes) -> dict[bytes, bytes]:
-    """Return the tagged elements by signature: Pillow hands out neither `cicp` nor the list of tags."""
-    count = min(int.from_bytes(profile[_TAG_TABLE - 4 : _TAG_TABLE], "big"), _MAX_TAGS)
-    entries = [profile[at : at + 12] for at in range(_TAG_TABLE, _TAG_TABLE + 12 * count, 12)]
-    places = {entry[:4]: (int.from_bytes(entry[4:8], "big"), int.from_bytes(entry[8:], "big")) for entry in entries}
-    return {name: profile[offset : offset + size] for name, (offset, size) in places.items()}
-
-
 def _is_linear(profile: ImageCms.ImageCmsProfile, mode: str) -> bool:
-    """Return whether a gray ramp has the lightness of linear light (CIE 15:2018, 8.2.1), whatever the tags are."""
+    """Return whether a gray ramp has the lightness of linear light (CIE 15:2018, 8.2.1), whatever the tags are.
+
+    Its ends may lie anywhere, as in profiles of scanners, but far apart.
+    """
     ramp = Image.fromarray(np.repeat(_RAMP[None, :, None], len(mode), axis=2).squeeze(axis=2 if mode == "L" else ()))
     intent = ImageCms.Intent.RELATIVE_COLORIMETRIC
     try:
@@ -84,8 +84,9 @@ def _is_linear(profile: ImageCms.ImageCmsProfile, mode: str) -> bool:
         lightness = np.asarray(ImageCms.applyTransform(ramp, to_lab))[0, :, 0] / 2.55
     except (ImageCms.PyCMSError, ValueError):
         return False
-    expected = 116 * np.cbrt(_RAMP / 255) - 16
-    return bool(np.abs(lightness - expected).max() < SAME_LIGHTNESS)
+    first, last = ((lightness[[0, -1]] + 16) / 116) ** 3
+    expected = 116 * np.cbrt(np.linspace(first, last, len(_RAMP))) - 16
+    return bool(np.ptp(lightness) > LEAST_LIGHTNESS and np.abs(lightness - expected).max() < SAME_LIGHTNESS)
 
 
 def _primaries(facts: Any) -> Primaries | None:

@@ -26,7 +26,6 @@ ANNEX_K_CHROMA: Table = (
 )
 
 _GAIN_MAPS = (b"http://ns.adobe.com/hdr-gain-map/", b"urn:iso:std:iso:ts:21496:-1")
-_SUBSAMPLING = {(1, 1): "4:4:4", (2, 1): "4:2:2", (2, 2): "4:2:0", (1, 2): "4:4:0", (4, 1): "4:1:1"}
 
 #: Exceptions of Pillow for damaged files.
 _DAMAGE = (IndexError, KeyError, OSError, SyntaxError, TypeError, ValueError, ZeroDivisionError, struct.error)
@@ -47,7 +46,6 @@ def read_jpeg_header(content: mmap.mmap | bytes) -> FileMetadata:
     return FileMetadata(
         luma_table=tables[0] if tables else (),
         chroma_table=tables[1] if len(tables) > 1 else (),
-        subsampling=_subsampling([(across, down) for _, across, down, _ in image.layer]),
         has_jfif=any(name == "APP0" and payload.startswith(b"JFIF\0") for name, payload in segments),
         has_adobe=any(name == "APP14" and payload.startswith(b"Adobe") for name, payload in segments),
         interop_index=interop_index,
@@ -85,11 +83,3 @@ def _interop_index(image: JpegImageFile) -> str:
     except _DAMAGE:
         return ""
     return index if isinstance(index, str) else ""
-
-
-def _subsampling(factors: list[tuple[int, int]]) -> str:
-    """Return the name of the chroma subsampling from the sampling factors of each component."""
-    if len(factors) != 3 or factors[1] != factors[2] or 0 in factors[1]:
-        return ""
-    (across, down), (chroma_across, chroma_down) = factors[:2]
-    return _SUBSAMPLING.get((across // chroma_across, down // chroma_down), "")

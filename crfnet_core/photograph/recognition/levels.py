@@ -26,8 +26,9 @@ MOST_SAMPLES = 3_000_000
 #: Rows of samples counted at a time.
 ROWS = 64
 
-#: Range of luma below which a picture is flat, such as black frames and gray cards without noise: four codes of 255.
-FLAT_RANGE = 4 / 255
+#: Range of luma below which a picture is flat: 16 codes of 255, as black frames, gray cards without noise, and files of
+#: 16 bits whose codes end where 12 bits do have it.
+FLAT_RANGE = 16.5 / 255
 
 #: Black and white of limited range (ITU-R BT.709, item 6: codes of 8 bits), as brightness.
 LIMITED_BLACK, LIMITED_WHITE = 16 / 255, 235 / 255

@@ -1,6 +1,7 @@
 """AVIF of more than 8 bits and AVIF with XMP; lossy JPEG XL."""
 
 import struct
+from pathlib import Path
 
 import numpy as np
 import OpenImageIO as oiio
@@ -9,6 +10,7 @@ from PIL import Image, ImageCms
 
 from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
+from crfnet_core.photograph.image_io.header_checks import checked_bit_depth
 from tests.helpers.colored_ramp import colored_ramp
 
 
@@ -58,6 +60,14 @@ def test_the_range_of_the_box_overrides_the_stream(tmp_path):
     assert np.abs(full - (64 + codes * 876 / 1023)).mean() < 4
 
 
+@pytest.mark.parametrize("name", ["alpha10.avif", "cropped8.avif"])
+def test_avif_that_no_decoder_reads_in_full_is_refused(root, name):
+    """PyAV leaves out alpha, by which the colors may be multiplied; Pillow and PyAV do not crop."""
+    with pytest.raises(PhotoError) as caught:
+        read_codes(root / "tests" / "data" / "heif" / name)
+    assert caught.value.code == "coding_not_read"
+
+
 @pytest.mark.parametrize("quality", [90, 100])
 def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
     """OpenImageIO would return linear light."""
@@ -79,3 +89,11 @@ def test_lossy_jpeg_xl_with_a_profile_of_its_own_is_refused(tmp_path, quality):
         with pytest.raises(PhotoError) as caught:
             read(tmp_path / "a.jxl")
         assert caught.value.code == "jxl_linear"
+
+
+def test_lossy_gray_jpeg_xl_is_refused_as_linear_light():
+    header = oiio.ImageSpec(8, 8, 1, oiio.UINT8)
+    header.attribute("ICCProfile:profile_description", "Gra_D65_Rel_Lin")
+    with pytest.raises(PhotoError) as caught:
+        checked_bit_depth(Path("a.jxl"), header, "JPEG XL")
+    assert caught.value.code == "jxl_linear"

@@ -204,3 +204,14 @@ def test_exif_that_is_not_utf8_is_read(heif, tmp_path):
     assert content.count(b"Apple\0") == 1
     (tmp_path / "a.heic").write_bytes(content.replace(b"Apple\0", b"Appl\xe9\0"))
     assert read_codes(tmp_path / "a.heic").metadata.make == "Appl?"
+
+
+@pytest.mark.filterwarnings("error")
+def test_damaged_exif_of_avif_warns_nobody(tmp_path):
+    exif = Image.Exif()
+    exif[0x010F] = "A maker's name"
+    Image.fromarray(colored_ramp(8)).save(tmp_path / "a.avif", exif=exif)
+    content = (tmp_path / "a.avif").read_bytes()
+    at = content.index(b"\x0f\x01\x02\0") if b"\x0f\x01\x02\0" in content else content.index(b"\x01\x0f\0\x02")
+    (tmp_path / "a.avif").write_bytes(content[: at + 4] + b"\x7f" * 4 + content[at + 8 :])
+    assert read_codes(tmp_path / "a.avif").metadata.make == ""

@@ -8,8 +8,9 @@ import pytest
 from PIL import Image
 
 from crfnet.plates.exr import linear_header
+from crfnet_core.errors import PhotoError
 from crfnet_core.photograph.image_io import read_codes, read_metadata
-from tests.helpers.crafted_files import jpeg, tiff
+from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 from tests.helpers.images import write_image
 
 
@@ -28,14 +29,15 @@ def test_channels_of_unknown_use_are_not_alpha(tmp_path):
     np.testing.assert_array_equal(values.codes, codes[..., :3])
 
 
-@pytest.mark.parametrize("kinds", [(1, 0), (1, 1, 0), (0, 1)])
-def test_the_first_page_that_is_not_reduced_is_read(tmp_path, kinds):
-    pages = [Image.new("RGB", (8 + 8 * (kind == 0), 8), (9, 90, 200)) for kind in kinds]
-    for page, kind in zip(pages, kinds, strict=True):
-        page.encoderinfo = {"tiffinfo": {254: kind}}
-    pages[0].save(tmp_path / "a.tif", save_all=True, append_images=pages[1:], tiffinfo={254: kinds[0]})
-    assert read_codes(tmp_path / "a.tif").codes.shape == (8, 16, 3)
-    assert read_metadata(tmp_path / "a.tif").width == 16
+@pytest.mark.parametrize("widths", [(8, 16), (8, 8, 16), (16, 8), (16, 8, 16)])
+def test_the_first_of_the_largest_pages_is_read(tmp_path, widths):
+    """Thumbnails are often not marked as reduced pictures."""
+    first, *more = (np.full((8, width, 3), 100 + place, np.uint8) for place, width in enumerate(widths))
+    path = write_image(tmp_path / "a.tif", first)
+    with Image.open(path) as file:
+        file.save(path, save_all=True, append_images=[Image.fromarray(page) for page in more])
+    np.testing.assert_array_equal(read_codes(path).codes, np.full((8, 16, 3), 100 + widths.index(16)))
+    assert read_metadata(path).width == 16
 
 
 def test_planes_apart_in_one_long_strip(tmp_path):
@@ -53,6 +55,68 @@ def test_masks_of_bmp(tmp_path, masks):
     start = struct.pack("<2sIHHI", b"BM", 66 + 16, 0, 0, 66)
     (tmp_path / "a.bmp").write_bytes(start + header + pixels.astype("<u4").tobytes())
     np.testing.assert_array_equal(read_codes(tmp_path / "a.bmp").codes, codes)
+
+
+@pytest.mark.parametrize("size", [40, 108])
+def test_bmp_of_runs(tmp_path, size):
+    """The runs of gray picture of 4 x 2 pixels, bottom up."""
+    palette = b"".join(bytes([code, code, code, 0]) for code in range(256))
+    runs = bytes([3, 9, 1, 8, 0, 0, 4, 7, 0, 0, 0, 1])
+    header = struct.pack("<IiiHHIIiiII", size, 4, 2, 1, 8, 1, len(runs), 0, 0, 256, 0).ljust(size, b"\0")
+    start = 14 + len(header) + len(palette)
+    (tmp_path / "a.bmp").write_bytes(
+        struct.pack("<2sIHHI", b"BM", start + len(runs), 0, 0, start) + header + palette + runs
+    )
+    assert read_codes(tmp_path / "a.bmp").codes[..., 0].tolist() == [[7, 7, 7, 7], [9, 9, 9, 8]]
+
+
+@pytest.mark.parametrize("name", ["a.bmp", "a.jp2", "a.jxl"])
+def test_alpha_that_is_straight_by_the_format(tmp_path, name):
+    codes = np.random.default_rng(0).integers(0, 256, (32, 32, 4), np.uint8)
+    masks = (0xFF0000, 0xFF00, 0xFF, 0xFF000000)
+    header = struct.pack("<IiiHHIIiiII", 108, 32, -32, 1, 32, 3, codes.size, 0, 0, 0, 0) + struct.pack("<4I", *masks)
+    start = struct.pack("<2sIHHI", b"BM", 122 + codes.size, 0, 0, 122)
+    (tmp_path / "a.bmp").write_bytes(start + header.ljust(108, b"\0") + codes[..., [2, 1, 0, 3]].tobytes())
+    Image.fromarray(codes).save(tmp_path / "a.jp2")
+    write_image(tmp_path / "a.jxl", codes, compression="jpegxl:100")
+    values = read_codes(tmp_path / name)
+    np.testing.assert_array_equal(values.alpha, codes[..., 3])
+    np.testing.assert_allclose(values.pixels(), codes[..., :3] / 255, atol=1e-6)
+    assert values.metadata.alpha == "straight"
+
+
+def test_a_bmp_of_other_grays_has_a_palette(tmp_path):
+    image = Image.fromarray(np.arange(256, dtype=np.uint8).reshape(16, 16)).convert("P")
+    image.putpalette(bytes(255 - code // 3 for code in range(768)))
+    image.save(tmp_path / "a.bmp")
+    with pytest.raises(PhotoError) as caught:
+        read_codes(tmp_path / "a.bmp")
+    assert caught.value.code == "palette"
+
+
+def test_dpx_with_padded_lines_that_its_header_does_not_name_is_refused(tmp_path):
+    """FFmpeg writes them, and OpenImageIO shears the picture."""
+    codes = np.random.default_rng(0).integers(0, 256, (6, 5, 3), np.uint8)
+    path = write_image(tmp_path / "a.dpx", codes)
+    np.testing.assert_array_equal(read_codes(path).codes, codes)
+    content = path.read_bytes()
+    lines = b"".join(line.tobytes() + b"\0" for line in codes)
+    path.write_bytes(content[: -codes.size] + lines)
+    with pytest.raises(PhotoError) as caught:
+        read_codes(path)
+    assert caught.value.code == "coding_not_read"
+
+
+def test_xmp_does_not_change_the_bits(tmp_path):
+    """OpenImageIO hands properties of any namespace on under their own names."""
+    whole, path = jpeg(tmp_path / "a.jpg"), tmp_path / "a.jpg"
+    expected = read_codes(path).codes
+    xmp = b'<x:xmpmeta xmlns:x="adobe:ns:meta/"><rdf:RDF xmlns:rdf="http://www.w3.org/1999/02/22-rdf-syntax-ns#">'
+    xmp += b'<rdf:Description xmlns:oiio="oiio" oiio:BitsPerSample="10" xmlns:png="png" png:palette="1"/></rdf:RDF>'
+    path.write_bytes(with_jpeg_segment(whole, 0xE1, b"http://ns.adobe.com/xap/1.0/\0" + xmp + b"</x:xmpmeta>"))
+    values = read_codes(path)
+    assert values.bit_depth == 8
+    np.testing.assert_array_equal(values.codes, expected)
 
 
 def test_stray_bytes_between_segments_of_a_jpeg(tmp_path):

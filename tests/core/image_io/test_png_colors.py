@@ -6,9 +6,10 @@ import zlib
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from PIL import Image
 
 from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PHOTOGRAPHIC, PROPHOTO, REC709, REC2020, Primaries
-from crfnet_core.photograph.image_io import read_photo
+from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
 from tests.helpers.color_profiles import matrix_profile
@@ -82,4 +83,38 @@ def test_a_file_that_ends_among_the_chunks_says_what_came_before(tmp_path):
     path = tmp_path / "a.png"
     path.write_bytes(png(2, 2, bytes(14), chunks=png_chunk(b"gAMA", bytes(4)) + png_chunk(b"cHRM", bytes(32)))[:70])
     header = with_color_chunks(oiio.ImageSpec(), path)
-    assert [each.name for each in header.extra_attribs] == ["png:gamma"]
+    assert [each.name for each in header.extra_attribs if each.name in ("png:gamma", "chromaticities")] == ["png:gamma"]
+
+
+@pytest.mark.parametrize("place", ["in front", "behind"])
+@pytest.mark.parametrize("name", [b"", b"Exif\0\0"])
+def test_exif_turns_the_picture_wherever_it_stands(tmp_path, place, name):
+    exif = Image.Exif()
+    exif[0x0112], exif[0x010F] = 6, "Maker"
+    chunk = png_chunk(b"eXIf", name + exif.tobytes().removeprefix(b"Exif\0\0"))
+    content = png(2, 2, bytes([0, 1, 1, 1, 2, 2, 2, 0, 3, 3, 3, 4, 4, 4]))
+    at = content.index(b"IDAT" if place == "in front" else b"IEND") - 4
+    (tmp_path / "a.png").write_bytes(content[:at] + chunk + content[at:])
+    values = read_codes(tmp_path / "a.png")
+    assert values.codes[..., 0].tolist() == [[3, 1], [4, 2]]
+    assert (values.metadata.make, values.metadata.is_turned) == ("Maker", True)
+
+
+def test_a_profile_that_libpng_rejects_is_read(tmp_path):
+    """Its length is not a multiple of four."""
+    curve = b"curv" + struct.pack(">II", 0, 0)
+    linear = matrix_profile(REC709, version=4, rTRC=curve, gTRC=curve, bTRC=curve)
+    content = struct.pack(">I", len(linear) + 1) + linear[4:] + b"\0"
+    chunk = b"a\0\0" + zlib.compress(content)
+    assert tags(tmp_path / "a.png", iCCP=chunk) == ColorTags(REC709, "linear", "ICC profile")
+    assert tags(tmp_path / "a.png", iCCP=b"a\0\0damaged") == ColorTags()
+
+
+def test_texts_named_like_attributes_change_nothing(tmp_path):
+    texts = b"".join(
+        png_chunk(b"tEXt", name + b"\0" + value)
+        for name, value in ((b"oiio:BitsPerSample", b"3"), (b"Orientation", b"6"), (b"png:palette", b"1"))
+    )
+    (tmp_path / "a.png").write_bytes(png(2, 2, bytes(14), chunks=texts))
+    values = read_codes(tmp_path / "a.png")
+    assert (values.bit_depth, values.metadata.is_turned) == (8, False)

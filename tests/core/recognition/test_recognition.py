@@ -214,6 +214,11 @@ def test_a_flat_frame_is_recognized(codes):
     assert recognize(levels, log_probability=0.9).kind is Kind.FLAT
 
 
+def test_twelve_bits_in_a_file_of_sixteen_are_recognized():
+    codes = np.random.default_rng(0).integers(0, 4096, (64, 64, 3))
+    assert recognize(Levels.from_pixels(np.float32(codes / 65535)), log_probability=0).kind is Kind.FLAT
+
+
 def test_warm_photographs_are_not_limited_range():
     """Their luma ends where white of video lies, but channels go on to 255."""
     codes = np.random.default_rng(0).normal(120, 50, (400, 400, 1)).clip(10, 235)

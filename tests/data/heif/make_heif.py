@@ -1,6 +1,6 @@
 """Make the HEIC and AVIF files of this folder: ``pip install pillow-heif; python tests/data/heif/make_heif.py``.
 
-Needs ffmpeg with libaom for the AVIF of 10 bits. HEIC is lossless, so tests compare codes. pillow-heif is not needed
+Needs ffmpeg with libaom, and avifenc, for AVIF. HEIC is lossless, so tests compare codes. pillow-heif is not needed
 by the tests: its wheel holds x265, which is under the GPL.
 """
 
@@ -54,6 +54,12 @@ def main() -> None:
     pillow_heif.register_heif_opener()
     phone.save(HERE / "phone.heic", quality=-1, chroma=444, matrix_coefficients=0, exif=exif(), icc_profile=profile)
     avif10(HERE / "limited10.avif")
+    phone.putalpha(128)
+    phone.save(HERE / "ramp.png")
+    avifenc = ["avifenc", "--speed", "8", "--max", "20", str(HERE / "ramp.png")]
+    subprocess.run([*avifenc, "--depth", "10", str(HERE / "alpha10.avif")], check=True)
+    subprocess.run([*avifenc, "--clap", "32,1,24,1,0,1,0,1", "--ignore-alpha", str(HERE / "cropped8.avif")], check=True)
+    (HERE / "ramp.png").unlink()
 
 
 def avif10(path: Path) -> None:

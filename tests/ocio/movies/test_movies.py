@@ -29,6 +29,7 @@ MOVIES = {
     "motion jpeg": ("a.avi", 6, {"codec": "mjpeg", "form": "yuvj420p", "options": {"qmin": "1", "qmax": "2"}}),
     "mpeg4 in avi": ("a.avi", 12, {"codec": "mpeg4", "options": {"bf": "2", "qmin": "1", "qmax": "2"}}),
     "animation": ("a.mov", 6, {"codec": "qtrle", "form": "rgb24"}),
+    "exif in frames": ("a.mov", 6, {"codec": "tiff", "form": "rgb24"}),  # of whose side data PyAV knows nothing
     "uncompressed": ("a.mov", 6, {"codec": "rawvideo", "form": "uyvy422"}),
     "odd size": ("a.mkv", 6, {"codec": "ffv1", "size": (131, 97)}),
     "transport stream": ("a.ts", 24, {"options": B_FRAMES}),
@@ -119,6 +120,18 @@ def test_a_damaged_frame_fails_and_the_others_keep_their_numbers(tmp_path):
     numbers = bars(MovieFrames.find(path))
     assert numbers.count(None) == 1
     assert all(shown in (None, number) for number, shown in enumerate(numbers, 1))
+
+
+def test_what_follows_damage_up_to_the_next_key_frame_fails(tmp_path):
+    """The decoder predicts it from a damaged frame and does not complain."""
+    path = write_movie(tmp_path / "a.mp4", 24, options={"g": "8", "bf": "0", "sc_threshold": "0"})
+    with av.open(str(path)) as container:
+        packets = [packet for packet in container.demux(video=0) if packet.size]
+        place, size = packets[10].pos, packets[10].size
+    content = bytearray(path.read_bytes())
+    content[place : place + size] = bytes(size)
+    path.write_bytes(content)
+    assert bars(MovieFrames.find(path)) == [*range(1, 11), *[None] * 6, *range(17, 25)]
 
 
 CHANGES = {

@@ -8,6 +8,7 @@ import pytest
 from crfnet.errors import PlateError
 from crfnet.movies.frames import MovieFrames
 from crfnet.movies.stream import read_stream
+from crfnet_core.colorimetry import REC2020
 from crfnet_core.photograph.metadata import file_origin
 from tests.helpers.movies import write_movie
 from tests.helpers.refusals import refused
@@ -67,3 +68,16 @@ def test_maker_model_rate_and_timecode(tmp_path):
 def test_published_curves_are_known_by_tags_and_metadata(tmp_path, tags, metadata, transfer):
     path = write_movie(tmp_path / "a.mov", tags=tags, metadata=metadata, muxer={"movflags": "use_metadata_tags"})
     assert read_stream(path).color.transfer == transfer
+
+
+def test_the_container_counts_where_frames_have_no_tags(tmp_path):
+    """As in ProRes, whose frames leave them open while the file of QuickTime has them."""
+    tags = {"colorspace": 9, "color_range": 1, "color_primaries": 9, "color_trc": 16}
+    movie = read_stream(write_movie(tmp_path / "a.mov", codec="prores_ks", form="yuv422p10le", tags=tags))
+    assert movie.picture.coding.matrix == "BT.2020"
+    assert (movie.color.primaries, movie.color.transfer) == (REC2020, "PQ")
+
+
+def test_alpha_that_is_not_decoded_is_named(tmp_path):
+    movie = read_stream(write_movie(tmp_path / "a.webm", codec="libvpx-vp9", metadata={"alpha_mode": "1"}))
+    assert "its alpha is left out" in str(movie)

@@ -12,7 +12,7 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
     """Return the metadata of the original file that a row of DATA/real_bodies/cases.csv still knows.
 
     The row has camera, software, ISO and size. Its crop, a JPEG cut without recompression, has the original's
-    quantization tables and subsampling; the crop's JFIF segment comes from the program that cut it. The size in EXIF,
+    quantization tables; the crop's JFIF segment comes from the program that cut it. The size in EXIF,
     the profile and the XMP history are lost: where the photograph is the original byte for byte (`is_original`),
     `read_photo` finds them.
     """
@@ -27,7 +27,6 @@ def metadata_of_case(row: Mapping[str, str], crop: bytes = b"") -> FileMetadata:
         iso=round(float(row["iso"])) if row["iso"] else None,
         luma_table=jpeg.luma_table,
         chroma_table=jpeg.chroma_table,
-        subsampling=jpeg.subsampling,
         file_format="JPEG",
     )
 
