@@ -3,12 +3,7 @@ import pytest
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
-from crfnet_core.response.metrics import (
-    estimation_error,
-    linearization_error,
-    scale_error,
-    shape_error,
-)
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 
 STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
 SQUARE = ResponseCurve.gamma(0.5)

@@ -100,11 +100,7 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
 
 @pytest.mark.parametrize(
     ("mode", "code"),
-    [
-        ("P", "pillow_mode_of_other_colors"),
-        ("1", "pillow_mode_unknown"),
-        ("F", "pillow_mode_of_numbers"),
-    ],
+    [("P", "pillow_mode_of_other_colors"), ("1", "pillow_mode_unknown"), ("F", "pillow_mode_of_numbers")],
 )
 def test_another_mode_of_pillow_is_refused(mode, code):
     image = Image.new(mode, (4, 4))
@@ -141,11 +137,7 @@ def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
         (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
         (np.zeros(5, np.uint8), {}, "array_shape"),
         (CODES.astype(np.uint16), {"color_order": "RGB"}, "array_without_bit_depth"),
-        (
-            CODES.astype(np.uint16) * 5,
-            {"color_order": "RGB", "bit_depth": 10},
-            "array_above_bit_depth",
-        ),
+        (CODES.astype(np.uint16) * 5, {"color_order": "RGB", "bit_depth": 10}, "array_above_bit_depth"),
         (CODES, {"color_order": "RGB", "bit_depth": 10}, "array_bit_depth"),
         (CODES, {"color_order": "RGB", "bit_depth": 4}, "array_bit_depth"),
         (CODES.astype(np.float32), {"color_order": "RGB"}, "array_out_of_range"),

@@ -57,12 +57,7 @@ def tiff(
 def png(width: int, height: int, rows: bytes = b"\0", *, chunks: bytes = b"") -> bytes:
     """Return an RGB PNG of 8 bits whose header may lie about its size; `rows` each begin with their filter, 0."""
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    parts = (
-        png_chunk(b"IHDR", header),
-        chunks,
-        png_chunk(b"IDAT", zlib.compress(rows)),
-        png_chunk(b"IEND", b""),
-    )
+    parts = (png_chunk(b"IHDR", header), chunks, png_chunk(b"IDAT", zlib.compress(rows)), png_chunk(b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
 
 

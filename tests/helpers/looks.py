@@ -65,11 +65,7 @@ def write_look(
         "exposure": {"stops": exposure},
         "output_space": {"name": interop_id, "interop_id": interop_id},
         "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
-        "files": {
-            "spi1d": files.lut.name,
-            "config": files.config.name,
-            "linear": [path.name for path in files.linear],
-        },
+        "files": {"spi1d": files.lut.name, "config": files.config.name, "linear": [path.name for path in files.linear]},
     }
     files.report.write_text(json.dumps(document), encoding="utf-8")
     return folder

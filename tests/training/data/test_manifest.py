@@ -6,14 +6,7 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
-from training.data.manifest import (
-    NO_LICENCE,
-    ManifestRow,
-    differences,
-    main,
-    manifest_rows,
-    read_manifest,
-)
+from training.data.manifest import NO_LICENCE, ManifestRow, differences, main, manifest_rows, read_manifest
 from training.data.splits import SPLITS_FILE
 
 
