@@ -4,20 +4,14 @@ import contextlib
 import io
 import subprocess
 import sys
-from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from crfnet.cli.main import main
 from tests.helpers.images import write_image
-
-if TYPE_CHECKING:
-    from crfnet_core import ResponseEstimate
-    from crfnet_core.response.curve import ResponseCurve
 
 
 @dataclass(frozen=True)
@@ -41,7 +35,7 @@ class CommandResult:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def own_cameras(tmp_path_factory) -> Iterator[Path]:
+def own_cameras(tmp_path_factory):
     """The user's library of cameras: an empty one, whatever is kept on this machine."""
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("data")
@@ -50,24 +44,24 @@ def own_cameras(tmp_path_factory) -> Iterator[Path]:
 
 
 @pytest.fixture(scope="session")
-def tolerance() -> Tolerance:
+def tolerance():
     return Tolerance()
 
 
 @pytest.fixture(scope="session")
-def root() -> Path:
+def root():
     """The project's root folder."""
     return Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(scope="session")
-def plate(root) -> Path:
+def plate(root):
     """The bundled photograph, whose true response is known."""
     return root / "tests" / "data" / "plate.jpg"
 
 
 @pytest.fixture(scope="session")
-def true_response(root) -> "ResponseCurve":
+def true_response(root):
     """The response through which the bundled photograph was made."""
     from crfnet_core.response.curve import (
         ResponseCurve,  # not earlier: in Blender, its own OpenImageIO has to come first
@@ -78,16 +72,16 @@ def true_response(root) -> "ResponseCurve":
 
 
 @pytest.fixture(scope="session")
-def fixed_model(root) -> Path:
+def fixed_model(root):
     """A model folder whose network always states evidence for the bundled photograph's true response."""
     return root / "tests" / "data" / "fixed_model"
 
 
 @pytest.fixture(scope="session")
-def crfnet() -> Callable[..., CommandResult]:
+def crfnet():
     """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed."""
 
-    def run(*arguments: object) -> CommandResult:
+    def run(*arguments):
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
@@ -100,10 +94,10 @@ def crfnet() -> Callable[..., CommandResult]:
 
 
 @pytest.fixture(scope="session")
-def oiiotool() -> Callable[..., None]:
+def oiiotool():
     """Run oiiotool, which comes with OpenImageIO's wheel; it must succeed."""
 
-    def run(*arguments: object) -> None:
+    def run(*arguments):
         command = [str(Path(sys.executable).with_name("oiiotool")), *map(str, arguments)]
         subprocess.run(command, check=True, capture_output=True, text=True)
 
@@ -111,7 +105,7 @@ def oiiotool() -> Callable[..., None]:
 
 
 @pytest.fixture(scope="session")
-def codes() -> np.ndarray:
+def codes():
     """Code values, uint8, shape (256, 256, 3): every 8-bit code in each channel, in a different order in each."""
     ramp = np.arange(256, dtype=np.uint8)
     red = np.repeat(ramp[None], 256, axis=0)
@@ -119,13 +113,13 @@ def codes() -> np.ndarray:
 
 
 @pytest.fixture
-def plate_file(tmp_path, codes) -> Path:
+def plate_file(tmp_path, codes):
     """A photograph of these code values."""
     return write_image(tmp_path / "plate.png", codes)
 
 
 @pytest.fixture
-def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
+def estimate(fixed_model):
     """Estimate the response of files with the fixed model: estimate(path, ..., use_metadata=True)."""
     from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
 
