@@ -1,5 +1,3 @@
-"""Makers, models and programs: the kind of device that a camera's name means, and which programs edit."""
-
 import pytest
 
 from crfnet_core.photograph.metadata.devices import Device, camera_name, device_of

@@ -1,5 +1,3 @@
-"""Photo and Photo.from_array: pixels of arrays, of Pillow's and OpenCV's images, and what is refused."""
-
 from pathlib import Path
 
 import numpy as np
@@ -167,9 +165,3 @@ def test_the_constructor_checks_its_pixels(pixels, code):
     with pytest.raises(PhotoError) as caught:
         Photo(pixels, 8, False, Path("a.png"))
     assert caught.value.code == code
-
-
-def test_a_mapped_array_is_an_array(tmp_path):
-    mapped = np.memmap(tmp_path / "codes", np.uint8, "w+", shape=CODES.shape)
-    mapped[:] = CODES
-    np.testing.assert_array_equal(Photo.from_array(mapped, color_order="RGB").pixels, EXACT)

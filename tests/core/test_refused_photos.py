@@ -1,5 +1,3 @@
-"""read_photo refuses files in one line and with little memory."""
-
 import os
 import struct
 import sys

@@ -1,5 +1,3 @@
-"""Estimates, curves and posteriors compare, and estimates become documents and come back."""
-
 import copy
 import dataclasses
 import json
@@ -67,13 +65,6 @@ def test_equal_estimates_are_equal(estimate):
 @pytest.mark.parametrize("field", [field.name for field in dataclasses.fields(ResponseEstimate)])
 def test_estimates_differ_in_any_field(estimate, field):
     assert estimate != dataclasses.replace(twin(estimate), **{field: CHANGES[field]})
-
-
-def test_what_is_not_known_is_equal(estimate):
-    """NaN: as of a response that was loaded from a LUT."""
-    unknown = dataclasses.replace(estimate, shape_uncertainty=math.nan, families={})
-    assert unknown == twin(unknown)
-    assert unknown.likely_kind is None
 
 
 def test_estimates_cannot_be_hashed_and_curves_can(estimate):

@@ -5,8 +5,11 @@ import struct
 import numpy as np
 from PIL import ExifTags, Image
 
-from crfnet_core.colorimetry import D50, adaptation, xyz_of
+from crfnet_core.colorimetry import D50, Primaries, adaptation, xyz_of
 from tests.helpers.images import write_image
+
+#: Primaries of a display that is none of the named ones, with the white of an old lamp.
+OWN = Primaries("own", (0.66, 0.34), (0.24, 0.67), (0.145, 0.055), (0.333, 0.342))
 
 
 def matrix_profile(primaries, *, version=4, states_adaptation=True, **more):

@@ -1,12 +1,10 @@
-"""Stacks that cannot be measured are refused, each with its code."""
-
 import numpy as np
 import pytest
 
 from crfnet_core.calibration import calibrate_stack
 from crfnet_core.calibration.checks import check_range
 from crfnet_core.calibration.exposures import ExposureLabel, stack_exposures
-from crfnet_core.errors import CalibrationError, PhotoError
+from crfnet_core.errors import CalibrationError
 from tests.helpers.images import write_image
 from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
@@ -22,13 +20,6 @@ def refusal(paths, **options):
 def test_three_frames_are_too_few(stack):
     problem = refusal(stack()[:3])
     assert (problem.code, problem.facts["count"]) == ("few_frames", 3)
-
-
-def test_a_folder_or_an_absent_file_in_place_of_frames_is_named(stack):
-    folder = stack()[0].parent
-    for path in (folder, folder / "stack_%02d.jpg"):
-        with pytest.raises(PhotoError):
-            calibrate_stack([path])
 
 
 def test_a_frame_that_is_given_twice_is_named(stack):

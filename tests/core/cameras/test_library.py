@@ -1,5 +1,3 @@
-"""The library of cameras: one file each, its name, and damage."""
-
 import json
 
 import numpy as np

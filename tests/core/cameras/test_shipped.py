@@ -1,5 +1,3 @@
-"""The measured cameras that come with the project."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""HEIC and AVIF: exact codes, range, orientation, metadata, gain maps, damage."""
-
 import struct
 import sys
 
@@ -30,11 +28,6 @@ def test_heic_keeps_its_codes(heif, name):
     assert values.codes.dtype == (np.uint8 if bits == 8 else np.uint16)
     difference = np.abs(values.codes.astype(int) - colored_ramp(bits))
     assert difference.max() <= FILES[name]
-
-
-@pytest.mark.parametrize(("name", "cicp"), [("rgb8", (12, 13, 0, 1)), ("limited10", (12, 13, 9, 0))])
-def test_cicp_is_in_the_header(heif, name, cicp):
-    assert tuple(read_codes(heif / f"{name}.heic").header.getattribute("CICP")) == cicp
 
 
 def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
@@ -157,20 +150,6 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
     with pytest.raises(PhotoError) as caught:
         read_photo(path)
     assert caught.value.code == "damaged"
-
-
-def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_path):
-    rng, content = np.random.default_rng(0), np.frombuffer((heif / "phone.heic").read_bytes(), np.uint8)
-    path, refusals = tmp_path / "a.heic", []
-    for _ in range(60):
-        damaged = content.copy()
-        damaged[rng.integers(8, len(content), 6)] = rng.integers(0, 256, 6)
-        path.write_bytes(damaged.tobytes())
-        try:
-            read_codes(path)
-        except PhotoError as problem:
-            refusals.append(problem)
-    assert 0 < len(refusals) < 60
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):

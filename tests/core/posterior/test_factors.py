@@ -1,5 +1,3 @@
-"""Factors of the families of responses by metadata."""
-
 import pytest
 
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device

@@ -1,5 +1,3 @@
-"""Log footage, limited range and tags are recognized, and ordinary photographs are not."""
-
 import dataclasses
 import json
 
