@@ -52,10 +52,8 @@ def test_shape_of_the_picture(width, height, shape):
         (1280, 720, {"file_format": "DPX"}, None),
         (0, 0, {}, None),
         # a program that scales may rewrite the size in EXIF
-        *(
-            (493, 328, OWN_CAMERA | {"exif_size": (493, 328)}, True),
-            (640, 480, OWN_CAMERA | {"exif_size": (640, 480)}, False),
-        ),
+        (493, 328, OWN_CAMERA | {"exif_size": (493, 328)}, True),
+        (640, 480, OWN_CAMERA | {"exif_size": (640, 480)}, False),
         (4000, 3001, OWN_CAMERA | {"exif_size": (4000, 3001)}, False),
     ],
 )

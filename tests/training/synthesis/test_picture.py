@@ -2,9 +2,9 @@ import io
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-Image = pytest.importorskip("PIL.Image", reason="training needs the train extra")
 
 from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, smoothed, split
 
