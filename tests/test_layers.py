@@ -55,7 +55,6 @@ def test_only_image_io_reads_images(root):
 
 
 def test_the_import_contracts_are_kept(root, monkeypatch, capsys):
-    """The contracts in pyproject.toml, as `make check` reads them."""
     cli = pytest.importorskip("importlinter.cli", reason="import-linter comes with the dev extra")
     monkeypatch.chdir(root)
     assert cli.lint_imports(cache_dir=None, no_cache=True) == 0, capsys.readouterr().out

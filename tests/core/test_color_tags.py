@@ -145,8 +145,6 @@ class TestIccProfiles:
 
 
 class TestFiles:
-    """The tags of whole files."""
-
     @staticmethod
     def tags(path):
         return read_photo(path).metadata.color
@@ -184,8 +182,6 @@ class TestFiles:
 
 
 class TestOpenExr:
-    """The tags of an OpenEXR file with encoded values."""
-
     @staticmethod
     def tags(**attributes):
         import OpenImageIO as oiio

@@ -27,7 +27,6 @@ OWN_TABLE = (3,) * 64
 
 
 def read(path):
-    """The metadata of a photograph's file."""
     return read_photo(path).metadata
 
 

@@ -47,5 +47,4 @@ def test_the_shape_error_ignores_the_exposure_which_is_the_scale_error():
     [(0.2, "0.20"), (0.1101, "0.1101"), (0.11, "0.11"), (0.10999, "0.10999"), (0.11 + 1e-9, "0.110000")],
 )
 def test_a_number_shows_on_which_side_of_a_limit_it_lies(value, words):
-    """By six decimals at most."""
     assert beside_limits(value, 0.11) == words

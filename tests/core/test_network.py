@@ -60,7 +60,6 @@ def edit(folder, **entries):
 
 
 def test_onnxruntime_answers_what_torch_answered(network, windows, golden, tolerance):
-    """Factors are compared relative to the largest."""
     found = network.predict(windows)
     for row, evidence in enumerate(found.windows):
         assert_near(evidence, [golden[name][row] for name in ("locations", "factors", "log_odds")], tolerance.parity)

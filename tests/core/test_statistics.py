@@ -10,7 +10,6 @@ LINES = 114
 
 
 def parts(window):
-    """Return the parts of a window's statistics by name."""
     return unpack(window_statistics(window))
 
 

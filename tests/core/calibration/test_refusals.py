@@ -10,7 +10,6 @@ from tests.helpers.stacks import StackOptions, emor_response, make_stack
 
 
 def refusal(paths, **options):
-    """The error that refuses a stack."""
     with pytest.raises(CalibrationError) as caught:
         calibrate_stack(paths, **options)
     assert str(caught.value) != caught.value.code
@@ -111,7 +110,6 @@ def test_exposures_at_the_limits_are_not_refused():
 
 
 def test_frames_that_were_rendered_each_on_its_own_are_refused(stack, tmp_path):
-    """Every second frame has another response."""
     (tmp_path / "other").mkdir()
     first, second = stack(), stack(response=emor_response(4), folder=tmp_path / "other")
     mixed = [path if index % 2 else other for index, (path, other) in enumerate(zip(first, second, strict=True))]

@@ -23,7 +23,6 @@ def estimate(plate, fixed_model, tmp_path_factory):
 
 
 def test_the_errors_of_a_camera_follow_from_its_stops():
-    """A little more light, by a known number of stops, moves brightness by what `brightness_per_stop` says."""
     curve, stops = ResponseCurve.gamma(2.0), 0.01
     brighter = curve.forward(np.minimum(curve.irradiance * 2**stops, 1))
     inside = slice(50, 1000)

@@ -16,13 +16,11 @@ def library(tmp_path):
 
 @pytest.fixture
 def own(monkeypatch, tmp_path):
-    """The user's own library."""
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path))
     return CameraLibrary.of_user()
 
 
 def code_of(function, *arguments, **options):
-    """Return the code of the error that a call raises."""
     with pytest.raises(CameraError) as caught:
         function(*arguments, **options)
     assert str(caught.value).isprintable()

@@ -9,7 +9,6 @@ from tests.helpers.crafted_files import jpeg, tiff, with_jpeg_segment
 
 
 def code_of(path, read=read_photo):
-    """Return the code of the error by which a file is refused."""
     with pytest.raises(PhotoError) as caught:
         read(path)
     return caught.value.code

@@ -134,7 +134,6 @@ def test_an_answer_that_weakened_evidence_has_moved_is_doubted(bank):
 
 
 def test_the_band_holds_nine_tenths_of_the_weight():
-    """Of many responses, so that quantiles are fine."""
     irradiance = np.linspace(0, 1, 1024)
     powers = np.linspace(0.3, 0.8, 400)
     bank = ResponseBank((irradiance ** powers[:, None]).astype(np.float32), (Family.CAMERA,) * 400)

@@ -21,7 +21,6 @@ def record(name, irradiance, brightness, graph="graph-log-log-neg"):
 
 
 def all_records(count=201):
-    """Return as many power laws."""
     return "".join(record(f"power{n}", UNIFORM, UNIFORM ** (0.3 + n / 200)) for n in range(count))
 
 

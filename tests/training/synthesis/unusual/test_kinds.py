@@ -9,7 +9,6 @@ from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, un
 
 @pytest.fixture
 def light(scene):
-    """Two windows of the scene."""
     return np.stack([scene.pixels[:WINDOW_SIZE, x : x + WINDOW_SIZE] for x in (0, 200)])
 
 
