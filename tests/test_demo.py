@@ -1,5 +1,3 @@
-"""What `make demo` does, with the fixed model."""
-
 import json
 
 from tests import demo

@@ -1,5 +1,3 @@
-"""Primaries and matrices, judged by colour-science, and the tags of ICC profiles, CICP and EXIF."""
-
 import itertools
 import struct
 

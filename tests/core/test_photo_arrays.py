@@ -96,20 +96,6 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
     assert code_of(image) == "array_without_bit_depth"
 
 
-@pytest.mark.parametrize(
-    ("mode", "code"),
-    [("P", "pillow_mode_of_other_colors"), ("1", "pillow_mode_unknown"), ("F", "pillow_mode_of_numbers")],
-)
-def test_another_mode_of_pillow_is_refused(mode, code):
-    image = Image.new(mode, (4, 4))
-    assert code_of(image) == code
-
-
-def test_an_order_that_contradicts_pillow_is_refused():
-    image = Image.fromarray(CODES)
-    assert code_of(image, color_order="BGR") == "pillow_order_stated"
-
-
 def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
     path = write_image(tmp_path / "a.png", codes)
     expected = read_photo(path).pixels
@@ -142,6 +128,10 @@ def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
         (EXACT - np.float32(0.1), {"color_order": "RGB"}, "array_out_of_range"),
         (np.full((2, 2), np.nan), {}, "array_holds_nan"),
         (np.full((2, 2), np.inf), {}, "array_out_of_range"),
+        (Image.new("P", (4, 4)), {}, "pillow_mode_of_other_colors"),
+        (Image.new("1", (4, 4)), {}, "pillow_mode_unknown"),
+        (Image.new("F", (4, 4)), {}, "pillow_mode_of_numbers"),
+        (Image.fromarray(CODES), {"color_order": "BGR"}, "pillow_order_stated"),
     ],
 )
 def test_other_arrays_are_refused(array, options, code):

@@ -7,6 +7,7 @@ from hypothesis.extra.numpy import arrays
 from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
 from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 
 UNIFORM = np.linspace(0, 1, SAMPLES)
 
@@ -22,6 +23,12 @@ def test_gamma_has_the_values_of_a_power_law():
 def test_other_numbers_of_samples_are_resampled():
     curve = ResponseCurve.from_samples([0.0, 0.5, 1.0])
     np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
+
+
+def test_the_transfer_functions_of_standards_are_those_of_colour_science(tolerance):
+    models = pytest.importorskip("colour", reason="colour-science comes with the test extra").models
+    np.testing.assert_allclose(srgb_encode(UNIFORM), models.eotf_inverse_sRGB(UNIFORM), atol=tolerance.exact)
+    np.testing.assert_allclose(rec709_encode(UNIFORM), models.oetf_BT709(UNIFORM), atol=tolerance.exact)
 
 
 @given(weights)

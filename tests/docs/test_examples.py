@@ -1,5 +1,3 @@
-"""The example notebook runs, from its first cell to its last, and holds no outputs."""
-
 import json
 import shutil
 

@@ -1,5 +1,3 @@
-"""The sample and the pictures in docs/ are what the code makes."""
-
 import re
 import runpy
 

@@ -1,5 +1,3 @@
-"""The JSON schemas in docs/ describe every document that the command writes and prints, and no other."""
-
 import copy
 import dataclasses
 import json

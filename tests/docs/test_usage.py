@@ -1,5 +1,3 @@
-"""docs/USAGE.md and docs/CAMERAS.md: their commands run, in order, and do what the text says."""
-
 import json
 import re
 import shutil

@@ -1,5 +1,3 @@
-"""A camera's response in the place of an estimate, and the cameras of a photograph's make and model."""
-
 from dataclasses import replace
 
 import numpy as np

@@ -20,12 +20,6 @@ def test_palettes_are_refused_alike(tmp_path, name):
     assert code_of(tmp_path / name) == code_of(tmp_path / name, read_metadata) == "palette"
 
 
-@pytest.mark.parametrize("name", ["a.png", "a.tif"])
-def test_black_and_white_is_refused(tmp_path, name):
-    Image.fromarray(colored_ramp(8)[..., 0] > 127).save(tmp_path / name)
-    assert code_of(tmp_path / name) == "sample_type"
-
-
 @pytest.mark.parametrize("name", ["a.png", "a.tif", "a.bmp"])
 def test_gray_is_no_palette(tmp_path, name):
     """Although a BMP file of 8 bits always has one."""

@@ -1,5 +1,3 @@
-"""Where the files of real photographs come from."""
-
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
