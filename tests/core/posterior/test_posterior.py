@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
-from crfnet_core.posterior.verdict import GOOD_STOPS, USABLE_STOPS
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
 from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for, small_bank
@@ -162,11 +161,6 @@ def test_the_verdict_follows_the_expected_stops_and_the_family(families, spread,
     bank = ResponseBank((np.linspace(0, 1, 1024) ** powers).astype(np.float32), families)
     posterior = Posterior.from_evidences(bank, Prior("p", {families[0]: 1.0}, 1.0))
     assert Verdict.from_posterior(posterior) is expected
-    stops = posterior.expected_shape_error
-    if families[0] is Family.CAMERA:
-        assert Verdict.from_posterior(posterior) == (
-            Verdict.GOOD if stops <= GOOD_STOPS else Verdict.USABLE if stops <= USABLE_STOPS else Verdict.DO_NOT_TRUST
-        )
 
 
 def test_a_picture_that_nothing_explains_is_not_to_be_trusted(bank):

@@ -101,11 +101,7 @@ def test_bad_files_are_one_line_each_and_stop_no_others(tmp_path, out, capsys):
 
 @pytest.mark.parametrize(
     ("scale", "message"),
-    [
-        (0, "is none; give 1 or more"),
-        (-1, "is none; give 1 or more"),
-        (2, "256 rows or columns at scale 2 are too few"),
-    ],
+    [(0, "give 1 or more"), (-1, "give 1 or more"), (2, "256 rows or columns at scale 2 are too few")],
 )
 def test_a_scale_must_leave_room_for_a_window(tmp_path, scale, message):
     path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
