@@ -78,6 +78,14 @@ def fixed_model(root):
 
 
 @pytest.fixture(scope="session")
+def bank():
+    """A small bank of powers of irradiance, whose posteriors can be worked out by hand."""
+    from tests.helpers.posteriors import small_bank
+
+    return small_bank()
+
+
+@pytest.fixture(scope="session")
 def crfnet():
     """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed."""
 

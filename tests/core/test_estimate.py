@@ -60,11 +60,6 @@ def asked(made, network, **options):
 CENTER = np.array([1.0, -0.5, 0.0, 0.0, 0.0])
 
 
-@pytest.fixture(scope="module")
-def bank():
-    return small_bank()
-
-
 def test_outliers_are_those_beyond_twice_the_median_distance():
     kept = inliers(rows_around(CENTER, [-0.2, -0.1, 0.0, 0.1, 0.25, 3.0]))
     assert kept.tolist() == [True, True, True, True, True, False]

@@ -35,10 +35,7 @@ def test_the_vector_holds_the_parts_of_every_cue(smooth):
 
 
 def test_the_statistics_of_known_windows_have_not_changed(root):
-    """If they are meant to change: ``python -m tests.data.make_golden_statistics``, and train the network anew.
-
-    A new cue comes after them and changes none.
-    """
+    """`tests.data.make_golden_statistics` changes them; the network is then trained anew. New cues come last."""
     with np.load(root / "tests" / "data" / "golden_statistics.npz") as golden:
         for window, expected in zip(golden["windows"] / np.float32(255), golden["statistics"], strict=True):
             found = window_statistics(window)[: len(expected)]

@@ -16,10 +16,7 @@ from tests.helpers.mutations import mutated
 SEEDS = {
     "plain.jpg": (8, {}),
     "progressive.jpg": (8, {"jpeg__progressive": 1}),
-    "exif.jpg": (
-        8,
-        {"Make": "MAKER", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "ImageDescription": "x"},
-    ),
+    "exif.jpg": (8, {"Make": "MAKER", "Model": "B", "Exif__ExposureTime": 0.01, "Orientation": 6, "Software": "x"}),
     "gray.jpg": (8, {}),
     "8.png": (8, {"Comment": "text"}),
     "16.png": (16, {}),

@@ -4,12 +4,7 @@ import pytest
 from crfnet_core.posterior import Family, Posterior, Prior, ResponseBank, Verdict
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, shape_error
-from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for, small_bank
-
-
-@pytest.fixture(scope="module")
-def bank():
-    return small_bank()
+from tests.helpers.posteriors import SMALL_BANK, even_prior, evidence_for
 
 
 @pytest.fixture(scope="module")

@@ -12,11 +12,10 @@ UNIFORM = np.linspace(0, 1, 1024)
 
 def record(name, irradiance, brightness, graph="graph-log-log-neg"):
     """Return a curve as the owners write it: six lines, exponents of three digits, three spaces between values."""
-    rows = (
-        "   ".join(f"{value:.6e}".replace("e-", "e-0").replace("e+", "e+0") for value in v)
-        for v in (irradiance, brightness)
+    first, second = (
+        "   ".join(f"{value:.6e}".replace("e-", "e-0").replace("e+", "e+0") for value in row)
+        for row in (irradiance, brightness)
     )
-    first, second = rows
     return f"{name}\n{graph}\nI = \n{first}\nB = \n{second}\n"
 
 
