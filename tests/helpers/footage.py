@@ -11,7 +11,7 @@ def scene_light(*, seed=0, size=480):
     rng = np.random.default_rng(seed)
     light = np.full((size, size, 3), 0.18)
     for _ in range(250):
-        x, y, width, height = *rng.integers(0, size, 2), *rng.integers(10, size // 5, 2)
+        (x, y), (width, height) = rng.integers(0, size, 2), rng.integers(10, size // 5, 2)
         color = np.exp(0.25 * rng.standard_normal(3))
         light[y : y + height, x : x + width] = 0.12 * 2 ** rng.normal(0, 1.9) * color
     return blurred(light)

@@ -65,7 +65,7 @@ def write_movie(
     with av.open(str(path), "w", options=dict(muxer or {})) as container:
         container.metadata.update(metadata or {})
         stream = container.add_stream(codec, rate=24, options=options)
-        stream.width, stream.height, stream.pix_fmt = *size, form
+        (stream.width, stream.height), stream.pix_fmt = size, form
         for name, value in {**(tags or {}), **({"flags": 1 << 18 | 1 << 29} if is_interlaced else {})}.items():
             setattr(stream.codec_context, name, value)
         for name, value in stream_attributes.items():

@@ -9,7 +9,7 @@ WORDS = (*_NUMBERS.split(), "\u0661", "", "true", "a", "\x1b[31m")
 INTEGERS = (0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 
 #: Values that no reader of a JSON document expects.
-VALUES = (
+VALUES: tuple = (
     *(None, True, -1, 0, 1, 1e308, 10**30, "", "a", "\ud800", "\x1b", "x" * 5000),
     *([], {}, [[]], {"a": 1}, [None] * 5),
 )
