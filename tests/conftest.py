@@ -4,14 +4,20 @@ import contextlib
 import io
 import subprocess
 import sys
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import pytest
 
 from crfnet.cli.main import main
 from tests.helpers.images import write_image
+
+if TYPE_CHECKING:
+    from crfnet_core import ResponseEstimate
+    from crfnet_core.response.curve import ResponseCurve
 
 
 @dataclass(frozen=True)
@@ -35,7 +41,7 @@ class CommandResult:
 
 
 @pytest.fixture(scope="session", autouse=True)
-def own_cameras(tmp_path_factory):
+def own_cameras(tmp_path_factory) -> Iterator[Path]:
     """The user's library of cameras: an empty one, whatever is kept on this machine."""
     with pytest.MonkeyPatch.context() as patch:
         folder = tmp_path_factory.mktemp("data")
@@ -44,24 +50,24 @@ def own_cameras(tmp_path_factory):
 
 
 @pytest.fixture(scope="session")
-def tolerance():
+def tolerance() -> Tolerance:
     return Tolerance()
 
 
 @pytest.fixture(scope="session")
-def root():
+def root() -> Path:
     """The project's root folder."""
     return Path(__file__).resolve().parent.parent
 
 
 @pytest.fixture(scope="session")
-def plate(root):
+def plate(root) -> Path:
     """The bundled photograph, whose true response is known."""
     return root / "tests" / "data" / "plate.jpg"
 
 
 @pytest.fixture(scope="session")
-def true_response(root):
+def true_response(root) -> "ResponseCurve":
     """The response through which the bundled photograph was made."""
     from crfnet_core.response.curve import (
         ResponseCurve,  # not earlier: in Blender, its own OpenImageIO has to come first
@@ -72,24 +78,16 @@ def true_response(root):
 
 
 @pytest.fixture(scope="session")
-def fixed_model(root):
+def fixed_model(root) -> Path:
     """A model folder whose network always states evidence for the bundled photograph's true response."""
     return root / "tests" / "data" / "fixed_model"
 
 
 @pytest.fixture(scope="session")
-def bank():
-    """A small bank of powers of irradiance, whose posteriors can be worked out by hand."""
-    from tests.helpers.posteriors import small_bank
-
-    return small_bank()
-
-
-@pytest.fixture(scope="session")
-def crfnet():
+def crfnet() -> Callable[..., CommandResult]:
     """Run the `crfnet` command in this process: crfnet("info", path) -> its exit code and what it printed."""
 
-    def run(*arguments):
+    def run(*arguments: object) -> CommandResult:
         out, err = io.StringIO(), io.StringIO()
         with contextlib.redirect_stdout(out), contextlib.redirect_stderr(err):
             try:
@@ -102,10 +100,10 @@ def crfnet():
 
 
 @pytest.fixture(scope="session")
-def oiiotool():
+def oiiotool() -> Callable[..., None]:
     """Run oiiotool, which comes with OpenImageIO's wheel; it must succeed."""
 
-    def run(*arguments):
+    def run(*arguments: object) -> None:
         command = [str(Path(sys.executable).with_name("oiiotool")), *map(str, arguments)]
         subprocess.run(command, check=True, capture_output=True, text=True)
 
@@ -113,7 +111,15 @@ def oiiotool():
 
 
 @pytest.fixture(scope="session")
-def codes():
+def bank():
+    """A small bank of powers of irradiance, whose posteriors can be worked out by hand."""
+    from tests.helpers.posteriors import small_bank
+
+    return small_bank()
+
+
+@pytest.fixture(scope="session")
+def codes() -> np.ndarray:
     """Code values, uint8, shape (256, 256, 3): every 8-bit code in each channel, in a different order in each."""
     ramp = np.arange(256, dtype=np.uint8)
     red = np.repeat(ramp[None], 256, axis=0)
@@ -121,13 +127,13 @@ def codes():
 
 
 @pytest.fixture
-def plate_file(tmp_path, codes):
+def plate_file(tmp_path, codes) -> Path:
     """A photograph of these code values."""
     return write_image(tmp_path / "plate.png", codes)
 
 
 @pytest.fixture
-def estimate(fixed_model):
+def estimate(fixed_model) -> "Callable[..., ResponseEstimate]":
     """Estimate the response of files with the fixed model: estimate(path, ..., use_metadata=True)."""
     from crfnet_core import AnalysisOptions, ResponseNetwork, estimate_response, read_photo
 

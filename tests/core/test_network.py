@@ -38,7 +38,6 @@ def windows(golden):
 
 @pytest.fixture
 def copied(tmp_path):
-    """A model folder that a test may spoil."""
     return shutil.copytree(DEFAULT_MODEL, tmp_path / "model")
 
 
@@ -129,7 +128,6 @@ def refusal(folder):
 
 
 def write_graph(folder, content):
-    """Write a graph, whose hash is then right."""
     (folder / "model.onnx").write_bytes(content)
     edit(folder, sha256=hashlib.sha256(content).hexdigest())
     return folder

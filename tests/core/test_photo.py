@@ -148,7 +148,6 @@ def test_the_content_counts_not_the_suffix(tmp_path, content, name):
 
 @pytest.fixture
 def ultra_hdr(tmp_path):
-    """A JPEG with a gain map."""
     noise = 8 * np.random.default_rng(0).random((64, 64, 3), np.float32).astype(np.float16)
     path = write_image(tmp_path / "a.jpg", noise, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
     if str(oiio.ImageBuf(str(path)).spec().format) == "uint8":

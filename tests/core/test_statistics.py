@@ -15,7 +15,6 @@ def parts(window):
 
 @pytest.fixture
 def smooth():
-    """Smooth light with texture, in [0, 1]."""
     rng, position = np.random.default_rng(0), np.linspace(0, 9, 227)
     light = np.sin(position)[:, None] + np.cos(2 * position)[None, :] + 0.1 * rng.standard_normal((227, 227))
     light = (light - light.min()) / np.ptp(light)

@@ -1,5 +1,3 @@
-"""YUV to RGB: matrices, ranges, depths, the place of chroma, and the layouts of samples."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""docs/API.md: its names are there, its signatures match the code, and its examples run."""
-
 import dataclasses
 import importlib
 import inspect

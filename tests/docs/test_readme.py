@@ -1,5 +1,3 @@
-"""The README is short, begins with the installation, its snippet runs, and its figures match the model card."""
-
 import json
 import re
 import shutil

@@ -1,7 +1,12 @@
 """A plate's color space, and pixels through OpenColorIO."""
 
+from __future__ import annotations
+
+from pathlib import Path
+
 import numpy as np
 import PyOpenColorIO as OCIO
+from numpy.typing import ArrayLike, NDArray
 
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.luts.lut1d import inverse_response_lut
@@ -17,7 +22,7 @@ REC709_TO_AP1 = np.array(
 )
 
 
-def converted(config, source, target, pixels):
+def converted(config: OCIO.Config, source: str, target: str, pixels: ArrayLike) -> NDArray[np.float32]:
     """Return pixels, shape (N, 3), converted by OpenColorIO's CPU processor."""
     pixels = np.array(pixels, dtype=np.float32)
     processor = config.getProcessor(source, target)
@@ -25,13 +30,13 @@ def converted(config, source, target, pixels):
     return pixels
 
 
-def loaded(path):
+def loaded(path: Path) -> OCIO.Config:
     """Return the config in a file, and read LUTs anew."""
     OCIO.ClearAllCaches()
     return OCIO.Config.CreateFromFile(str(path))
 
 
-def rule_names(config):
+def rule_names(config: OCIO.Config) -> list[str]:
     """Return the names of the file rules, the first one first."""
     rules = config.getFileRules()
     return [rules.getName(index) for index in range(rules.getNumEntries())]

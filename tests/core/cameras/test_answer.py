@@ -15,7 +15,6 @@ from tests.helpers.images import write_image
 
 @pytest.fixture(scope="module")
 def estimate(plate, fixed_model, tmp_path_factory):
-    """The estimate from a photograph of a SONY ILCE-7M3."""
     photo = photograph(plate, tmp_path_factory.mktemp("photos") / "a.jpg")
     return estimate_response(read_photo(photo), network=ResponseNetwork.load(fixed_model))
 

@@ -1,5 +1,3 @@
-"""Inputs that are not photographs are not to be trusted: each of these was "usable" before."""
-
 from pathlib import Path
 
 import numpy as np

@@ -12,14 +12,16 @@ UNIFORM = np.linspace(0, 1, 1024)
 
 def record(name, irradiance, brightness, graph="graph-log-log-neg"):
     """Return a curve as the owners write it: six lines, exponents of three digits, three spaces between values."""
-    first, second = (
-        "   ".join(f"{value:.6e}".replace("e-", "e-0").replace("e+", "e+0") for value in row)
-        for row in (irradiance, brightness)
+    rows = (
+        "   ".join(f"{value:.6e}".replace("e-", "e-0").replace("e+", "e+0") for value in v)
+        for v in (irradiance, brightness)
     )
+    first, second = rows
     return f"{name}\n{graph}\nI = \n{first}\nB = \n{second}\n"
 
 
 def all_records(count=201):
+    """Return as many power laws."""
     return "".join(record(f"power{n}", UNIFORM, UNIFORM ** (0.3 + n / 200)) for n in range(count))
 
 

@@ -6,7 +6,14 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from training.data.curves import BASE_CURVES_FILE, DORF_FILE, EMOR_FILE
-from training.data.manifest import NO_LICENCE, ManifestRow, differences, main, manifest_rows, read_manifest
+from training.data.manifest import (
+    NO_LICENCE,
+    ManifestRow,
+    differences,
+    main,
+    manifest_rows,
+    read_manifest,
+)
 from training.data.splits import SPLITS_FILE
 
 
@@ -42,7 +49,6 @@ def data(tmp_path):
 
 @pytest.fixture
 def written(data, tmp_path):
-    """The manifest of the folder, as the command writes it."""
     path = tmp_path / "manifest.csv"
     assert main(["--data", str(data), "--manifest", str(path)]) == 0
     return path

@@ -11,7 +11,6 @@ from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, smoothed,
 
 @pytest.fixture
 def codes():
-    """Smooth colors with some texture, uint8 (2, 64, 64, 3)."""
     rng, (y, x) = np.random.default_rng(3), np.mgrid[:64, :64]
     frame = np.stack([2 * x + 60, 2 * y + 50, x + y + 40], axis=-1) + rng.integers(-6, 7, (64, 64, 1))
     return np.stack([frame, frame[::-1]]).astype(np.uint8)

@@ -8,7 +8,7 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import bodies as module
 from training.data.real.bodies import measured_bodies
-from training.data.real.file_origin import Editing, editing, is_scaled
+from training.data.real.file_origin import Editing
 from training.data.real.photographs import PUBLISHED_ROWS, RealPhotograph, published_rows
 
 UNIFORM = np.linspace(0, 1, 1024)
@@ -74,21 +74,3 @@ def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_
 def test_only_the_rows_that_published_figures_rest_on_are_read(tmp_path):
     (tmp_path / "cases.csv").write_text("id\n" + "".join(f"{n}\n" for n in range(PUBLISHED_ROWS + 12)))
     assert [row["id"] for row in published_rows(tmp_path)] == [str(n) for n in range(76)]
-
-
-@pytest.mark.parametrize(
-    ("software", "make", "use", "expected"),
-    [
-        ("Adobe Photoshop CS6 (Windows)", "Canon", "yes", Editing.EDITED),
-        ("", "Canon", "caution: edited/developed by software, jitter>0.2", Editing.EDITED),
-        ("Microsoft Windows Photo Viewer 6.1", "SONY", "yes", Editing.NOT_NAMED),
-        ("", "", "yes", Editing.UNKNOWN),
-    ],
-)
-def test_an_editor_is_known_by_its_name(software, make, use, expected):
-    assert editing(software, make=make, use=use) is expected
-
-
-def test_a_photograph_without_1600_pixels_is_scaled():
-    sizes = ("1280x853", "1600x1200", "2848x4288", "853x1280")
-    assert [is_scaled(size) for size in sizes] == [True, False, False, True]
