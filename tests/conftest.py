@@ -127,6 +127,14 @@ def oiiotool() -> Callable[..., None]:
 
 
 @pytest.fixture(scope="session")
+def bank():
+    """A small bank of powers of irradiance, whose posteriors can be worked out by hand."""
+    from tests.helpers.posteriors import small_bank
+
+    return small_bank()
+
+
+@pytest.fixture(scope="session")
 def codes() -> np.ndarray:
     """Code values, uint8, shape (256, 256, 3): every 8-bit code in each channel, in a different order in each."""
     ramp = np.arange(256, dtype=np.uint8)

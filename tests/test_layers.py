@@ -7,45 +7,37 @@ import pytest
 
 import crfnet_core
 
-GUESTS = ("bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy")
-
 PACKAGES = ("blender_addon", "crfnet_core", "ocio", "training")
 
 #: The most lines of a module, and the most modules of a package beside its `__init__.py`: more want another room.
 MOST_LINES, MOST_MODULES = 300, 12
 
-IMPORT_ALL = """
-import importlib, pkgutil, sys
-import crfnet_core
+IMPORT_ALL = """import importlib, pkgutil, sys, crfnet_core
 for module in pkgutil.walk_packages(crfnet_core.__path__, "crfnet_core."):
     importlib.import_module(module.name)
-print(*sys.modules)
 """
 
-PIPELINE = "import sys, crfnet.pipeline, crfnet.configs.derived; print(*sys.modules)"
-
-START = "import sys, crfnet.cli.main; crfnet.cli.main.build_parser(); print(*sys.modules)"
+HEAVY = {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib", "shtab"}
 
 
-def loaded_by(code, root):
-    """Top-level modules that a fresh interpreter holds after running code that prints sys.modules."""
-    done = subprocess.run([sys.executable, "-c", code], cwd=root, capture_output=True, text=True, check=False)
+@pytest.mark.parametrize(
+    ("code", "guests"),
+    [
+        (IMPORT_ALL, {"bpy", "torch", "onnx", "PyOpenColorIO", "matplotlib", "tqdm", "shtab", "scipy"}),
+        # a name of the core is imported at its first use, and `crfnet --help` does not wait
+        ("import crfnet_core", HEAVY),
+        ("import crfnet.cli.main; crfnet.cli.main.build_parser()", HEAVY),
+        # Blender's package holds neither the command's libraries nor matplotlib
+        ("import crfnet.pipeline, crfnet.configs.derived", {"bpy", "torch", "matplotlib", "tqdm", "shtab", "fileseq"}),
+    ],
+    ids=["core", "start of the core", "start of the command", "pipeline"],
+)
+def test_no_guest_is_loaded(root, code, guests):
+    """By a fresh interpreter."""
+    command = [sys.executable, "-c", f"{code}\nimport sys; print(*sys.modules)"]
+    done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
-    return {name.partition(".")[0] for name in done.stdout.split()}
-
-
-def test_the_core_loads_no_guest(root):
-    assert not loaded_by(IMPORT_ALL, root) & set(GUESTS)
-
-
-def test_the_command_starts_light(root):
-    """`crfnet --help` must not wait for onnxruntime, OpenImageIO or matplotlib."""
-    assert not loaded_by(START, root) & {"numpy", "onnxruntime", "OpenImageIO", "PyOpenColorIO", "matplotlib", "shtab"}
-
-
-def test_the_core_starts_light(root):
-    """Its names are imported when they are first used."""
-    assert not loaded_by("import sys, crfnet_core; print(*sys.modules)", root) & {"numpy", "onnxruntime", "OpenImageIO"}
+    assert not {name.partition(".")[0] for name in done.stdout.split()} & guests
 
 
 def test_every_public_name_and_module_of_the_core_is_there_and_no_other():
@@ -56,11 +48,6 @@ def test_every_public_name_and_module_of_the_core_is_there_and_no_other():
         _ = crfnet_core.nonesuch
 
 
-def test_the_pipeline_loads_what_the_add_on_has(root):
-    """Blender's package holds neither the command's libraries nor matplotlib."""
-    assert not loaded_by(PIPELINE, root) & {"bpy", "torch", "matplotlib", "tqdm", "shtab", "fileseq"}
-
-
 def test_only_image_io_reads_images(root):
     modules = (root / "crfnet_core").rglob("*.py")
     readers = {path.parent.name for path in modules if "OpenImageIO as" in path.read_text(encoding="utf-8")}
@@ -68,7 +55,6 @@ def test_only_image_io_reads_images(root):
 
 
 def test_the_import_contracts_are_kept(root, monkeypatch, capsys):
-    """The contracts in pyproject.toml, as `make check` reads them."""
     cli = pytest.importorskip("importlinter.cli", reason="import-linter comes with the dev extra")
     monkeypatch.chdir(root)
     assert cli.lint_imports(cache_dir=None, no_cache=True) == 0, capsys.readouterr().out

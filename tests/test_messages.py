@@ -1,6 +1,7 @@
 """Every error and notice has one sentence, every sentence is used, and it names the facts that it is given."""
 
 import ast
+import pickle
 import re
 from pathlib import Path
 from string import Formatter
@@ -41,13 +42,14 @@ def stated(package):
 
 
 def needed(sentence):
-    """Return the facts that a sentence names."""
     return {name for _, name, _, _ in Formatter().parse(sentence) if name}
 
 
 @pytest.mark.parametrize("package", PACKAGES)
 def test_every_code_has_a_sentence_and_every_sentence_its_facts(package):
-    for place, code, facts in stated(package):
+    places = list(stated(package))
+    assert len(places) > 50
+    for place, code, facts in places:
         assert code in PACKAGES[package], f"{place}: no sentence for {code}"
         assert None in facts or needed(PACKAGES[package][code]) <= facts, f"{place}: {code} lacks facts"
 
@@ -80,8 +82,6 @@ def test_an_error_says_its_sentence_with_its_facts_on_one_line(monkeypatch):
 
 
 def test_errors_survive_pickling():
-    import pickle
-
     problem = pickle.loads(pickle.dumps(OutputError("exists", path="a")))
     assert (problem.code, problem.facts) == ("exists", {"path": "a"})
 
@@ -91,7 +91,6 @@ def test_an_unknown_code_is_its_own_sentence():
 
 
 def test_the_command_has_a_remedy_only_for_errors_that_are_raised():
-    """The sentences of the command's own errors stand beside them."""
     known = {code for sentences in PACKAGES.values() for code in sentences}
     assert set(remedies.REMEDIES) <= known
     assert not set(remedies.SENTENCES) & known

@@ -1,15 +1,39 @@
-"""The project's own documents and metadata hold together."""
+"""The source distribution holds everything, and the documents and metadata of the project hold together."""
 
 import re
+import shutil
+import subprocess
+import sys
 import tomllib
-from importlib.metadata import version
 
 import pytest
+import yaml
+
+#: Lists the files of a source distribution without making one: in a new folder, since setuptools believes an old list.
+LIST_FILES = "import sys, setuptools; setuptools.setup(script_args=['-q', 'egg_info', '--egg-base', sys.argv[1]])"
 
 
-@pytest.fixture(scope="module")
-def project(root):
-    return tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+def test_the_source_distribution_holds_the_whole_repository(root, tmp_path):
+    """So that its tests run: `make test` in the unpacked distribution."""
+    if shutil.which("git") is None or not (root / ".git").exists():
+        pytest.skip("compares with what git keeps; this is not a git checkout")
+    subprocess.run([sys.executable, "-c", LIST_FILES, tmp_path], cwd=root, check=True, capture_output=True)
+    listed = (tmp_path / "crfnet.egg-info" / "SOURCES.txt").read_text(encoding="utf-8").splitlines()
+    command = ["git", "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
+    kept = subprocess.run(command, cwd=root, check=True, capture_output=True, text=True).stdout.split("\0")
+    files = {name for name in kept if (root / name).is_file()}
+    assert {name for name in listed if not name.startswith(str(tmp_path))} == files
+
+
+def test_the_citation_has_what_its_format_asks_for_and_is_of_this_version(root):
+    citation = yaml.safe_load((root / "CITATION.cff").read_text(encoding="utf-8"))
+    assert citation["cff-version"] == "1.2.0"
+    assert {"message", "title"} <= set(citation)
+    assert all({"authors", "title", "type"} <= set(reference) for reference in citation["references"])
+    project = tomllib.loads((root / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert [citation[name] for name in ("version", "license", "authors")] == [
+        project[name] for name in ("version", "license", "authors")
+    ]
 
 
 DOCUMENTS = ("*.md", "docs/**/*.md", "blender_addon/*.md", "training/*.md", "tests/data/**/*.md")
@@ -41,13 +65,3 @@ def test_the_readme_names_every_target_that_it_uses(root):
     used = re.findall(r"^make ([a-z-]+)", (root / "README.md").read_text(encoding="utf-8"), re.MULTILINE)
     assert used
     assert not [target for target in used if f"\n{target}:" not in makefile]
-
-
-def test_the_installed_version_is_this_one(project):
-    assert version("crfnet") == project["version"]
-
-
-def test_licenses(root, project):
-    assert project["license"] == "BSD-3-Clause"
-    assert (root / "LICENSE").read_text().startswith("BSD 3-Clause License")
-    assert "GNU GENERAL PUBLIC LICENSE" in (root / "blender_addon" / "LICENSE").read_text()[:200]

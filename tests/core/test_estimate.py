@@ -60,11 +60,6 @@ def asked(made, network, **options):
 CENTER = np.array([1.0, -0.5, 0.0, 0.0, 0.0])
 
 
-@pytest.fixture(scope="module")
-def bank():
-    return small_bank()
-
-
 def test_outliers_are_those_beyond_twice_the_median_distance():
     kept = inliers(rows_around(CENTER, [-0.2, -0.1, 0.0, 0.1, 0.25, 3.0]))
     assert kept.tolist() == [True, True, True, True, True, False]
@@ -79,7 +74,6 @@ def test_a_network_without_pooling_is_pooled_by_the_rule(bank):
 
 
 def test_a_network_that_pools_has_the_last_word(bank):
-    """Its windows only tell which of them agree."""
     windows = [evidence_for(row) for row in bank.weights[[5, 5, 1, 5, 5]]]
     estimate = asked(photo(), FakeNetwork(windows, pooled=evidence_for(bank.weights[2], precision=300)))
     true = bank.brightness[2]
@@ -91,10 +85,8 @@ def test_the_estimate_says_what_the_posterior_says(bank):
     evidence = evidence_for(bank.weights[4])
     estimate = asked(photo(), FakeNetwork([evidence] * 2, pooled=evidence))
     expected = Posterior.from_evidences(bank, even_prior(), [evidence])
-    assert (estimate.uncertainty, estimate.shape_uncertainty) == (
-        expected.expected_error,
-        expected.expected_shape_error,
-    )
+    assert estimate.uncertainty == expected.expected_error
+    assert estimate.shape_uncertainty == expected.expected_shape_error
     assert estimate.families == expected.families
     assert estimate.verdict is Verdict.from_posterior(expected)
     np.testing.assert_array_equal(estimate.band, expected.band())
@@ -139,12 +131,6 @@ def test_the_same_photograph_twice_says_no_more_than_once(bank):
     assert twice.families == pytest.approx(once.families)
 
 
-def shares(made, *, use_metadata=True, network=None):
-    """The families of an estimate in which the photograph says nothing."""
-    nothing = Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))
-    return asked(made, network or FakeNetwork([nothing]), use_metadata=use_metadata).families
-
-
 def test_of_several_photographs_the_geometric_mean_of_the_factors_counts():
     files = (CAMERA, replace(CAMERA, make="SONY", model="DSC-RX100"))
     each = [family_factors(file_origin(metadata)) for metadata in files]
@@ -154,7 +140,7 @@ def test_of_several_photographs_the_geometric_mean_of_the_factors_counts():
     expected = {family: weighed.get(family, 0) / sum(weighed.values()) for family in Family}
     nothing = FakeNetwork([Evidence(np.zeros(5), np.zeros((5, 5)), np.zeros(3))] * 2)
     made = [photo(seed=seed, metadata=metadata) for seed, metadata in enumerate(files)]
-    assert shares(made, network=nothing) == pytest.approx(expected)
+    assert asked(made, nothing).families == pytest.approx(expected)
     assert each[0] != each[1]
 
 
@@ -166,7 +152,6 @@ def test_metadata_can_be_ignored():
 
 
 def warnings_of(made):
-    """The codes of the warnings."""
     return [warning.code for warning in asked(made, FakeNetwork([evidence_for(CENTER)] * 2)).warnings]
 
 

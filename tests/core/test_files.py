@@ -46,13 +46,6 @@ def test_a_folder_is_not_a_target(tmp_path, monkeypatch, name):
     assert caught.value.code == "is_folder"
 
 
-def test_the_file_has_the_permissions_of_any_other(tmp_path):
-    (tmp_path / "other").touch()
-    with atomic_write(tmp_path / "plate.cube"):
-        pass
-    assert (tmp_path / "plate.cube").stat().st_mode == (tmp_path / "other").stat().st_mode
-
-
 @pytest.mark.skipif(os.name == "nt", reason="needs POSIX permissions")
 def test_the_mask_of_permissions_holds_and_is_left_alone(tmp_path, monkeypatch):
     """It belongs to the process: while it is another, files of other threads have wrong permissions."""

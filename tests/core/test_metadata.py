@@ -1,5 +1,3 @@
-"""The metadata of files; the conclusions are in test_file_origin.py."""
-
 import numpy as np
 import pytest
 
@@ -14,7 +12,6 @@ from crfnet_core.photograph.metadata.jpeg import (
     scaled_table,
 )
 from crfnet_core.photograph.metadata.origin import ADOBE
-from crfnet_core.posterior.factors import family_factors
 from tests.helpers.crafted_files import camera_jpeg, jpeg, with_jpeg_segment
 from tests.helpers.images import write_image
 
@@ -30,7 +27,6 @@ OWN_TABLE = (3,) * 64
 
 
 def read(path):
-    """The metadata of a photograph's file."""
     return read_photo(path).metadata
 
 
@@ -105,26 +101,6 @@ def test_names_are_shown_without_control_characters(tmp_path):
     assert len(metadata.software) == 200
 
 
-def test_damaged_metadata_is_no_error(tmp_path):
-    content = jpeg(tmp_path / "a.jpg", **EXIF)
-    end = content.index(b"\xff\xda")
-    rng = np.random.default_rng(0)
-    read_files = 0
-    for _ in range(100):
-        damaged = bytearray(content)
-        for position in rng.integers(2, end, 8):
-            damaged[position] = rng.integers(256)
-        (tmp_path / "a.jpg").write_bytes(damaged)
-        try:
-            metadata = read(tmp_path / "a.jpg")
-        except PhotoError:
-            continue  # the picture itself was hit
-        " ".join(file_origin(metadata).words).encode()
-        family_factors(file_origin(metadata))
-        read_files += 1
-    assert read_files > 20
-
-
 @pytest.mark.parametrize(
     "content", [b"", b"\xff\xd8", b"\xff\xd8\xff\xdb\0\x05\x00\x01\x02", b"\xff\xd8\xff\xc0\0\x04\x08\0"]
 )
@@ -133,23 +109,13 @@ def test_damaged_segments_leave_fields_empty(content):
     assert (header.luma_table, header.chroma_table) == ((), ())
 
 
-@pytest.mark.parametrize("quality", [1, 25, 50, 75, 95, 100])
-def test_quality_of_the_ijg_library(quality):
-    luma, chroma = scaled_table(ANNEX_K_LUMA, quality), scaled_table(ANNEX_K_CHROMA, quality)
-    assert ijg_quality(luma, chroma) == ijg_quality(luma) == quality
-
-
-def test_other_tables_have_no_quality():
+def test_tables_of_the_ijg_library_have_its_quality_and_others_have_none():
+    for quality in (1, 25, 50, 75, 95, 100):
+        luma, chroma = scaled_table(ANNEX_K_LUMA, quality), scaled_table(ANNEX_K_CHROMA, quality)
+        assert ijg_quality(luma, chroma) == ijg_quality(luma) == quality
     assert ijg_quality(()) is None
     assert ijg_quality(OWN_TABLE) is None
     assert ijg_quality(scaled_table(ANNEX_K_LUMA, 90), scaled_table(ANNEX_K_CHROMA, 80)) is None
-
-
-def test_annex_k():
-    """The first row, the last divisor and the sums of the tables of ITU-T T.81, K.1 and K.2."""
-    assert ANNEX_K_LUMA[:3] == (16, 11, 10)
-    assert (len(ANNEX_K_LUMA), sum(ANNEX_K_LUMA), ANNEX_K_LUMA[-1]) == (64, 3688, 99)
-    assert (len(ANNEX_K_CHROMA), sum(ANNEX_K_CHROMA)) == (64, 5505)
 
 
 @pytest.mark.parametrize("name", ["a.jpg", "a.png", "a.tif", "a.webp", "a.dpx"])

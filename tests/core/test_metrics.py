@@ -3,12 +3,7 @@ import pytest
 
 from crfnet_core.errors import beside_limits
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
-from crfnet_core.response.metrics import (
-    estimation_error,
-    linearization_error,
-    scale_error,
-    shape_error,
-)
+from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 
 STRAIGHT = ResponseCurve.from_samples([0.0, 1.0])
 SQUARE = ResponseCurve.gamma(0.5)
@@ -38,16 +33,11 @@ def test_the_shape_error_of_two_powers():
     assert shape_error(STRAIGHT, SQUARE) == pytest.approx(np.std(np.log2(codes)) / 2, rel=2e-2)
 
 
-def test_the_shape_error_ignores_the_exposure():
+def test_the_shape_error_ignores_the_exposure_which_is_the_scale_error():
     """f(E) = 2 E until it clips: the linear light of codes below white is off by one stop everywhere."""
     clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
     assert estimation_error(STRAIGHT, clipped) > 5
     assert shape_error(STRAIGHT, clipped) < 2e-3
-
-
-def test_the_scale_error_is_the_exposure():
-    """f(E) = 2 E until it clips: its light beside white is a stop below f(E) = E."""
-    clipped = ResponseCurve.from_samples(np.minimum(2 * np.linspace(0, 1, SAMPLES), 1))
     assert scale_error(STRAIGHT, clipped) == pytest.approx(-1, abs=2e-3)
     assert scale_error(clipped, STRAIGHT) == pytest.approx(1, abs=2e-3)
 
@@ -57,5 +47,4 @@ def test_the_scale_error_is_the_exposure():
     [(0.2, "0.20"), (0.1101, "0.1101"), (0.11, "0.11"), (0.10999, "0.10999"), (0.11 + 1e-9, "0.110000")],
 )
 def test_a_number_shows_on_which_side_of_a_limit_it_lies(value, words):
-    """By six decimals at most."""
     assert beside_limits(value, 0.11) == words

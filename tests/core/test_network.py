@@ -38,7 +38,6 @@ def windows(golden):
 
 @pytest.fixture
 def copied(tmp_path):
-    """A model folder that a test may spoil."""
     return shutil.copytree(DEFAULT_MODEL, tmp_path / "model")
 
 
@@ -60,7 +59,6 @@ def edit(folder, **entries):
 
 
 def test_onnxruntime_answers_what_torch_answered(network, windows, golden, tolerance):
-    """Factors are compared relative to the largest."""
     found = network.predict(windows)
     for row, evidence in enumerate(found.windows):
         assert_near(evidence, [golden[name][row] for name in ("locations", "factors", "log_odds")], tolerance.parity)
@@ -130,7 +128,6 @@ def refusal(folder):
 
 
 def write_graph(folder, content):
-    """Write a graph, whose hash is then right."""
     (folder / "model.onnx").write_bytes(content)
     edit(folder, sha256=hashlib.sha256(content).hexdigest())
     return folder

@@ -1,7 +1,4 @@
-"""What crosses to other processes and threads: photographs, curves and estimates."""
-
 import copy
-import json
 import multiprocessing
 import pickle
 from concurrent.futures import ThreadPoolExecutor
@@ -47,10 +44,3 @@ def test_a_curve_is_sent_without_its_tables():
     for again in (pickle.loads(pickle.dumps(curve)), copy.deepcopy(curve)):
         assert again == curve
         assert not again.brightness.flags.writeable
-
-
-def test_an_estimate_is_sent_whole(photo, fixed_model):
-    sent = estimate_response(photo, network=ResponseNetwork.load(fixed_model), options=AnalysisOptions(windows=2))
-    for again in (pickle.loads(pickle.dumps(sent)), copy.deepcopy(sent)):
-        assert again == sent
-        assert json.dumps(again.to_dict()) == json.dumps(sent.to_dict())

@@ -1,5 +1,3 @@
-"""Photo and Photo.from_array: pixels of arrays, of Pillow's and OpenCV's images, and what is refused."""
-
 from pathlib import Path
 
 import numpy as np
@@ -98,24 +96,6 @@ def test_an_image_of_pillow_with_16_bits(byte_order):
     assert code_of(image) == "array_without_bit_depth"
 
 
-@pytest.mark.parametrize(
-    ("mode", "code"),
-    [
-        ("P", "pillow_mode_of_other_colors"),
-        ("1", "pillow_mode_unknown"),
-        ("F", "pillow_mode_of_numbers"),
-    ],
-)
-def test_another_mode_of_pillow_is_refused(mode, code):
-    image = Image.new(mode, (4, 4))
-    assert code_of(image) == code
-
-
-def test_an_order_that_contradicts_pillow_is_refused():
-    image = Image.fromarray(CODES)
-    assert code_of(image, color_order="BGR") == "pillow_order_stated"
-
-
 def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
     path = write_image(tmp_path / "a.png", codes)
     expected = read_photo(path).pixels
@@ -141,17 +121,17 @@ def test_pillow_and_opencv_read_what_read_photo_reads(tmp_path, codes):
         (np.zeros((0, 0, 3), np.uint8), {"color_order": "RGB"}, "array_shape"),
         (np.zeros(5, np.uint8), {}, "array_shape"),
         (CODES.astype(np.uint16), {"color_order": "RGB"}, "array_without_bit_depth"),
-        (
-            CODES.astype(np.uint16) * 5,
-            {"color_order": "RGB", "bit_depth": 10},
-            "array_above_bit_depth",
-        ),
+        (CODES.astype(np.uint16) * 5, {"color_order": "RGB", "bit_depth": 10}, "array_above_bit_depth"),
         (CODES, {"color_order": "RGB", "bit_depth": 10}, "array_bit_depth"),
         (CODES, {"color_order": "RGB", "bit_depth": 4}, "array_bit_depth"),
         (CODES.astype(np.float32), {"color_order": "RGB"}, "array_out_of_range"),
         (EXACT - np.float32(0.1), {"color_order": "RGB"}, "array_out_of_range"),
         (np.full((2, 2), np.nan), {}, "array_holds_nan"),
         (np.full((2, 2), np.inf), {}, "array_out_of_range"),
+        (Image.new("P", (4, 4)), {}, "pillow_mode_of_other_colors"),
+        (Image.new("1", (4, 4)), {}, "pillow_mode_unknown"),
+        (Image.new("F", (4, 4)), {}, "pillow_mode_of_numbers"),
+        (Image.fromarray(CODES), {"color_order": "BGR"}, "pillow_order_stated"),
     ],
 )
 def test_other_arrays_are_refused(array, options, code):
@@ -175,9 +155,3 @@ def test_the_constructor_checks_its_pixels(pixels, code):
     with pytest.raises(PhotoError) as caught:
         Photo(pixels, 8, False, Path("a.png"))
     assert caught.value.code == code
-
-
-def test_a_mapped_array_is_an_array(tmp_path):
-    mapped = np.memmap(tmp_path / "codes", np.uint8, "w+", shape=CODES.shape)
-    mapped[:] = CODES
-    np.testing.assert_array_equal(Photo.from_array(mapped, color_order="RGB").pixels, EXACT)

@@ -1,5 +1,3 @@
-"""read_photo refuses files in one line and with little memory."""
-
 import os
 import struct
 import sys
@@ -28,7 +26,6 @@ def refusal(path):
 
 
 def with_compression(content, scheme):
-    """Return a TIFF that claims a compression."""
     return content.replace(struct.pack("<HHII", 259, 3, 1, 1), struct.pack("<HHII", 259, 3, 1, scheme))
 
 

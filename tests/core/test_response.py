@@ -7,14 +7,11 @@ from hypothesis.extra.numpy import arrays
 from crfnet_core.errors import CurveError
 from crfnet_core.response.curve import BLOCK, LEAST_SLOPE, SAMPLES, ResponseCurve, nearest_increasing
 from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 
 UNIFORM = np.linspace(0, 1, SAMPLES)
 
 weights = arrays(np.float64, 11, elements=st.floats(-8, 8))
-
-
-def is_strict(curve):
-    return curve.brightness[0] == 0 and curve.brightness[-1] == 1 and (np.diff(curve.brightness) > 0).all()
 
 
 def test_gamma_has_the_values_of_a_power_law():
@@ -28,6 +25,12 @@ def test_other_numbers_of_samples_are_resampled():
     np.testing.assert_allclose(curve.brightness, UNIFORM, atol=1e-12)
 
 
+def test_the_transfer_functions_of_standards_are_those_of_colour_science(tolerance):
+    models = pytest.importorskip("colour", reason="colour-science comes with the test extra").models
+    np.testing.assert_allclose(srgb_encode(UNIFORM), models.eotf_inverse_sRGB(UNIFORM), atol=tolerance.exact)
+    np.testing.assert_allclose(rec709_encode(UNIFORM), models.oetf_BT709(UNIFORM), atol=tolerance.exact)
+
+
 @given(weights)
 @settings(max_examples=200, deadline=None)
 def test_random_emor_weights_become_strict_responses_that_invert(drawn):
@@ -37,7 +40,7 @@ def test_random_emor_weights_become_strict_responses_that_invert(drawn):
             ResponseCurve.from_samples(samples)
         return
     curve = ResponseCurve.from_samples(samples)
-    assert is_strict(curve)
+    assert (curve.brightness[0], curve.brightness[-1]) == (0, 1)
     assert (np.diff(curve.brightness) >= 0.5 * LEAST_SLOPE / SAMPLES).all()
     np.testing.assert_allclose(curve.inverse(curve.forward(UNIFORM)), UNIFORM, atol=1e-9)
     codes = np.arange(256) / 255
@@ -69,44 +72,23 @@ def test_nearest_increasing_is_the_projection(samples):
         assert gap[start:].sum() < 1e-6
 
 
-@pytest.mark.parametrize("function", ["forward", "inverse"])
-def test_evaluation_keeps_the_shape_clips_and_leaves_its_argument(function):
-    values = np.array([[-0.5, 0.0], [1.0, 2.0], [0.25, 0.75]])
-    before = values.copy()
-    found = getattr(ResponseCurve.gamma(), function)(values)
-    assert found.shape == (3, 2)
-    assert found[0].tolist() == [0, 0]
-    assert found[1].tolist() == [1, 1]
-    np.testing.assert_array_equal(values, before)
-
-
 @pytest.mark.parametrize(
-    ("samples", "code"),
+    ("make", "argument", "code"),
     [
-        ([0.0], "curve_samples"),
-        ([0.0, np.nan, 1.0], "curve_samples"),
-        ([1.0, 0.0], "curve_dark"),
-        ([0.5, 0.5], "curve_dark"),
-        ([[0.0, 1.0]], "curve_samples"),
+        (ResponseCurve.from_samples, [0.0], "curve_samples"),
+        (ResponseCurve.from_samples, [0.0, np.nan, 1.0], "curve_samples"),
+        (ResponseCurve.from_samples, [[0.0, 1.0]], "curve_samples"),
+        (ResponseCurve.from_samples, [1.0, 0.0], "curve_dark"),
+        (ResponseCurve.from_samples, [0.5, 0.5], "curve_dark"),
+        (ResponseCurve, np.zeros(SAMPLES), "curve_not_strict"),
+        (ResponseCurve, np.linspace(0, 1, 10), "curve_shape"),
+        (ResponseCurve.gamma, 0, "curve_exponent"),
     ],
 )
-def test_other_samples_are_refused(samples, code):
+def test_what_makes_no_curve_is_refused(make, argument, code):
     with pytest.raises(CurveError) as caught:
-        ResponseCurve.from_samples(samples)
+        make(argument)
     assert caught.value.code == code
-
-
-def test_the_constructor_only_takes_strict_samples():
-    for samples, code in ((np.zeros(SAMPLES), "curve_not_strict"), (np.linspace(0, 1, 10), "curve_shape")):
-        with pytest.raises(CurveError) as caught:
-            ResponseCurve(samples)
-        assert caught.value.code == code
-
-
-def test_a_gamma_is_positive():
-    with pytest.raises(CurveError) as caught:
-        ResponseCurve.gamma(0)
-    assert caught.value.code == "curve_exponent"
 
 
 def steep():

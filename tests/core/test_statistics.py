@@ -10,13 +10,11 @@ LINES = 114
 
 
 def parts(window):
-    """Return the parts of a window's statistics by name."""
     return unpack(window_statistics(window))
 
 
 @pytest.fixture
 def smooth():
-    """Smooth light with texture, in [0, 1]."""
     rng, position = np.random.default_rng(0), np.linspace(0, 9, 227)
     light = np.sin(position)[:, None] + np.cos(2 * position)[None, :] + 0.1 * rng.standard_normal((227, 227))
     light = (light - light.min()) / np.ptp(light)
@@ -36,10 +34,7 @@ def test_the_vector_holds_the_parts_of_every_cue(smooth):
 
 
 def test_the_statistics_of_known_windows_have_not_changed(root):
-    """If they are meant to change: ``python -m tests.data.make_golden_statistics``, and train the network anew.
-
-    A new cue comes after them and changes none.
-    """
+    """`tests.data.make_golden_statistics` changes them; the network is then trained anew. New cues come last."""
     with np.load(root / "tests" / "data" / "golden_statistics.npz") as golden:
         for window, expected in zip(golden["windows"] / np.float32(255), golden["statistics"], strict=True):
             found = window_statistics(window)[: len(expected)]

@@ -2,14 +2,7 @@ import numpy as np
 import pytest
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.statistics.windows import (
-    WINDOW_SIZE,
-    Window,
-    cut_windows,
-    filled_bins,
-    sampling_step,
-    select_windows,
-)
+from crfnet_core.statistics.windows import WINDOW_SIZE, Window, cut_windows, filled_bins, sampling_step, select_windows
 
 
 def noise(height, width, *, codes=256, seed=0):

@@ -1,5 +1,3 @@
-"""docs/API.md: its names are there, its signatures match the code, and its examples run."""
-
 import dataclasses
 import importlib
 import inspect
@@ -69,7 +67,6 @@ def test_it_names_everything_that_is_exported(page):
 
 
 def test_its_examples_run(page, plate, tmp_path, monkeypatch):
-    """One after the other, in one folder."""
     shutil.copyfile(plate, tmp_path / "plate01.jpg")
     monkeypatch.chdir(tmp_path)
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path / "data"))

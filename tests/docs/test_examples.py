@@ -1,31 +1,20 @@
-"""The example notebook runs, from its first cell to its last, and holds no outputs."""
-
 import json
 import shutil
 
 import numpy as np
-import pytest
 
 from crfnet.luts.files import read_lut
 
 
-@pytest.fixture(scope="module")
-def notebook(root):
-    return json.loads((root / "docs" / "examples" / "pipeline.ipynb").read_text(encoding="utf-8"))
-
-
-def code_cells(notebook):
-    return [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]
-
-
-def test_it_runs_where_it_lies(notebook, plate, tmp_path, monkeypatch, capsys, tolerance):
+def test_the_notebook_runs_where_it_lies_and_holds_no_outputs(root, plate, tmp_path, monkeypatch, capsys, tolerance):
     """In a copy of its folder, so that its files stay there."""
     (tmp_path / "docs" / "examples").mkdir(parents=True)
     (tmp_path / "tests" / "data").mkdir(parents=True)
     shutil.copy(plate, tmp_path / "tests" / "data")
     monkeypatch.chdir(tmp_path / "docs" / "examples")
     names: dict[str, object] = {}
-    for cell in code_cells(notebook):
+    notebook = json.loads((root / "docs" / "examples" / "pipeline.ipynb").read_text(encoding="utf-8"))
+    for cell in [cell for cell in notebook["cells"] if cell["cell_type"] == "code"]:
         assert not cell["outputs"]
         exec(compile("".join(cell["source"]), cell["id"], "exec"), names)
     assert names["linear"].shape == (378, 672, 3)

@@ -39,16 +39,12 @@ def nodes_of(path):
     return nodes
 
 
-@pytest.fixture(params=["CameraResponse.gizmo", "plate01.nk"])
-def file(root, request):
-    return root / "docs" / "nuke" / request.param
-
-
-def test_tcl_reads_the_files(file):
-    nodes = nodes_of(file)
+@pytest.mark.parametrize("name", ["CameraResponse.gizmo", "plate01.nk"])
+def test_tcl_reads_the_files(root, name):
+    nodes = nodes_of(root / "docs" / "nuke" / name)
     assert len(nodes) > 4
-    for name, knobs in nodes:
-        assert {knob for knob, _ in knobs} <= KNOBS[name]
+    for kind, knobs in nodes:
+        assert {knob for knob, _ in knobs} <= KNOBS[kind]
     names = [value for _, knobs in nodes for knob, value in knobs if knob == "name"]
     assert len(names) == len(set(names))
 

@@ -1,5 +1,3 @@
-"""The documents name functions and equations that there are."""
-
 import ast
 import importlib
 import math
@@ -96,7 +94,6 @@ def test_the_equations_are_numbered_without_a_gap(root, prefix):
 
 
 def test_every_equation_that_is_cited_is_there(root):
-    """In the documents, and in the docstrings and comments of the code."""
     code = [path for package in ("crfnet_core", "ocio", "training") for path in (root / package).rglob("*.py")]
     sources = [*code, *documents(root)]
     cited = {

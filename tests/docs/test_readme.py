@@ -1,5 +1,3 @@
-"""The README is short, begins with the installation, its snippet runs, and its figures match the model card."""
-
 import json
 import re
 import shutil
@@ -36,7 +34,6 @@ def test_its_snippet_runs(readme, plate, tmp_path, monkeypatch):
 
 
 def test_its_figures_are_those_of_the_model(readme):
-    """One row, and one sentence with the same figures as errors of the curve."""
     accuracy = json.loads((DEFAULT_MODEL / "model.json").read_text(encoding="utf-8"))["accuracy"]["P4 both"]
     shape, curve = (
         [accuracy[f"{name} {entry}"] for entry in ("mean", "mean of the other bodies", "gamma 2.2")]

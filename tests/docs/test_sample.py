@@ -1,7 +1,5 @@
-"""The sample and the pictures in docs/ are what the code makes."""
-
-import importlib.util
 import re
+import runpy
 
 import numpy as np
 import pytest
@@ -23,15 +21,8 @@ LARGEST_PICTURE = 1_200_000
 
 @pytest.fixture(scope="module")
 def script(root):
-    """Load a script of docs/ by its name."""
-
-    def load(name):
-        spec = importlib.util.spec_from_file_location(name, root / "docs" / f"{name}.py")
-        module = importlib.util.module_from_spec(spec)
-        spec.loader.exec_module(module)
-        return module
-
-    return load
+    """The names of a script of docs/, by its name."""
+    return lambda name: runpy.run_path(str(root / "docs" / f"{name}.py"))
 
 
 def text_and_numbers(path):
@@ -44,7 +35,7 @@ def test_the_sample_is_what_the_command_writes(root, script, tmp_path):
     """Byte for byte the config; LUTs and figures but for the last digits; the picture by its size."""
     image = pytest.importorskip("matplotlib.image")
     sample = root / "docs" / "sample"
-    script("make_sample").make_sample(tmp_path)
+    script("make_sample")["make_sample"](tmp_path)
     assert {path.name for path in tmp_path.iterdir()} == {path.name for path in sample.iterdir()} - {"README.md"}
     assert (tmp_path / "config.ocio").read_bytes() == (sample / "config.ocio").read_bytes()
     for name in (*(f"plate{suffix}" for suffix in WRITERS), "plate.json"):
@@ -56,14 +47,14 @@ def test_the_sample_is_what_the_command_writes(root, script, tmp_path):
 
 def test_the_picture_is_drawn(root, script, tmp_path):
     pytest.importorskip("matplotlib")
-    script("make_picture").draw_picture(tmp_path / "picture.png")
+    script("make_picture")["draw_picture"](tmp_path / "picture.png")
     assert all(
         20_000 < (folder / "picture.png").stat().st_size < LARGEST_PICTURE for folder in (tmp_path, root / "docs")
     )
 
 
 def test_the_defocus_keeps_flat_light_and_spreads_a_point_over_its_disk(script):
-    blurred = script("make_picture").disk_blurred
+    blurred = script("make_picture")["disk_blurred"]
     np.testing.assert_allclose(blurred(np.full((5, 6, 3), 0.3), 2.0), 0.3)
     point = np.zeros((9, 9, 1))
     point[4, 4] = 1

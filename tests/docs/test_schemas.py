@@ -1,5 +1,3 @@
-"""The JSON schemas in docs/ describe every document that the command writes and prints, and no other."""
-
 import copy
 import dataclasses
 import json
@@ -125,20 +123,20 @@ def test_each(each):
     assert [record(line) for line in lines] == [[], []]
 
 
-@pytest.mark.parametrize("change", [{"verdict": "splendid"}, {"schema_version": 2}, {"families": {"x": 1}}, {"new": 1}])
-def test_a_wrong_entry_of_an_estimate_is_found(estimate, change):
+WRONG = {
+    "estimate": ({"verdict": "splendid"}, {"schema_version": 2}, {"families": {"x": 1}}, {"new": 1}),
+    "calibrate": ({"kind": "estimate"}, {"weights": []}, {"residual_codes": -1}, {"comparison": {}}),
+    "each": ({"verdict": "splendid"}, {"exposure": "much"}, {"primaries": {}}, {"new": 1}),
+}
+
+
+@pytest.mark.parametrize(("name", "change"), [(name, change) for name, changes in WRONG.items() for change in changes])
+def test_a_wrong_entry_is_found(estimate, calibration, each, name, change):
     """Otherwise the tests above could not fail."""
-    assert PROBLEMS["estimate"](estimate | change)
-
-
-@pytest.mark.parametrize("change", [{"kind": "estimate"}, {"weights": []}, {"residual_codes": -1}, {"comparison": {}}])
-def test_a_wrong_entry_of_a_calibration_is_found(calibration, change):
-    assert PROBLEMS["calibrate"](calibration[0] | change)
-
-
-@pytest.mark.parametrize("change", [{"verdict": "splendid"}, {"exposure": "much"}, {"primaries": {}}, {"new": 1}])
-def test_a_wrong_entry_of_a_record_is_found(each, change):
-    assert PROBLEMS["each"](each[0] | {"estimates": [each[0]["estimates"][0] | change]})
+    if name == "each":
+        change = {"estimates": [each[0]["estimates"][0] | change]}
+    document = {"estimate": estimate, "calibrate": calibration[0], "each": each[0]}[name]
+    assert PROBLEMS[name](document | change)
 
 
 def test_the_schemas_name_the_code_s_own_choices():

@@ -1,5 +1,3 @@
-"""docs/USAGE.md and docs/CAMERAS.md: their commands run, in order, and do what the text says."""
-
 import json
 import re
 import shutil
@@ -28,7 +26,6 @@ def header(path):
 
 @pytest.fixture
 def folder(root, plate, true_response, tmp_path):
-    """The inputs that the pages name."""
     for name in ("day1/a", "day1/b", "photographs/plate01", "photographs/plate02"):
         (tmp_path / name).parent.mkdir(exist_ok=True)
         shutil.copy(plate, tmp_path / f"{name}.jpg")

@@ -20,7 +20,7 @@ from crfnet_core.errors import CRFNetError
 
 #: The first seed; seconds of each test, and of a single case.
 FIRST_SEED = int(os.environ.get("CRFNET_FUZZ_SEED") or secrets.randbelow(2**32))
-SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "4.5"))
+SECONDS = float(os.environ.get("CRFNET_FUZZ_SECONDS", "2"))
 MOST_SECONDS = 20.0
 
 #: Bytes of memory beyond those at the start.

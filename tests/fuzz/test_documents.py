@@ -1,5 +1,3 @@
-"""JSON documents, the one of a model among them: whatever is in them, the answer is one line."""
-
 import json
 import shutil
 
@@ -45,7 +43,6 @@ def test_damaged_descriptions_of_models_are_refused(fuzz, refused, fixed_model, 
 
 @pytest.fixture(scope="module")
 def document(root):
-    """The document of an estimate, as the sample in docs/ has it."""
     return json.loads((root / "docs" / "sample" / "plate.json").read_text())
 
 

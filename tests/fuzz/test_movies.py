@@ -1,5 +1,3 @@
-"""Movies: whatever is damaged, the frames are read or refused in one line."""
-
 import pytest
 
 from crfnet.movies.frames import MovieFrames
@@ -18,11 +16,8 @@ SEEDS = {
 
 @pytest.fixture(scope="module")
 def seeds(tmp_path_factory):
-    """The content of a small movie of each kind, by name."""
-    folder, metadata = (
-        tmp_path_factory.mktemp("movies"),
-        {"title": "Voigtlander in June", "make": "Canon", "comment": "x"},
-    )
+    folder = tmp_path_factory.mktemp("movies")
+    metadata = {"title": "Voigtlander in June", "make": "Canon", "comment": "x"}
     paths = [
         write_movie(folder / name, 4, codec=codec, form=form, size=(64, 48), metadata=metadata)
         for name, (codec, form) in SEEDS.items()

@@ -1,20 +1,18 @@
 """ICC profiles and EXIF data made by hand, and pictures that carry them."""
 
-from __future__ import annotations
-
 import struct
-from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
 from PIL import ExifTags, Image
 
 from crfnet_core.colorimetry import D50, Primaries, adaptation, xyz_of
 from tests.helpers.images import write_image
 
+#: Primaries of a display that is none of the named ones, with the white of an old lamp.
+OWN = Primaries("own", (0.66, 0.34), (0.24, 0.67), (0.145, 0.055), (0.333, 0.342))
 
-def matrix_profile(primaries: Primaries, *, version: int = 4, states_adaptation: bool = True, **more: bytes) -> bytes:
+
+def matrix_profile(primaries, *, version=4, states_adaptation=True, **more):
     """Return an ICC profile of a matrix and gamma 2.2; `more` are further tags, or others in place of those.
 
     Version 4 says by the tag `chad` how it was adapted to D50; version 2 without it by the media white `wtpt`.
@@ -32,7 +30,7 @@ def matrix_profile(primaries: Primaries, *, version: int = 4, states_adaptation:
     return profile(tags, version=version)
 
 
-def profile(tags: dict[str, bytes], *, version: int = 4, color: bytes = b"RGB ", pcs: bytes = b"XYZ ") -> bytes:
+def profile(tags, *, version=4, color=b"RGB ", pcs=b"XYZ "):
     """Return an ICC profile of these tagged elements."""
     table, content = struct.pack(">I", len(tags)), b""
     start = 128 + 4 + 12 * len(tags)
@@ -44,13 +42,13 @@ def profile(tags: dict[str, bytes], *, version: int = 4, color: bytes = b"RGB ",
     return head.ljust(128, b"\0") + table + content
 
 
-def numbers(kind: bytes, values: ArrayLike) -> bytes:
+def numbers(kind, values):
     """Return an element of s15Fixed16 numbers."""
     fixed = np.rint(np.ravel(values) * 65536).astype(int).tolist()
     return kind + bytes(4) + struct.pack(f">{len(fixed)}i", *fixed)
 
 
-def write_tagged(path: Path, codes: NDArray[Any], icc: bytes, **attributes: Any) -> Path:
+def write_tagged(path, codes, icc, **attributes):
     """Write code values with an ICC profile; JPEG without chroma subsampling."""
     import OpenImageIO as oiio
 
@@ -60,7 +58,7 @@ def write_tagged(path: Path, codes: NDArray[Any], icc: bytes, **attributes: Any)
     )
 
 
-def exif_segment(index: str) -> bytes:
+def exif_segment(index):
     """Return an EXIF segment of JPEG with an uncalibrated ColorSpace and an InteroperabilityIndex."""
     exif = Image.Exif()
     exif.get_ifd(ExifTags.IFD.Exif).update({0xA001: 65535, 0xA005: {1: index}})

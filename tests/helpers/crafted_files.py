@@ -1,40 +1,17 @@
 """PNG, TIFF and JPEG files made by hand, whose headers say what no image writer would."""
 
-from __future__ import annotations
-
 import struct
 import zlib
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 
 from tests.helpers.images import write_image
 
 
-def tiff(
-    width: int,
-    height: int,
-    *,
-    samples: int = 3,
-    photometric: int = 2,
-    bits: int = 8,
-    kind: int = 1,
-    extra: tuple[tuple[int, int, int], ...] = (),
-    content: bytes = b"",
-) -> bytes:
+def tiff(width, height, *, samples=3, photometric=2, bits=8, kind=1, extra=(), content=b""):
     """Return an uncompressed little-endian TIFF whose header may lie about its size.
 
-    Parameters
-    ----------
-    width, height : int
-        The size that the header claims.
-    samples, photometric, bits, kind : int
-        Values of the tags SamplesPerPixel, PhotometricInterpretation, BitsPerSample and SampleFormat.
-    extra : tuple of (tag, type, value)
-        Further tags.
-    content : bytes
-        The samples.
+    `kind` is SampleFormat, `extra` are further tags (tag, type, value), and `content` holds the samples.
     """
     tags = [
         (256, 4, width),
@@ -54,24 +31,19 @@ def tiff(
     return b"II*\0" + struct.pack("<I", start) + content + struct.pack("<H", len(tags)) + directory + bytes(4)
 
 
-def png(width: int, height: int, rows: bytes = b"\0", *, chunks: bytes = b"") -> bytes:
+def png(width, height, rows=b"\0", *, chunks=b""):
     """Return an RGB PNG of 8 bits whose header may lie about its size; `rows` each begin with their filter, 0."""
     header = struct.pack(">IIBBBBB", width, height, 8, 2, 0, 0, 0)
-    parts = (
-        png_chunk(b"IHDR", header),
-        chunks,
-        png_chunk(b"IDAT", zlib.compress(rows)),
-        png_chunk(b"IEND", b""),
-    )
+    parts = (png_chunk(b"IHDR", header), chunks, png_chunk(b"IDAT", zlib.compress(rows)), png_chunk(b"IEND", b""))
     return b"\x89PNG\r\n\x1a\n" + b"".join(parts)
 
 
-def png_chunk(name: bytes, content: bytes) -> bytes:
+def png_chunk(name, content):
     """Return a chunk of a PNG: its length, name, content and checksum."""
     return struct.pack(">I", len(content)) + name + content + struct.pack(">I", zlib.crc32(name + content))
 
 
-def jpeg(path: Path, **attributes: Any) -> bytes:
+def jpeg(path, **attributes):
     """Write a JPEG of 120 x 160 pixels, smooth colour with some noise, and return its bytes; see `write_image`."""
     height, width = 120, 160
     rows, columns = np.mgrid[:height, :width]
@@ -80,13 +52,13 @@ def jpeg(path: Path, **attributes: Any) -> bytes:
     return write_image(path, (smooth ^ noise).astype(np.uint8), **attributes).read_bytes()
 
 
-def with_jpeg_size(content: bytes, width: int, height: int) -> bytes:
+def with_jpeg_size(content, width, height):
     """Return a JPEG whose frame header claims another size."""
     start = next(at for marker in (b"\xff\xc0", b"\xff\xc2") if (at := content.find(marker)) > 0)
     return content[: start + 5] + struct.pack(">HH", height, width) + content[start + 9 :]
 
 
-def camera_jpeg(path: Path, **attributes: Any) -> bytes:
+def camera_jpeg(path, **attributes):
     """Write a JPEG as cameras do, EXIF first and with quantization tables of its own, and return its bytes.
 
     The picture of `jpeg` is written and its segments changed: no JFIF, and a luma table that the IJG library never has.
@@ -100,6 +72,6 @@ def camera_jpeg(path: Path, **attributes: Any) -> bytes:
     return path.read_bytes()
 
 
-def with_jpeg_segment(content: bytes, marker: int, payload: bytes) -> bytes:
+def with_jpeg_segment(content, marker, payload):
     """Return a JPEG with one more segment, in front."""
     return content[:2] + bytes([0xFF, marker]) + struct.pack(">H", len(payload) + 2) + payload + content[2:]

@@ -1,15 +1,11 @@
 """What lies in a folder."""
 
-from __future__ import annotations
 
-from pathlib import Path
-
-
-def listed(folder: Path) -> list[str]:
+def listed(folder):
     """Return the names in a folder, sorted."""
     return sorted(path.name for path in folder.iterdir())
 
 
-def tree(folder: Path) -> dict[str, bytes]:
+def tree(folder):
     """Return the bytes of every file below a folder, by its path relative to the folder with slashes."""
     return {path.relative_to(folder).as_posix(): path.read_bytes() for path in folder.rglob("*") if path.is_file()}

@@ -1,48 +1,19 @@
 """Write and read image files with OpenImageIO, which is imported at first use: in Blender its own has to come first."""
 
-from __future__ import annotations
-
 from pathlib import Path
-from typing import Any
 
 import numpy as np
-from numpy.typing import NDArray
 
 #: OpenImageIO's names of the types that are not numpy's.
 SAMPLE_TYPES = {"float16": "half", "float32": "float", "float64": "double"}
 
 
-def write_image(
-    path: Path,
-    samples: NDArray[Any],
-    *more: NDArray[Any],
-    names: tuple[str, ...] | str = (),
-    depth: str = "",
-    origin: tuple[int, int] = (0, 0),
-    display: tuple[int, int, int, int] | None = None,
-    **attributes: Any,
-) -> Path:
-    """Write `samples` as they are, in the format that the suffix names, and return the path.
+def write_image(path, samples, *more, names=(), depth="", origin=(0, 0), display=None, **attributes):
+    """Write samples (H, W, C) as they are, in the format that the suffix names, and return the path.
 
-    Parameters
-    ----------
-    path : Path
-        The file; an existing one is replaced.
-    samples : ndarray, shape (H, W, C)
-        Code values or floats.
-    *more : ndarray, shape (H, W, C)
-        Further images for the same file, where its format can hold several.
-    names : tuple of str or str, optional
-        Names of the channels, such as "RGB" or ("X", "Z"); by default R, G, B and A, or Y.
-    depth : str, optional
-        OpenImageIO's name of the type in the file, such as "half"; by default the samples' type.
-    origin : tuple of int
-        Column and row at which the data window begins.
-    display : tuple of int, optional
-        The display window: its first column and row, its width and its height; by default the data window.
-    **attributes
-        What stands in the header. Two underscores in a name mean a colon, as in ``oiio__BitsPerSample=10``; a tuple is
-        OpenImageIO's type and the value.
+    `more` are further images of the file, `names` its channels, such as "RGB" or ("X", "Z"), `depth` OpenImageIO's name
+    of their type, `origin` the first column and row of the data window, and `display` those of the display window with
+    its width and height. In the name of an attribute two underscores mean a colon; a tuple is its type and its value.
     """
     import OpenImageIO as oiio
 
@@ -66,7 +37,7 @@ def write_image(
     return path
 
 
-def read_image(path: Path, *, kind: str = "float") -> NDArray[Any]:
+def read_image(path, *, kind="float"):
     """Return the samples of an image, shape (H, W, C), as OpenImageIO converts them to `kind`, such as "uint8"."""
     import OpenImageIO as oiio
 

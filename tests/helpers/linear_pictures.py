@@ -1,9 +1,9 @@
 """Scene-linear pictures for tests: camera raw as a camera would write it, OpenEXR and Radiance HDR."""
 
 import csv
-import struct
 
 import numpy as np
+from PIL.TiffImagePlugin import ImageFileDirectory_v2
 
 from tests.helpers.images import write_image
 
@@ -14,8 +14,7 @@ CAMERAS = {
     "two": np.array([[0.92, -0.30, -0.10], [-0.38, 1.18, 0.20], [-0.05, 0.15, 0.55]]),
 }
 
-#: TIFF's field types: struct code and the size of one value.
-BYTE, ASCII, SHORT, LONG, RATIONAL, SRATIONAL = (1, "B"), (2, "s"), (3, "H"), (4, "I"), (5, "I"), (10, "i")
+BYTE, ASCII, SHORT, LONG, RATIONAL, SRATIONAL = 1, 2, 3, 4, 5, 10  # TIFF's field types
 
 SWATCH = 32  # sensor pixels along a side
 
@@ -53,60 +52,38 @@ def write_dng(path, scene, *, camera="one", pattern="RGGB", light=(1, 1, 1), bla
         own = np.s_[index // 2 :: 2, index % 2 :: 2]
         mosaic[own] = np.rint(black + (white - black) * sensed[(*own, "RGB".index(name))])
     height, width = mosaic.shape
-    write_tiff(
-        path,
-        mosaic.tobytes(),
-        {
-            256: (LONG, [width]),
-            257: (LONG, [height]),
-            258: (SHORT, [16]),
-            259: (SHORT, [1]),
-            262: (SHORT, [32803]),  # colour filter array
-            271: (ASCII, b"Formula\0"),
-            272: (ASCII, camera.encode() + b"\0"),
-            274: (SHORT, [orientation]),
-            277: (SHORT, [1]),
-            278: (LONG, [height]),
-            33421: (SHORT, [2, 2]),
-            33422: (BYTE, ["RGB".index(name) for name in pattern]),
-            50706: (BYTE, [1, 4, 0, 0]),
-            50708: (ASCII, b"Formula " + camera.encode() + b"\0"),
-            50714: (SHORT, [black]),
-            50717: (SHORT, [white]),
-            50721: (SRATIONAL, fractions(CAMERAS[camera])),  # XYZ to camera
-            50728: (RATIONAL, fractions(neutral / neutral.max())),  # as shot
-            50778: (SHORT, [21]),  # D65
-        },
-    )
+    fields = {
+        254: (LONG, 0),
+        256: (LONG, width),
+        257: (LONG, height),
+        258: (SHORT, 16),
+        259: (SHORT, 1),
+        262: (SHORT, 32803),  # color filter array
+        271: (ASCII, "Formula"),
+        272: (ASCII, camera),
+        273: (LONG, 0),  # behind the directory
+        274: (SHORT, orientation),
+        277: (SHORT, 1),
+        278: (LONG, height),
+        279: (LONG, mosaic.nbytes),
+        33421: (SHORT, (2, 2)),
+        33422: (BYTE, bytes("RGB".index(name) for name in pattern)),
+        50706: (BYTE, bytes([1, 4, 0, 0])),
+        50708: (ASCII, f"Formula {camera}"),
+        50714: (SHORT, black),
+        50717: (SHORT, white),
+        50721: (SRATIONAL, tuple(CAMERAS[camera].ravel().tolist())),  # XYZ to camera
+        50728: (RATIONAL, tuple((neutral / neutral.max()).tolist())),  # as shot
+        50778: (SHORT, 21),  # D65
+    }
+    directory = ImageFileDirectory_v2()
+    for tag, (kind, value) in fields.items():
+        directory.tagtype[tag] = kind
+        directory[tag] = value
+    with path.open("wb") as file:
+        directory.save(file)
+        file.write(mosaic.tobytes())
     return path
-
-
-def write_tiff(path, strip, fields):
-    """Write a little-endian TIFF file of one directory and one strip."""
-    fields = {254: (LONG, [0]), **fields, 273: (LONG, [0]), 279: (LONG, [len(strip)])}
-    offset = 8 + 2 + 12 * len(fields) + 4
-    entries, values = b"", b""
-    for tag, ((kind, code), numbers) in sorted(fields.items()):
-        if tag == 273:
-            numbers = [offset + sum((len(packed(*field)) + 1) // 2 * 2 for field in fields.values())]
-        content = packed((kind, code), numbers)
-        count = len(content) // {1: 1, 2: 1, 3: 2, 4: 4, 5: 8, 10: 8}[kind]
-        value = content.ljust(4, b"\0") if len(content) <= 4 else struct.pack("<I", offset + len(values))
-        entries += struct.pack("<HHI", tag, kind, count) + value
-        values += content.ljust((len(content) + 1) // 2 * 2, b"\0")
-    directory = struct.pack("<H", len(fields)) + entries + bytes(4)
-    path.write_bytes(b"II*\0" + struct.pack("<I", 8) + directory + values + strip)
-
-
-def fractions(numbers):
-    """Return numerators and denominators, shape (N, 2)."""
-    return np.stack([np.rint(np.ravel(numbers) * 10**6), np.full(np.size(numbers), 10**6)], axis=1)
-
-
-def packed(kind, numbers):
-    """Return the bytes of a TIFF field's values."""
-    flat = [int(number) for number in np.ravel(numbers)] if kind != ASCII else []
-    return numbers if kind == ASCII else struct.pack(f"<{len(flat)}{kind[1]}", *flat)
 
 
 def write_float(path, pixels, depth="float", names=""):

@@ -1,26 +1,22 @@
 """Folders as `crfnet estimate` writes them, small, without an estimate; and configs that such plates were added to."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import PyOpenColorIO as OCIO
 
-from crfnet.configs.derived import DerivedConfig, write_derived_config
+from crfnet.configs.derived import write_derived_config
 from crfnet.configs.files import write_config
 from crfnet.configs.looks import read_looks
 from crfnet.configs.plate_color_space import PlateColorSpace
 from crfnet.configs.portable import portable_config
 from crfnet.configs.sources import find_config
 from crfnet.luts.files import write_lut
-from crfnet.luts.lut1d import Lut1D, inverse_response_lut
+from crfnet.luts.lut1d import inverse_response_lut
 from crfnet.output_files import OutputFiles
-from crfnet_core.colorimetry import REC709, Primaries
+from crfnet_core.colorimetry import REC709
 from crfnet_core.response.curve import ResponseCurve
 from tests.helpers.configs import rule_names
 from tests.helpers.images import write_image
@@ -42,14 +38,8 @@ CORNERS = ("red", "green", "blue", "white")
 
 
 def write_look(
-    folder: Path,
-    photographs: Sequence[str] = ("plate01.jpg",),
-    *,
-    lut: Lut1D = LUT,
-    exposure: float = 0.0,
-    interop_id: str = "lin_rec709_scene",
-    primaries: Primaries = REC709,
-) -> Path:
+    folder, photographs=("plate01.jpg",), *, lut=LUT, exposure=0.0, interop_id="lin_rec709_scene", primaries=REC709
+):
     """Write LUT, document, config and linear plates of photographs with these names, and return the folder."""
     folder.mkdir(parents=True, exist_ok=True)
     files = OutputFiles.named(folder, [Path(name) for name in photographs])
@@ -65,28 +55,24 @@ def write_look(
         "exposure": {"stops": exposure},
         "output_space": {"name": interop_id, "interop_id": interop_id},
         "primaries": {"name": primaries.name, **{corner: getattr(primaries, corner) for corner in CORNERS}},
-        "files": {
-            "spi1d": files.lut.name,
-            "config": files.config.name,
-            "linear": [path.name for path in files.linear],
-        },
+        "files": {"spi1d": files.lut.name, "config": files.config.name, "linear": [path.name for path in files.linear]},
     }
     files.report.write_text(json.dumps(document), encoding="utf-8")
     return folder
 
 
-def add(base: str | Path, out: Path, *looks: Path, overwrite: bool = False) -> DerivedConfig:
+def add(base, out, *looks, overwrite=False):
     """Write a config with looks added to a base."""
     read = [look for path in looks for look in read_looks(path)]
     return write_derived_config(find_config(str(base)), out, read, overwrite=overwrite)
 
 
-def space_of(config: OCIO.Config, path: str) -> str:
+def space_of(config, path):
     """Return the color space that a config's rules give a file."""
     return str(config.getColorSpaceFromFilepath(path)[0])
 
 
-def all_names(config: OCIO.Config) -> dict[str, Any]:
+def all_names(config):
     """Return everything of a config that has a name, but plates and their rules."""
     every = (OCIO.SEARCH_REFERENCE_SPACE_ALL, OCIO.COLORSPACE_ALL)
     return {

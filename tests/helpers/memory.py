@@ -1,7 +1,5 @@
 """The memory that reading takes, in a process of its own."""
 
-from __future__ import annotations
-
 import subprocess
 import sys
 from pathlib import Path
@@ -20,7 +18,7 @@ print(resource.getrusage(resource.RUSAGE_SELF).ru_maxrss - before, any(is_read))
 """
 
 
-def memory_of_reading(*paths: Path) -> tuple[int, bool]:
+def memory_of_reading(*paths):
     """Return the kB beyond what the imports take, as Linux reports them, and whether any of the files was read."""
     root = Path(__file__).parents[2]
     run = subprocess.run(

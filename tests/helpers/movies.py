@@ -1,22 +1,16 @@
 """Tiny movies that PyAV writes."""
 
-from __future__ import annotations
-
 import shutil
 import subprocess
-from collections.abc import Iterator, Mapping
-from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
-from numpy.typing import NDArray
 
 #: Options of an encoder that loses nothing.
 LOSSLESS = {"qp": "0"}
 
 
-def run_ffmpeg(*arguments: object) -> bytes:
+def run_ffmpeg(*arguments):
     """Run FFmpeg and return what it writes to its standard output; skip the test where it, or an encoder, is absent."""
     if shutil.which("ffmpeg") is None:
         pytest.skip("needs ffmpeg")
@@ -29,7 +23,7 @@ def run_ffmpeg(*arguments: object) -> bytes:
     return done.stdout
 
 
-def pictures(count: int, size: tuple[int, int] = (128, 96)) -> Iterator[NDArray[np.uint8]]:
+def pictures(count, size=(128, 96)):
     """Yield RGB pictures, shape (H, W, 3): a texture that moves, and frame n has a bar of code 8 n at its top."""
     width, height = size
     x, y = np.meshgrid(np.arange(width), np.arange(height))
@@ -41,21 +35,21 @@ def pictures(count: int, size: tuple[int, int] = (128, 96)) -> Iterator[NDArray[
 
 
 def write_movie(
-    path: Path,
-    count: int = 6,
+    path,
+    count=6,
     *,
-    codec: str = "libx264",
-    form: str = "yuv420p",
-    size: tuple[int, int] = (128, 96),
-    options: Mapping[str, str] | None = None,
-    tags: Mapping[str, int] | None = None,
-    metadata: Mapping[str, str] | None = None,
-    images: Any = None,
-    times: Any = None,
-    is_interlaced: bool = False,
-    muxer: Mapping[str, str] | None = None,
-    **stream_attributes: Any,
-) -> Path:
+    codec="libx264",
+    form="yuv420p",
+    size=(128, 96),
+    options=None,
+    tags=None,
+    metadata=None,
+    images=None,
+    times=None,
+    is_interlaced=False,
+    muxer=None,
+    **stream_attributes,
+):
     """Write a movie of 24 frames per second and return its path, whose suffix names the container.
 
     `tags` are attributes of the codec's context: "color_range", "colorspace", "color_trc", "color_primaries".
@@ -71,7 +65,7 @@ def write_movie(
     with av.open(str(path), "w", options=dict(muxer or {})) as container:
         container.metadata.update(metadata or {})
         stream = container.add_stream(codec, rate=24, options=options)
-        stream.width, stream.height, stream.pix_fmt = *size, form
+        (stream.width, stream.height), stream.pix_fmt = size, form
         for name, value in {**(tags or {}), **({"flags": 1 << 18 | 1 << 29} if is_interlaced else {})}.items():
             setattr(stream.codec_context, name, value)
         for name, value in stream_attributes.items():

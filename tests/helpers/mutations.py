@@ -1,13 +1,7 @@
 """Damage files by chance: bytes, lines, words and the values of JSON documents; a seed gives the same damage again."""
 
-from __future__ import annotations
-
 import re
 import struct
-from collections.abc import Callable, Sequence
-from typing import Any
-
-import numpy as np
 
 #: Numbers at which readers go wrong, as words of a text and as integers of 8, 16 and 32 bits.
 _NUMBERS = "0 1 -1 2 0.5 1e-3 1e-50 1e38 -3.4e38 1e39 1e999 nan inf -inf 0x10 1_0 0,5 + - . 1e 65536 4294967296"
@@ -15,38 +9,21 @@ WORDS = (*_NUMBERS.split(), "\u0661", "", "true", "a", "\x1b[31m")
 INTEGERS = (0, 1, 0x7F, 0x80, 0xFF, 0x7FFF, 0xFFFF, 0x7FFFFFFF, 0x80000000, 0xFFFFFFFF)
 
 #: Values that no reader of a JSON document expects.
-VALUES: tuple[Any, ...] = (
-    None,
-    True,
-    -1,
-    0,
-    1,
-    1e308,
-    10**30,
-    "",
-    "a",
-    "\ud800",
-    "\x1b",
-    "x" * 5000,
-    [],
-    {},
-    [[]],
-    {"a": 1},
-    [None] * 5,
+VALUES: tuple = (
+    *(None, True, -1, 0, 1, 1e308, 10**30, "", "a", "\ud800", "\x1b", "x" * 5000),
+    *([], {}, [[]], {"a": 1}, [None] * 5),
 )
 
-Step = Callable[[bytes, np.random.Generator], bytes]
 
-
-def mutated(content: bytes, generator: np.random.Generator) -> bytes:
+def mutated(content, generator):
     """Return a file with one to four faults anywhere."""
     for _ in range(generator.integers(1, 5)):
-        step: Step = _STEPS[generator.integers(len(_STEPS))]
+        step = _STEPS[generator.integers(len(_STEPS))]
         content = step(content, generator) if content else b"\0"
     return content
 
 
-def mutated_text(text: str, generator: np.random.Generator, words: Sequence[str] = ()) -> str:
+def mutated_text(text, generator, words=()):
     """Return a text with one to three faults in its lines and words; `words` are put into it beside `WORDS`."""
     lines = text.split("\n")
     for _ in range(generator.integers(1, 4)):
@@ -63,7 +40,7 @@ def mutated_text(text: str, generator: np.random.Generator, words: Sequence[str]
     return ("\r\n", "\r", "\n", "\n", "\n", "\n")[generator.integers(6)].join(lines)
 
 
-def mutated_value(value: Any, generator: np.random.Generator) -> Any:
+def mutated_value(value, generator):
     """Return a JSON document in which one value, somewhere, is another, or one entry is gone."""
     if not isinstance(value, dict | list) or not value or generator.random() < 0.05:
         return VALUES[generator.integers(len(VALUES))]
@@ -77,7 +54,7 @@ def mutated_value(value: Any, generator: np.random.Generator) -> Any:
     return changed
 
 
-def _with_other_word(line: str, generator: np.random.Generator, words: Sequence[str]) -> str:
+def _with_other_word(line, generator, words):
     """Return a line in which one word is another, or has another beside it."""
     parts = line.split(" ")
     at, word = generator.integers(len(parts)), words[int(generator.integers(len(words)))]
@@ -85,72 +62,61 @@ def _with_other_word(line: str, generator: np.random.Generator, words: Sequence[
     return " ".join(parts)
 
 
-def _span(content: bytes, generator: np.random.Generator) -> tuple[int, int]:
+def _span(content, generator):
     """Return the ends of a part, short more often than long."""
     start = int(generator.integers(len(content)))
     return start, min(len(content), start + 1 + int(2 ** generator.uniform(0, 10)))
 
 
-def _bit_flipped(content: bytes, generator: np.random.Generator) -> bytes:
+def _bit_flipped(content, generator):
     at = generator.integers(len(content))
     return content[:at] + bytes([content[at] ^ 1 << generator.integers(8)]) + content[at + 1 :]
 
 
-def _integer_placed(content: bytes, generator: np.random.Generator) -> bytes:
+def _integer_placed(content, generator):
     at, value = generator.integers(len(content)), INTEGERS[generator.integers(len(INTEGERS))]
     form = ("B", "<H", ">H", "<I", ">I")[generator.integers(5)]
     packed = struct.pack(form, value & (1 << 8 * struct.calcsize(form)) - 1)
     return content[:at] + packed + content[at + len(packed) :]
 
 
-def _part_lost(content: bytes, generator: np.random.Generator) -> bytes:
+def _part_lost(content, generator):
     start, end = _span(content, generator)
     return content[:start] + content[end:]
 
 
-def _part_repeated(content: bytes, generator: np.random.Generator) -> bytes:
+def _part_repeated(content, generator):
     start, end = _span(content, generator)
     return content[:end] + content[start:]
 
 
-def _part_noisy(content: bytes, generator: np.random.Generator) -> bytes:
+def _part_noisy(content, generator):
     start, end = _span(content, generator)
     return content[:start] + generator.bytes(end - start) + content[end:]
 
 
-def _part_zero(content: bytes, generator: np.random.Generator) -> bytes:
+def _part_zero(content, generator):
     start, end = _span(content, generator)
     return content[:start] + bytes(end - start) + content[end:]
 
 
-def _cut(content: bytes, generator: np.random.Generator) -> bytes:
+def _cut(content, generator):
     return content[: generator.integers(len(content))]
 
 
-def _text_recoded(content: bytes, generator: np.random.Generator) -> bytes:
+def _text_recoded(content, generator):
     """Put text that is not UTF-8 into a word, as programs of other decades and countries write it."""
     words = list(re.finditer(rb"[A-Za-z]{4,40}", content[: 2**20]))
     if not words:
         return content
     word = words[generator.integers(len(words))]
-    foreign = (
-        "Voigtl\u00e4nder".encode("latin-1"),
-        "\u30ab\u30e1\u30e9".encode("shift-jis"),
-        "\u76f8\u673a".encode("gbk"),
-    )
-    text = (foreign[generator.integers(len(foreign))] * 8)[: len(word[0])]
+    foreign = (("Voigtl\u00e4nder", "latin-1"), ("\u30ab\u30e1\u30e9", "shift-jis"), ("\u76f8\u673a", "gbk"))
+    name, encoding = foreign[generator.integers(len(foreign))]
+    text = (name.encode(encoding) * 8)[: len(word[0])]
     return content[: word.start()] + text + content[word.end() :]
 
 
 _STEPS = (
-    _text_recoded,
-    _bit_flipped,
-    _bit_flipped,
-    _integer_placed,
-    _integer_placed,
-    _part_lost,
-    _part_repeated,
-    _part_noisy,
-    _part_zero,
-    _cut,
+    *(_text_recoded, _bit_flipped, _bit_flipped, _integer_placed, _integer_placed),
+    *(_part_lost, _part_repeated, _part_noisy, _part_zero, _cut),
 )

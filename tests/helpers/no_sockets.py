@@ -4,8 +4,6 @@ The kernel itself looks at every system call of the process and of its children 
 well as Python. Sockets of every kind count, also local ones: the resolvers of some systems look up a host through one.
 """
 
-from __future__ import annotations
-
 import ctypes
 import os
 import platform
@@ -13,9 +11,6 @@ import signal
 import struct
 import subprocess
 import sys
-from collections.abc import Sequence
-from pathlib import Path
-from typing import Any
 
 #: The number of the system call `socket` on each machine.
 SOCKET_CALLS = {"x86_64": 41, "aarch64": 198}
@@ -32,21 +27,8 @@ SECCOMP_RET_KILL_PROCESS, SECCOMP_RET_ALLOW = 0x80000000, 0x7FFF0000
 LOAD_WORD, JUMP_IF_EQUAL, RETURN = 0x20, 0x15, 0x06
 
 
-def run_without_sockets(command: Sequence[str | Path], **options: Any) -> subprocess.CompletedProcess[str]:
-    """Run `command`, which is killed when it opens a socket, and return how it ended.
-
-    Parameters
-    ----------
-    command : sequence of str or Path
-        The program and its arguments.
-    **options
-        Passed to `subprocess.run`.
-
-    Returns
-    -------
-    subprocess.CompletedProcess
-        Its return code is `OPENED_A_SOCKET` if the command tried to open a socket.
-    """
+def run_without_sockets(command, **options):
+    """Run `command`; its return code is `OPENED_A_SOCKET` if it tried to open a socket, which ended it."""
     return subprocess.run(command, preexec_fn=_forbid_sockets, capture_output=True, text=True, check=False, **options)
 
 
@@ -56,7 +38,7 @@ class _Program(ctypes.Structure):
     _fields_ = [("length", ctypes.c_ushort), ("instructions", ctypes.c_char_p)]
 
 
-def _forbid_sockets() -> None:
+def _forbid_sockets():
     """Have the kernel kill this process, and whatever it starts, at its first `socket`."""
     instructions = [
         (LOAD_WORD, 0, 0, 0),  # the number of the system call
@@ -69,7 +51,7 @@ def _forbid_sockets() -> None:
     _prctl(PR_SET_SECCOMP, SECCOMP_MODE_FILTER, ctypes.addressof(program))
 
 
-def _prctl(option: int, *arguments: int) -> None:
+def _prctl(option, *arguments):
     """Change an attribute of this process."""
     padded = [ctypes.c_ulong(argument) for argument in (*arguments, 0, 0, 0, 0)][:4]
     if ctypes.CDLL(None, use_errno=True).prctl(option, *padded) != 0:

@@ -1,7 +1,5 @@
 """Evidence, and a small bank of responses, whose posteriors can be worked out by hand."""
 
-from __future__ import annotations
-
 import numpy as np
 
 from crfnet_core.posterior import Evidence, Family, Prior, ResponseBank
@@ -16,7 +14,7 @@ SMALL_BANK = {
 }
 
 
-def small_bank() -> ResponseBank:
+def small_bank():
     """Return a bank of ten powers of irradiance, in five families."""
     irradiance = np.linspace(0, 1, 1024)
     powers = [power for family in SMALL_BANK.values() for power in family]
@@ -24,14 +22,12 @@ def small_bank() -> ResponseBank:
     return ResponseBank(np.stack([irradiance**power for power in powers]).astype(np.float32), families)
 
 
-def even_prior(*, evidence: float = 1.0, unexplained: float = 0.0) -> Prior:
+def even_prior(*, evidence=1.0, unexplained=0.0):
     """Return a prior with the same share for each family of `small_bank`."""
     share = (1 - unexplained) / len(SMALL_BANK)
     return Prior("even", dict.fromkeys(SMALL_BANK, share) | {Family.UNEXPLAINED: unexplained}, evidence)
 
 
-def evidence_for(
-    weights: np.ndarray, *, precision: float = 3.0, log_odds: tuple[float, float, float] = (-50.0, -50.0, -50.0)
-) -> Evidence:
+def evidence_for(weights, *, precision=3.0, log_odds=(-50.0, -50.0, -50.0)):
     """Return evidence for the first EMoR weights of a response, of one standard deviation for all of them."""
     return Evidence(np.asarray(weights, np.float64)[:5], precision * np.eye(5), np.array(log_odds))

@@ -1,23 +1,19 @@
 """The JSON schemas in docs/."""
 
-from __future__ import annotations
-
 import json
-from collections.abc import Callable
 from pathlib import Path
-from typing import Any
 
 import pytest
 
 DOCS = Path(__file__).parents[2] / "docs"
 
 
-def read_schema(name: str) -> dict[str, Any]:
+def read_schema(name):
     """Return the schema docs/NAME.schema.json."""
     return dict(json.loads((DOCS / f"{name}.schema.json").read_text(encoding="utf-8")))
 
 
-def problems_by(schema: dict[str, Any]) -> Callable[[Any], list[str]]:
+def problems_by(schema):
     """Return a function: the entries of a document that the schema forbids, or does not describe."""
     jsonschema = pytest.importorskip("jsonschema")
     jsonschema.Draft202012Validator.check_schema(schema)
@@ -25,7 +21,7 @@ def problems_by(schema: dict[str, Any]) -> Callable[[Any], list[str]]:
     return lambda document: [error.json_path for error in strict.iter_errors(document)]
 
 
-def _closed(schema: Any) -> Any:
+def _closed(schema):
     """Return the schema with each object closed: for our own documents, every entry must be described."""
     if isinstance(schema, list):
         return list(map(_closed, schema))

@@ -1,13 +1,9 @@
 """Exposure stacks of known responses, made of scene-linear light: noise, rounding, JPEG, labels that round."""
 
-from __future__ import annotations
-
 from collections.abc import Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 import numpy as np
-from numpy.typing import NDArray
 
 from crfnet_core.posterior import ResponseBank
 from crfnet_core.response.curve import ResponseCurve
@@ -24,53 +20,30 @@ LABELS = (
 
 @dataclass(frozen=True, kw_only=True)
 class StackOptions:
-    """How a stack is taken.
-
-    Parameters
-    ----------
-    frames, step : int
-        How many, and thirds of a stop between two.
-    brightest : float
-        Percentile of the light that the longest exposure brings to white.
-    ceiling : float
-        Stops below white of the brightest light in the brightest frame, where all brighter light is cut off; 0 for no
-        ceiling.
-    shot_noise, read_noise : float
-        Variance of the noise at white, and standard deviation of what does not depend on light.
-    balance : float
-        Standard deviation in stops of red's and blue's gain from frame to frame.
-    shifts : sequence of (int, int)
-        Rows and columns by which each frame is displaced.
-    mistimed : sequence of float
-        Stops by which each frame is brighter than labelled.
-    quality : int
-        Of the JPEG; 0 writes PNG.
-    white : float
-        Part of the largest code at which the camera clips.
-    """
+    """How a stack is taken."""
 
     frames: int = 8
-    step: int = 3
-    brightest: float = 30.0
-    ceiling: float = 0.0
-    shot_noise: float = 5e-5
-    read_noise: float = 1e-3
-    balance: float = 0.0
-    shifts: Sequence[tuple[int, int]] = ()
-    mistimed: Sequence[float] = ()
-    quality: int = 92
-    white: float = 1.0
+    step: int = 3  # thirds of a stop between two frames
+    brightest: float = 30.0  # percentile of the light that the longest exposure brings to white
+    ceiling: float = 0.0  # stops below white at which the brightest frame's light is cut off; 0 for none
+    shot_noise: float = 5e-5  # variance at white
+    read_noise: float = 1e-3  # standard deviation
+    balance: float = 0.0  # standard deviation in stops of red's and blue's gain from frame to frame
+    shifts: Sequence[tuple[int, int]] = ()  # rows and columns by which each frame is displaced
+    mistimed: Sequence[float] = ()  # stops by which each frame is brighter than labelled
+    quality: int = 92  # of the JPEG; 0 writes PNG
+    white: float = 1.0  # part of the largest code at which the camera clips
     seed: int = 0
 
 
-def light_of(path: Path) -> NDArray[np.float32]:
+def light_of(path):
     """Return the light of a linear picture, float32 (H, W, 3), without the stretched poles of a panorama."""
     pixels = np.asarray(read_image(path), dtype=np.float32)[..., :3]
     rows = len(pixels)
     return np.maximum(pixels[round(0.1 * rows) : round(0.9 * rows)], 1e-6)
 
 
-def emor_response(seed: int) -> ResponseCurve:
+def emor_response(seed):
     """Return a response drawn from EMoR: the weights of two responses of the bank, mixed, and moved at random."""
     rng, bank, emor = np.random.default_rng(seed), ResponseBank.load(), EmorBasis.load()
     weights = bank.weights[bank.ordinary]
@@ -79,9 +52,7 @@ def emor_response(seed: int) -> ResponseCurve:
     return ResponseCurve.from_samples(emor.reconstruct(drawn))
 
 
-def make_stack(
-    folder: Path, light: NDArray[np.float32], response: ResponseCurve, options: StackOptions, **header: object
-) -> list[Path]:
+def make_stack(folder, light, response, options, **header):
     """Write the frames of a stack with their EXIF, the darkest first, and return their paths."""
     rng = np.random.default_rng(options.seed)
     stops = np.arange(options.frames) * options.step / 3
@@ -103,22 +74,20 @@ def make_stack(
     return paths
 
 
-def label_seconds(options: StackOptions) -> list[float]:
+def label_seconds(options):
     """Return the exposure times that EXIF names."""
     first = max(0, (len(LABELS) - options.frames * options.step) // 2)
     return [float(LABELS[first + index * options.step]) for index in range(options.frames)]
 
 
-def capture(
-    irradiance: NDArray[np.float32], response: ResponseCurve, options: StackOptions, rng: np.random.Generator
-) -> NDArray[np.uint8]:
+def capture(irradiance, response, options, rng):
     """Return the 8-bit codes of one frame."""
     deviation = np.sqrt(options.shot_noise * irradiance + options.read_noise**2)
     noisy = irradiance + deviation * rng.standard_normal(irradiance.shape, dtype=np.float32)
     return np.rint(response.forward(np.clip(noisy, 0, 1)) * 255 * options.white).astype(np.uint8)
 
 
-def opencv_response(method: str, paths: Sequence[Path], seconds: Sequence[float], true: ResponseCurve) -> ResponseCurve:
+def opencv_response(method, paths, seconds, true):
     """Return the response that OpenCV measures on a stack, by "Debevec" or "Robertson": the mean over the channels.
 
     OpenCV gives the irradiance of each code in each channel, in no known scale, and its value for code 255 is far

@@ -17,6 +17,12 @@ def scenes():
 
 
 @pytest.fixture
+def out(tmp_path):
+    """The folder of imported scenes, which the import makes."""
+    return tmp_path / "data" / "linear"
+
+
+@pytest.fixture
 def rng():
     return np.random.default_rng(5)
 

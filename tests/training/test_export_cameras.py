@@ -1,5 +1,3 @@
-"""Which measured stacks become cameras of the library, and with which uncertainty."""
-
 import csv
 
 import numpy as np

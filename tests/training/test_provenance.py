@@ -12,7 +12,6 @@ RECIPE = {"epochs": 3, "sizes": {"width": 8}}
 
 @pytest.fixture
 def shards(tmp_path):
-    """Two files of data, and how they were made."""
     for name in ("a", "b"):
         (tmp_path / f"{name}.npz").write_text(name)
     record_making(tmp_path, "train", "0" * 64)

@@ -1,5 +1,3 @@
-"""Exposures in stops: from EXIF or given times, nominal and exact."""
-
 import numpy as np
 import pytest
 

@@ -16,13 +16,11 @@ WHITE = 240 / 255
 
 @pytest.fixture(scope="module")
 def response():
-    """The camera's response, brightness of white = 1."""
     return emor_response(100)
 
 
 @pytest.fixture(scope="module")
 def found(light, response, tmp_path_factory):
-    """What is measured on a stack of that camera."""
     return calibrate_stack(make_stack(tmp_path_factory.mktemp("stack"), light, response, StackOptions(white=WHITE)))
 
 
@@ -48,7 +46,6 @@ def test_the_uncertainties_of_the_response_in_file_codes_hold(found, response):
 
 
 def test_the_points_lie_on_the_response_in_file_codes(found):
-    """None is above white, and each is off by its residual."""
     stops, brightness, residual, _ = found.points.T
     dark = stops < -0.1
     assert 0.9 < brightness.max() / WHITE <= 1

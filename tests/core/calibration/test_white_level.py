@@ -1,5 +1,3 @@
-"""The code at which a camera clips: found where it lies below the largest, and not where it does not."""
-
 import numpy as np
 import pytest
 

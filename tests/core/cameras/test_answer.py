@@ -1,5 +1,3 @@
-"""A camera's response in the place of an estimate, and the cameras of a photograph's make and model."""
-
 from dataclasses import replace
 
 import numpy as np
@@ -17,13 +15,11 @@ from tests.helpers.images import write_image
 
 @pytest.fixture(scope="module")
 def estimate(plate, fixed_model, tmp_path_factory):
-    """The estimate from a photograph of a SONY ILCE-7M3."""
     photo = photograph(plate, tmp_path_factory.mktemp("photos") / "a.jpg")
     return estimate_response(read_photo(photo), network=ResponseNetwork.load(fixed_model))
 
 
 def test_the_errors_of_a_camera_follow_from_its_stops():
-    """A little more light, by a known number of stops, moves brightness by what `brightness_per_stop` says."""
     curve, stops = ResponseCurve.gamma(2.0), 0.01
     brighter = curve.forward(np.minimum(curve.irradiance * 2**stops, 1))
     inside = slice(50, 1000)

@@ -1,13 +1,19 @@
-"""The library of cameras: one file each, its name, and damage."""
-
 import json
 
 import numpy as np
 import pytest
 
 from crfnet_core.errors import CameraError
-from crfnet_core.library import CameraLibrary, camera_document, find_camera, listed_cameras, read_calibration
+from crfnet_core.library import (
+    CameraLibrary,
+    camera_document,
+    camera_estimate,
+    find_camera,
+    listed_cameras,
+    read_calibration,
+)
 from crfnet_core.library.documents import read_camera
+from crfnet_core.posterior import Verdict
 from tests.helpers.cameras import camera
 
 
@@ -18,13 +24,11 @@ def library(tmp_path):
 
 @pytest.fixture
 def own(monkeypatch, tmp_path):
-    """The user's own library."""
     monkeypatch.setenv("CRFNET_DATA_DIR", str(tmp_path))
     return CameraLibrary.of_user()
 
 
 def code_of(function, *arguments, **options):
-    """Return the code of the error that a call raises."""
     with pytest.raises(CameraError) as caught:
         function(*arguments, **options)
     assert str(caught.value).isprintable()
@@ -175,3 +179,25 @@ def test_cameras_are_listed_to_choose_from(own):
     assert (names[:2], "Canon EOS 20D" in names) == (["Anna's", "old"], True)
     assert listed_cameras(models=["Sony ILCE-7M2"])[0] == ("old", "measured from 6 exposures")
     assert [name for name, _ in listed_cameras("anna")] == ["Anna's"]
+
+
+@pytest.fixture(scope="module")
+def shipped():
+    return CameraLibrary.shipped().cameras()
+
+
+def test_every_shipped_file_holds_a_measured_response_that_may_be_used(shipped):
+    assert CameraLibrary.shipped().problems() == []
+    assert len(shipped) >= 20
+    for one in shipped:
+        estimate = camera_estimate(one)
+        assert estimate.verdict is not Verdict.DO_NOT_TRUST
+        assert 0 < estimate.shape_uncertainty <= 0.05
+        assert one.name.startswith(one.settings.camera)
+
+
+def test_the_slopes_of_shipped_cameras_do_not_jump(shipped):
+    """A plate would get bands: from a code to the next, the stops of a code change by at most a quarter."""
+    for one in shipped:
+        stops = np.diff(np.log2(one.curve.inverse(np.arange(32, 255) / 255)))
+        assert np.abs(np.diff(np.log2(stops))).max() < np.log2(1.25), one.name

@@ -1,5 +1,3 @@
-"""AVIF of more than 8 bits and AVIF with XMP; lossy JPEG XL."""
-
 import struct
 from pathlib import Path
 

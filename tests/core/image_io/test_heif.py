@@ -1,5 +1,3 @@
-"""HEIC and AVIF: exact codes, range, orientation, metadata, gain maps, damage."""
-
 import struct
 import sys
 
@@ -32,11 +30,6 @@ def test_heic_keeps_its_codes(heif, name):
     assert difference.max() <= FILES[name]
 
 
-@pytest.mark.parametrize(("name", "cicp"), [("rgb8", (12, 13, 0, 1)), ("limited10", (12, 13, 9, 0))])
-def test_cicp_is_in_the_header(heif, name, cicp):
-    assert tuple(read_codes(heif / f"{name}.heic").header.getattribute("CICP")) == cicp
-
-
 def test_a_phone_held_upright_gives_an_upright_picture_that_says_so_once(heif):
     values = read_codes(heif / "phone.heic")
     np.testing.assert_array_equal(values.codes, np.rot90(colored_ramp(8), -1))
@@ -66,28 +59,12 @@ def test_the_transfer_that_cicp_names(heif, tmp_path, code, name):
 
 
 def with_gain_map(content, mark):
-    """Return a HEIC with one more box, which holds a mark, at the end of `meta`."""
-    at = content.index(b"meta") - 4
-    size = int.from_bytes(content[at : at + 4])
+    """Return a HEIC whose box `meta` lies at its end, so that offsets hold, and contains one more box with a mark."""
+    at = content.index(b"meta")
+    size = int.from_bytes(content[at - 4 : at])
     box = struct.pack(">I", 8 + len(mark)) + b"free" + mark
-    grown = struct.pack(">I", size + len(box)) + content[at + 4 : at + size] + box
-    return _shifted(content[:at] + grown + content[at + size :], len(box))
-
-
-def _shifted(content, by):
-    """Return the file with the offsets of its items moved: one extent each, `iloc` of version 0 or 1, of 4 bytes."""
-    at = content.index(b"iloc")
-    version, sizes = content[at + 4], struct.unpack(">H", content[at + 8 : at + 10])[0]
-    assert (version, sizes >> 8) in ((0, 0x44), (1, 0x44))
-    base, fields = sizes >> 4 & 15, bytearray(content)
-    count, position = struct.unpack(">H", content[at + 10 : at + 12])[0], at + 12
-    for _ in range(count):
-        is_in_file = version == 0 or struct.unpack(">H", content[position + 2 : position + 4])[0] & 15 == 0
-        extent = position + (4 if version == 0 else 6) + base + 2
-        if is_in_file:
-            struct.pack_into(">I", fields, extent, struct.unpack(">I", content[extent : extent + 4])[0] + by)
-        position = extent + 8
-    return bytes(fields)
+    meta = struct.pack(">I", size + len(box)) + content[at : at - 4 + size] + box
+    return content[:at] + b"free" + content[at + 4 :] + meta
 
 
 @pytest.mark.parametrize("mark", [b"tmap", b"urn:com:apple:photo:2020:aux:hdrgainmap"])
@@ -157,20 +134,6 @@ def test_cut_files_are_refused(heif, tmp_path, name, fraction):
     with pytest.raises(PhotoError) as caught:
         read_photo(path)
     assert caught.value.code == "damaged"
-
-
-def test_damaged_files_are_refused_or_read_but_never_anything_else(heif, tmp_path):
-    rng, content = np.random.default_rng(0), np.frombuffer((heif / "phone.heic").read_bytes(), np.uint8)
-    path, refusals = tmp_path / "a.heic", []
-    for _ in range(60):
-        damaged = content.copy()
-        damaged[rng.integers(8, len(content), 6)] = rng.integers(0, 256, 6)
-        path.write_bytes(damaged.tobytes())
-        try:
-            read_codes(path)
-        except PhotoError as problem:
-            refusals.append(problem)
-    assert 0 < len(refusals) < 60
 
 
 def test_items_whose_type_is_no_text_are_refused(heif, tmp_path):

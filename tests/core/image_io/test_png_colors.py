@@ -8,15 +8,12 @@ import OpenImageIO as oiio
 import pytest
 from PIL import Image
 
-from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PHOTOGRAPHIC, PROPHOTO, REC709, REC2020, Primaries
+from crfnet_core.colorimetry import ADOBE_RGB, DISPLAY_P3, PHOTOGRAPHIC, PROPHOTO, REC709, REC2020
 from crfnet_core.photograph.image_io import read_codes, read_photo
 from crfnet_core.photograph.image_io.png_files import with_color_chunks
 from crfnet_core.photograph.metadata.color_tags import PRIMARIES, ColorTags
-from tests.helpers.color_profiles import matrix_profile
+from tests.helpers.color_profiles import OWN, matrix_profile
 from tests.helpers.crafted_files import png, png_chunk
-
-#: Primaries of a display that is none of the named ones.
-OWN = Primaries("own", (0.66, 0.34), (0.24, 0.67), (0.145, 0.055), (0.333, 0.342))
 
 #: A profile in Adobe RGB as PNG holds it.
 ICC_CHUNK = b"a\0\0" + zlib.compress(matrix_profile(ADOBE_RGB))

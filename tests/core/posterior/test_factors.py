@@ -1,5 +1,3 @@
-"""Factors of the families of responses by metadata."""
-
 import pytest
 
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
@@ -10,12 +8,10 @@ OWN_CAMERA = {"make": "Canon", "model": "Canon EOS 20D", "luma_table": (3,) * 64
 
 
 def origin(**fields):
-    """The origin of a file with these metadata and a picture of 3504 x 2336 pixels."""
     return file_origin(FileMetadata(**{"width": 3504, "height": 2336, "file_format": "JPEG"} | fields))
 
 
 def largest(**fields):
-    """The family that the metadata favors."""
     factors = family_factors(origin(**fields))
     return max(factors, key=factors.__getitem__)
 

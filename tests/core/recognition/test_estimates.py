@@ -1,5 +1,3 @@
-"""Inputs that are not photographs are not to be trusted: each of these was "usable" before."""
-
 from pathlib import Path
 
 import numpy as np
@@ -49,27 +47,22 @@ def test_ordinary_pictures_are_left_alone(network, plate):
 
 
 @pytest.mark.parametrize(
-    ("name", "attributes", "says"),
+    ("name", "attributes", "code"),
     [
-        (
-            "a.dpx",
-            {"dpx__Transfer": "Printing density"},
-            'encoded as Cineon log: so says its metadata (dpx:Transfer "Printing',
-        ),
-        ("a.dpx", {"dpx__Transfer": "Logarithmic"}, 'encoded as log: so says its metadata (dpx:Transfer "Logarithmic"'),
-        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "encoded as PQ: so says its metadata (CICP)"),
-        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "encoded as HLG: so says its metadata (CICP)"),
+        ("a.dpx", {"dpx__Transfer": "Printing density"}, "tagged_encoding"),
+        ("a.dpx", {"dpx__Transfer": "Logarithmic"}, "tagged_encoding"),
+        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 16, 0, 1))}, "tagged_color_space"),
+        ("a.png", {"CICP": (oiio.TypeDesc("int[4]"), (9, 18, 0, 1))}, "tagged_color_space"),
     ],
 )
 def test_a_tag_of_a_published_curve_ends_the_estimate_unless_metadata_is_ignored(
-    tmp_path, fixed_model, name, attributes, says
+    tmp_path, fixed_model, name, attributes, code
 ):
     codes = np.rint(ordinary_picture() * 255).astype(np.uint8)
     photo, network = read_photo(write_image(tmp_path / name, codes, **attributes)), ResponseNetwork.load(fixed_model)
     with pytest.raises(PhotoError) as caught:
         estimate_response(photo, network=network)
-    assert says in str(caught.value)
-    assert "\n" not in str(caught.value)
+    assert caught.value.code == code
     assert estimate_response(photo, network=network, options=AnalysisOptions(use_metadata=False)).photos == (name,)
 
 

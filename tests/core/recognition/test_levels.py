@@ -1,5 +1,3 @@
-"""Levels: Eq. L.1."""
-
 import numpy as np
 import pytest
 

@@ -1,5 +1,3 @@
-"""Log footage, limited range and tags are recognized, and ordinary photographs are not."""
-
 import dataclasses
 import json
 
@@ -39,20 +37,12 @@ from tests.helpers.images import write_image
 #: Levels that nothing is recognized by.
 PLAIN_LEVELS = Levels.from_pixels(ordinary_picture())
 
-#: What the metadata of a messenger's copy says.
-SENT = {
-    "width": 1600,
-    "height": 1200,
-    "file_format": "JPEG",
-    "has_jfif": True,
-    "luma_table": scaled_table(ANNEX_K_LUMA, 75),
-    "chroma_table": scaled_table(ANNEX_K_CHROMA, 75),
-}
-
 
 @pytest.mark.parametrize("name", LOG_CURVES)
-def test_the_levels_of_log_footage_speak_for_log(name):
-    assert log_factor(Levels.from_pixels(log_picture(name))) == pytest.approx(BLACK_FACTOR * LOW_WHITE_FACTOR)
+def test_the_levels_of_log_footage_speak_for_log_and_not_for_limited_range(name):
+    levels = Levels.from_pixels(log_picture(name))
+    assert log_factor(levels) == pytest.approx(BLACK_FACTOR * LOW_WHITE_FACTOR)
+    assert not is_limited_range(levels)
 
 
 def test_a_lifted_black_with_a_clipped_white_says_less_and_an_ordinary_black_nothing():
@@ -132,11 +122,6 @@ def test_limited_range_is_recognized_and_the_full_range_is_not(seed, bits):
     assert recognition.kind is Kind.LIMITED_RANGE
 
 
-@pytest.mark.parametrize("name", LOG_CURVES)
-def test_log_footage_is_no_limited_range(name):
-    assert not is_limited_range(Levels.from_pixels(log_picture(name)))
-
-
 @pytest.mark.parametrize(("low", "high"), [(0, 235), (16, 255), (30, 220)])
 def test_one_end_or_other_ends_are_no_limited_range(low, high):
     picture = quantized((low + (high - low) * ordinary_picture().astype(float)) / 255)
@@ -156,9 +141,14 @@ def test_limited_range_is_recognized_after_compression(tmp_path, quality):
     assert is_limited_range(Levels.from_pixels(read_photo(compressed).pixels))
 
 
+def tables(quality):
+    return {"luma_table": scaled_table(ANNEX_K_LUMA, quality), "chroma_table": scaled_table(ANNEX_K_CHROMA, quality)}
+
+
 def origin_of(**fields):
     """Return what the metadata of a JPEG picture of 1600 x 1200 pixels, quality 75, without a camera's name says."""
-    return file_origin(FileMetadata(**SENT | fields))
+    sent = {"width": 1600, "height": 1200, "file_format": "JPEG", "has_jfif": True}
+    return file_origin(FileMetadata(**sent | tables(75) | fields))
 
 
 def test_a_rendering_is_recognized_by_its_metadata():
@@ -174,7 +164,7 @@ def test_a_rendering_is_recognized_by_its_metadata():
         ({"width": 1280, "height": 960}, True),
         ({"width": 4000, "height": 3000}, False),
         ({"make": "Canon", "model": "Canon EOS 6D"}, False),
-        ({"luma_table": scaled_table(ANNEX_K_LUMA, 90), "chroma_table": scaled_table(ANNEX_K_CHROMA, 90)}, False),
+        (tables(90), False),
         ({"luma_table": (), "chroma_table": (), "file_format": "PNG"}, False),
     ],
 )

@@ -19,13 +19,7 @@ sys.path.insert(0, str(HERE.parents[2]))
 from tests.helpers.colored_ramp import colored_ramp  # noqa: E402
 
 #: Name -> bits, matrix coefficients and full range flag (ITU-T H.273).
-FILES = {
-    "rgb8": (8, 0, 1),
-    "full8": (8, 1, 1),
-    "limited8": (8, 1, 0),
-    "rgb10": (10, 0, 1),
-    "limited10": (10, 9, 0),
-}
+FILES = {"rgb8": (8, 0, 1), "full8": (8, 1, 1), "limited8": (8, 1, 0), "rgb10": (10, 0, 1), "limited10": (10, 9, 0)}
 
 
 def heic(bits: int) -> pillow_heif.HeifFile:

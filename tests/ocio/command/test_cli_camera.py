@@ -24,7 +24,7 @@ def library(monkeypatch, tmp_path):
 
 @pytest.fixture
 def photos(plate, tmp_path):
-    return [photograph(plate, tmp_path / f"IMG_{n}.jpg", seed=n, Exif__PhotographicSensitivity=100) for n in range(2)]
+    return [photograph(plate, tmp_path / f"IMG_{n}.jpg", Exif__PhotographicSensitivity=100) for n in range(2)]
 
 
 @pytest.fixture

@@ -1,5 +1,3 @@
-"""The metadata of real photographs from their list."""
-
 from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.crafted_files import jpeg

@@ -7,14 +7,7 @@ from crfnet_core.posterior import Family
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import shape_error
 from training.data.curves import CurveSource
-from training.data.families import (
-    DEVELOPED_HEADROOM,
-    SHOULDER,
-    ResponseFamilies,
-    developed,
-    edited,
-    with_headroom,
-)
+from training.data.families import DEVELOPED_HEADROOM, SHOULDER, ResponseFamilies, developed, edited, with_headroom
 
 UNIFORM = np.linspace(0, 1, 1024)
 

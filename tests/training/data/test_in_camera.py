@@ -26,7 +26,6 @@ def bodies():
 
 
 def middle(curves):
-    """The exponent of powers of irradiance, from the middle of the range."""
     return np.log(curves[..., 512]) / np.log(UNIFORM[512])
 
 

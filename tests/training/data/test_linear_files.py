@@ -8,28 +8,22 @@ from tests.helpers.linear_pictures import SWATCH, chart, manifest, ramp, swatch_
 from training.data.import_scenes import import_scene, main
 from training.data.linear_files import automatic_scale, linear_scene
 
-
-@pytest.mark.parametrize(("camera", "pattern"), [("one", "RGGB"), ("two", "BGGR"), ("one", "GRBG")])
-def test_raw_grays_are_the_scene(tmp_path, out, camera, pattern):
-    scene = chart(ramp(1.0))
-    import_scene(write_dng(tmp_path / "ramp.dng", scene, camera=camera, pattern=pattern), out)
-    means = swatch_means(read_image(out / "ramp.exr"), SWATCH)
-    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
+COLORS = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
 
 
-def test_grays_under_a_warm_light_are_balanced_as_the_camera_did(tmp_path, out):
-    scene = chart(ramp(1.0))
-    import_scene(write_dng(tmp_path / "warm.dng", scene, light=(1.5, 1.0, 0.4)), out)
-    means = swatch_means(read_image(out / "warm.exr"), SWATCH)
-    np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
-
-
-@pytest.mark.parametrize("camera", ["one", "two"])
-def test_raw_colors_are_the_scene_in_rec709(tmp_path, out, camera):
-    colors = [[0.8, 0.2, 0.1], [0.1, 0.6, 0.2], [0.15, 0.2, 0.7], [0.6, 0.5, 0.1], [0.1, 0.5, 0.5], [0.25, 0.2, 0.15]]
-    scene = chart(colors)
-    import_scene(write_dng(tmp_path / "colors.dng", scene, camera=camera), out)
-    means = swatch_means(read_image(out / "colors.exr"), SWATCH)
+@pytest.mark.parametrize(
+    ("values", "options"),
+    [
+        *((ramp(1.0), {"pattern": "RGGB"}), (ramp(1.0), {"camera": "two", "pattern": "BGGR"})),
+        (ramp(1.0), {"pattern": "GRBG"}),
+        (ramp(1.0), {"light": (1.5, 1.0, 0.4)}),  # warm, and balanced as the camera did
+        *((COLORS, {"camera": "one"}), (COLORS, {"camera": "two"})),
+    ],
+)
+def test_raw_grays_and_colors_are_the_scene_in_rec709(tmp_path, out, values, options):
+    scene = chart(values)
+    import_scene(write_dng(tmp_path / "raw.dng", scene, **options), out)
+    means = swatch_means(read_image(out / "raw.exr"), SWATCH)
     np.testing.assert_allclose(means, swatch_means(scene, SWATCH), rtol=0.01)
 
 

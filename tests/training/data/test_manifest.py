@@ -49,7 +49,6 @@ def data(tmp_path):
 
 @pytest.fixture
 def written(data, tmp_path):
-    """The manifest of the folder, as the command writes it."""
     path = tmp_path / "manifest.csv"
     assert main(["--data", str(data), "--manifest", str(path)]) == 0
     return path

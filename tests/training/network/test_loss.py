@@ -6,13 +6,7 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.posterior import UNUSUAL, Evidence, Posterior, Prior
-from tests.helpers.posteriors import small_bank
 from training.network.loss import ERROR_WEIGHT, WINDOW_WEIGHT, EvidenceLoss, log_likelihoods
-
-
-@pytest.fixture(scope="module")
-def bank():
-    return small_bank()
 
 
 @pytest.fixture(scope="module")

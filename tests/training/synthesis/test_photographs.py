@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-pytest.importorskip("PIL", reason="training needs the train extra")
 
 from training.data.curves import CurveSource
 from training.synthesis import augmentation

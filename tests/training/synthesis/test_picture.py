@@ -2,16 +2,15 @@ import io
 
 import numpy as np
 import pytest
+from PIL import Image
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-Image = pytest.importorskip("PIL.Image", reason="training needs the train extra")
 
 from training.synthesis.picture import LUMA, Finish, Jpeg, Sharpening, smoothed, split
 
 
 @pytest.fixture
 def codes():
-    """Smooth colors with some texture, uint8 (2, 64, 64, 3)."""
     rng, (y, x) = np.random.default_rng(3), np.mgrid[:64, :64]
     frame = np.stack([2 * x + 60, 2 * y + 50, x + y + 40], axis=-1) + rng.integers(-6, 7, (64, 64, 1))
     return np.stack([frame, frame[::-1]]).astype(np.uint8)

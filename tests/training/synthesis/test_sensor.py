@@ -8,7 +8,6 @@ from training.synthesis.sensor import Demosaicing, Sensor, demosaiced
 
 @pytest.fixture
 def planes():
-    """Smooth light in color, of an odd side."""
     y, x = np.mgrid[:61, :61] / np.float32(61)
     light = [0.2 + 0.5 * x, 0.3 + 0.3 * y, 0.4 + 0.2 * x * y]
     return [np.stack([plane, 0.5 * plane]).astype(np.float32) for plane in light]

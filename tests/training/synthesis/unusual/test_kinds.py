@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, unusual_photo, unusual_windows
@@ -10,7 +9,6 @@ from training.synthesis.unusual import RECIPES, UnusualKind, random_exposure, un
 
 @pytest.fixture
 def light(scene):
-    """Two windows of the scene."""
     return np.stack([scene.pixels[:WINDOW_SIZE, x : x + WINDOW_SIZE] for x in (0, 200)])
 
 

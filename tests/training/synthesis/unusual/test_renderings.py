@@ -2,7 +2,6 @@ import numpy as np
 import pytest
 
 pytest.importorskip("scipy.io", reason="training needs the train extra")
-pytest.importorskip("PIL", reason="training needs the train extra")
 
 from crfnet_core.response.transfer_functions import srgb_encode
 from training.synthesis.unusual.film_scan import Negative
