@@ -42,7 +42,7 @@ MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
 
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
-MOST_ABOVE = 0.01
+MOST_ABOVE = 0.005
 
 _BAND = 2 * MARGIN + 1 / 255
 
