@@ -20,8 +20,8 @@ from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, coun
 #: Samples along each side of the thumbnails that recognize photographs of one scene.
 THUMBNAIL = 16
 
-#: Correlation of neighboring cells of a thumbnail below which there is no scene: 92 real photographs have 0.53 and more,
-#: renderings of 20 scenes 0.37 and more, noise, also blurred over a fortieth of the frame, 0.22 and less.
+#: Correlation of neighboring cells of a thumbnail below which there is no scene: 92 real photographs have at least
+#: 0.53, renderings of 20 scenes 0.37, and noise, also blurred over a fortieth of the frame, at most 0.22.
 LEAST_CORRELATION = 0.25
 
 #: Samples below or above these are clipped: half an 8-bit code from either end of the range.

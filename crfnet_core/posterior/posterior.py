@@ -29,9 +29,10 @@ class Posterior(EqualByFields):
 
     bank: ResponseBank
     weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
-    unexplained: float  # the probability that none of them is
+    unexplained: float  # the probability that none of them is, plain responses included
     prior: Prior | None = None  # the knowledge before photographs were seen; None if there were none
-    #: (6,): the probability of each of `ResponseBank.plain`; `unexplained` includes them. Without, a bank member is right.
+    #: (6,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
+    #: count in the expected errors and the band, and among the unexplained, and never in the answer.
     plain: Float64Array = field(default_factory=lambda: np.zeros(len(ResponseBank.plain().families)))
 
     @classmethod
@@ -63,7 +64,7 @@ class Posterior(EqualByFields):
             # So do plain responses; the evidence weighs them in full.
             each = independent * np.sum([one.ordinary_log_likelihoods(plain_bank.weights) for one in evidences], axis=0)
             mean = _log_sum(plain + each) - _log_sum(plain)
-            plain += each - mean + _bounded(mean - average, prior.lookalikes)
+            plain += each - mean + _bounded(np.array(mean - average), prior.lookalikes)
         explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))

@@ -35,8 +35,8 @@ class Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
         The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.15, "lookalikes": 0.03}`; families that it leaves
-        out have no share; "lookalikes" and "plain" are 0 unless they are given. Raise PriorError if there is no such prior, or the
-        file does not describe one.
+        out have no share, and "lookalikes" and "plain" are 0 unless they are given. Raise PriorError if there is no
+        such prior, or the file does not describe one.
         """
         path = PRIORS / f"{wanted}.json"
         path = path if path.is_file() else Path(wanted)

@@ -99,6 +99,8 @@ def test_saved_again_or_not(fields, is_resaved):
         ({"software": "Adobe Photoshop Lightroom 5.7 (Windows)", "raw_file": "IMG_0001.JPG"}, False),
         ({"software": "Digital Photo Professional"}, False),  # imitates the camera
         ({"software": "Ver.1.00"}, False),
+        ({"software": "Ver.1.00", "history": ("Adobe DNG Converter 9.8",), "raw_file": "_DSC9957.NEF"}, False),
+        ({"software": "Adobe DNG Converter 9.8", "history": ("darktable 3.4",), "raw_file": "_DSC9957.NEF"}, True),
     ],
 )
 def test_developed_from_a_raw_file_or_not(fields, is_developed):
@@ -194,7 +196,9 @@ def test_dng_converter_keeps_the_cameras_picture():
     assert (converted.is_developed, converted.editor) == (False, ADOBE)
 
 
-@pytest.mark.parametrize(("size", "is_scaled"), [((493, 328), True), ((640, 480), False), ((4000, 3001), False)])
+@pytest.mark.parametrize(
+    ("size", "is_scaled"), [((493, 328), True), ((640, 480), False), ((2048, 1365), None), ((4000, 3001), False)]
+)
 def test_a_program_that_scales_may_rewrite_the_size_in_exif(size, is_scaled):
     assert origin(**OWN_CAMERA, width=size[0], height=size[1], exif_size=size).is_scaled is is_scaled
 

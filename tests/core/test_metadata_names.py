@@ -16,7 +16,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         "LG Electronics": ("LG-H870",),
         "OnePlus": ("ONEPLUS A6003",),
         "Panasonic": ("DMC-CM1",),
-        "samsung": ("SM-G960U", "SAMSUNG-SM-G920A"),
+        "samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70"),
         "SAMSUNG": ("GT-I9300", "SAMSUNG-SGH-I747"),
         "Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"),
         "Sony Ericsson": ("LT26i",),
