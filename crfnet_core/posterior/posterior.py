@@ -133,7 +133,8 @@ class Posterior(EqualByFields):
         """Return the band that holds `BAND` at every irradiance, lower and upper end, shape (2, 1024): Eq. 29."""
         bank, weights = self.bank, self.weights
         if self.plain.any():
-            bank = bank.joined(ResponseBank.plain())
+            plain = ResponseBank.plain()
+            bank = ResponseBank(np.concatenate([bank.brightness, plain.brightness]), bank.families + plain.families)
             weights = np.concatenate([(1 - self.plain.sum()) * weights, self.plain])
         order, ordered = bank.ordered
         weights = weights[order]

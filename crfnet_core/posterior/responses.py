@@ -32,9 +32,6 @@ SHAPE_SAMPLES = slice(
 #: Irradiances, of 1024 uniform ones, at which the band is computed.
 BAND_SAMPLES = np.linspace(0, SAMPLES - 1, 65).round().astype(int)
 
-#: Powers of the plain responses.
-PLAIN_POWERS = (1.8, 2.0, 2.2, 2.4)
-
 
 @dataclass(frozen=True, eq=False)
 class ResponseBank(EqualByFields):
@@ -48,7 +45,7 @@ class ResponseBank(EqualByFields):
     def plain(cls) -> ResponseBank:
         """Return the responses of pictures without a camera's tone curve, such as renders: powers, sRGB and Rec.709."""
         irradiance = np.linspace(0, 1, SAMPLES)
-        powers = [irradiance ** (1 / power) for power in PLAIN_POWERS]
+        powers = [irradiance ** (1 / power) for power in (1.8, 2.0, 2.2, 2.4)]
         encoded = np.stack([*powers, srgb_encode(irradiance), rec709_encode(irradiance)]).astype(np.float32)
         return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
 
@@ -61,10 +58,6 @@ class ResponseBank(EqualByFields):
         brightness = np.cumsum(steps, axis=1, dtype=np.uint16) / np.float32(STORED_STEPS)
         members = list(Family)
         return cls(brightness.astype(np.float32), tuple(members[number] for number in numbers))
-
-    def joined(self, other: ResponseBank) -> ResponseBank:
-        """Return the responses of both banks."""
-        return ResponseBank(np.concatenate([self.brightness, other.brightness]), self.families + other.families)
 
     def members(self, family: Family) -> BoolArray:
         """Return which responses belong to a family, bool (N,)."""
