@@ -20,6 +20,10 @@ from crfnet_core.types import Float32Array, Float64Array, Pixels, Progress, coun
 #: Samples along each side of the thumbnails that recognize photographs of one scene.
 THUMBNAIL = 16
 
+#: Correlation of neighboring cells of a thumbnail below which there is no scene: 92 real photographs have at least
+#: 0.53, renderings of 20 scenes 0.37, and noise, also blurred over a fortieth of the frame, at most 0.22.
+LEAST_CORRELATION = 0.25
+
 #: Samples below or above these are clipped: half an 8-bit code from either end of the range.
 DARKEST, BRIGHTEST = 0.5 / 255, 254.5 / 255
 
@@ -37,6 +41,13 @@ class CutPhotograph:
     origin: FileOrigin | None  # how the file was made, by its metadata and the user; None if neither says anything
     is_gray: bool  # whether its three channels are equal
     clipped: float  # fraction of the samples of its windows at the ends of the range
+
+    @property
+    def is_noise(self) -> bool:
+        """Whether neighboring cells of the thumbnail are no more alike than any two: then it shows no scene."""
+        cells = self.thumbnail - self.thumbnail.mean()
+        products = (cells[1:] * cells[:-1]).mean() + (cells[:, 1:] * cells[:, :-1]).mean()
+        return bool(products / 2 < LEAST_CORRELATION * (cells**2).mean())
 
 
 @dataclass(frozen=True, eq=False)

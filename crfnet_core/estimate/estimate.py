@@ -6,6 +6,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 
 import numpy as np
 
@@ -91,10 +92,14 @@ def estimate_from_evidence(
     origins = tuple(photograph.origin for photograph in photographs if photograph.origin is not None)
     levels = Levels.joint([photograph.levels for photograph in photographs])
     prior = (prior or Prior.load()).reweighted(metadata_factors(origins)).reweighted({Family.LOG: log_factor(levels)})
+    if any(origin.names_device for origin in origins):
+        prior = replace(prior, plain=0.0)
     independent = independent_fraction(scene_similarities([photograph.thumbnail for photograph in photographs]))
     posterior = Posterior.from_evidences(bank, prior, [one.evidence for one in analyzed], independent=independent)
     makes = tuple(photograph.make for photograph in photographs)
-    recognition = recognize(levels, log_probability=posterior.families[Family.LOG], makes=makes, origins=origins)
+    is_noise = all(photograph.is_noise for photograph in photographs)
+    log_probability = posterior.families[Family.LOG]
+    recognition = recognize(levels, log_probability=log_probability, is_noise=is_noise, makes=makes, origins=origins)
     doubts = _doubts(photographs, origins)
     return ResponseEstimate(
         curve=posterior.curve,

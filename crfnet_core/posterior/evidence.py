@@ -34,13 +34,17 @@ class Evidence(EqualByFields):
 
     def log_likelihoods(self, bank: ResponseBank) -> Float64Array:
         """Return the log likelihood of every response of a bank, shape (N,): Eq. 18 of docs/METHOD.md."""
-        offsets = (bank.weights[:, :EVIDENCE_WEIGHTS] - self.location) @ self.factor
-        squares = np.sum(offsets**2, axis=1)
-        exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
-        likelihoods = -exponent * np.log1p(squares / DEGREES_OF_FREEDOM)
+        likelihoods = self.ordinary_log_likelihoods(bank.weights)
         for family, log_odds in zip(UNUSUAL, self.log_odds, strict=True):
             likelihoods[bank.members(family)] = log_odds
-        return np.asarray(likelihoods)
+        return likelihoods
+
+    def ordinary_log_likelihoods(self, weights: Float64Array) -> Float64Array:
+        """Return the log likelihoods, shape (N,), of ordinary responses with these EMoR weights, shape (N, 11)."""
+        offsets = (weights[:, :EVIDENCE_WEIGHTS] - self.location) @ self.factor
+        squares = np.sum(offsets**2, axis=1)
+        exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
+        return np.asarray(-exponent * np.log1p(squares / DEGREES_OF_FREEDOM))
 
 
 def independent_fraction(similarities: Float64Array) -> float:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -29,8 +29,11 @@ class Posterior(EqualByFields):
 
     bank: ResponseBank
     weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
-    unexplained: float  # the probability that none of them is
+    unexplained: float  # the probability that none of them is, plain responses included
     prior: Prior | None = None  # the knowledge before photographs were seen; None if there were none
+    #: (6,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
+    #: count in the expected errors and the band, and among the unexplained, and never in the answer.
+    plain: Float64Array = field(default_factory=lambda: np.zeros(len(ResponseBank.plain().families)))
 
     @classmethod
     def from_evidences(
@@ -42,6 +45,8 @@ class Posterior(EqualByFields):
         """
         logarithms = _log_prior(bank, prior)
         unexplained = _log(prior.shares.get(Family.UNEXPLAINED, 0.0))
+        plain_bank = ResponseBank.plain()
+        plain = np.full(len(plain_bank.families), _log(prior.plain / len(plain_bank.families)))
         if evidences:
             likelihoods = independent * np.sum([evidence.log_likelihoods(bank) for evidence in evidences], axis=0)
             log_odds = independent * np.sum([evidence.log_odds for evidence in evidences], axis=0)
@@ -56,10 +61,15 @@ class Posterior(EqualByFields):
             for family, gain in zip(UNUSUAL, gains, strict=True):
                 logarithms[bank.members(family)] += gain
             unexplained += float(gains[UNUSUAL.index(Family.UNEXPLAINED)])
-        explained = _log_sum(logarithms)
+            # So do plain responses; the evidence weighs them in full.
+            each = independent * np.sum([one.ordinary_log_likelihoods(plain_bank.weights) for one in evidences], axis=0)
+            mean = _log_sum(plain + each) - _log_sum(plain)
+            plain += each - mean + _bounded(np.array(mean - average), prior.lookalikes)
+        explained, plain_sum = _log_sum(logarithms), _log_sum(plain)
         weights = np.exp(logarithms - explained)
-        probability = float(1 / (1 + np.exp(min(explained - unexplained, 700.0))))
-        return cls(bank, weights, probability, prior if evidences else None)
+        probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
+        plain_weights = np.exp(plain - np.logaddexp(explained, plain_sum)) if prior.plain else np.zeros(len(plain))
+        return cls(bank, weights, probability, prior if evidences else None, plain_weights)
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -86,7 +96,7 @@ class Posterior(EqualByFields):
     def expected_error(self) -> float:
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         answer = self.curve.brightness
-        spread = float(_weighed(self.weights, self.bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1)))
+        spread = self._expected(lambda bank: bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1))
         if self.prior is None or self.prior.evidence in (0, 1):
             return spread
         moved = estimation_error(Posterior.from_evidences(self.bank, self.prior).curve, self.curve)
@@ -98,8 +108,16 @@ class Posterior(EqualByFields):
         """The expected shape error of the answer, in stops: Eq. 28 of docs/METHOD.md."""
         codes = np.linspace(0, 1, SAMPLES)[SHAPE_SAMPLES]
         answer = np.log2(self.curve.inverse(codes))
-        shapes = self.bank.log_irradiance[:, SHAPE_SAMPLES]
-        return float(_weighed(self.weights, shapes, lambda rows: (rows - answer).std(axis=1)))
+        return self._expected(
+            lambda bank: bank.log_irradiance[:, SHAPE_SAMPLES], lambda rows: (rows - answer).std(axis=1)
+        )
+
+    def _expected(
+        self, samples: Callable[[ResponseBank], Float32Array], error: Callable[[Float64Array], Float64Array]
+    ) -> float:
+        """Return the expected error of the answer; `error` of samples of responses, one row each."""
+        usual, plain = samples(self.bank), samples(ResponseBank.plain())
+        return float((1 - self.plain.sum()) * _weighed(self.weights, usual, error) + _weighed(self.plain, plain, error))
 
     @cached_property
     def mean_weights(self) -> Float64Array:
@@ -113,8 +131,13 @@ class Posterior(EqualByFields):
 
     def band(self) -> Float64Array:
         """Return the band that holds `BAND` at every irradiance, lower and upper end, shape (2, 1024): Eq. 29."""
-        order, ordered = self.bank.ordered
-        weights = self.weights[order]
+        bank, weights = self.bank, self.weights
+        if self.plain.any():
+            plain = ResponseBank.plain()
+            bank = ResponseBank(np.concatenate([bank.brightness, plain.brightness]), bank.families + plain.families)
+            weights = np.concatenate([(1 - self.plain.sum()) * weights, self.plain])
+        order, ordered = bank.ordered
+        weights = weights[order]
         cumulative = np.cumsum(weights, axis=1) - weights / 2
         levels = ((1 - BAND) / 2, (1 + BAND) / 2)
         ends = [[np.interp(level, *knot) for knot in zip(cumulative, ordered, strict=True)] for level in levels]

@@ -27,14 +27,16 @@ class Prior:
     #: Share of ordinary photographs that look to the network as unusual pictures do, in [0, 1). The pixels alone never
     #: raise the odds of an unusual family by more than 1 / lookalikes; 0 sets no bound.
     lookalikes: float = 0.0
+    #: Odds that a picture has a plain response (`ResponseBank.plain`), if neither its file nor the user names a camera.
+    plain: float = 0.0
 
     @classmethod
     def load(cls, wanted: str | Path = DEFAULT_PRIOR) -> Prior:
         """Return a packaged prior by its name, or the one in a JSON file.
 
         The file holds `{"shares": {"phone": 0.5, ...}, "evidence": 0.15, "lookalikes": 0.03}`; families that it leaves
-        out have no share, and "lookalikes" is 0 unless it is given. Raise PriorError if there is no such prior, or the
-        file does not describe one.
+        out have no share, and "lookalikes" and "plain" are 0 unless they are given. Raise PriorError if there is no
+        such prior, or the file does not describe one.
         """
         path = PRIORS / f"{wanted}.json"
         path = path if path.is_file() else Path(wanted)
@@ -50,18 +52,20 @@ class Prior:
     @classmethod
     def _from_entries(cls, path: Path, entries: object) -> Prior:
         """Return the prior that a JSON file describes; a PriorError if it describes none."""
-        if not isinstance(entries, dict) or set(entries) - {"lookalikes"} != {"shares", "evidence"}:
+        if not isinstance(entries, dict) or set(entries) - {"lookalikes", "plain"} != {"shares", "evidence"}:
             raise PriorError("bad_prior", path=path)
-        shares, evidence, lookalikes = entries["shares"], entries["evidence"], entries.get("lookalikes", 0.0)
+        shares, evidence = entries["shares"], entries["evidence"]
+        lookalikes, plain = (entries.get(name, 0.0) for name in ("lookalikes", "plain"))
         if not isinstance(shares, dict) or not set(shares) <= set(Family):
             raise PriorError("bad_prior_families", path=path, families=", ".join(Family))
-        numbers = [*shares.values(), evidence, lookalikes]
-        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-2]):
+        numbers = [*shares.values(), evidence, lookalikes, plain]
+        if not all(isinstance(number, int | float) and 0 <= number <= 1 for number in numbers) or not any(numbers[:-3]):
             raise PriorError("bad_prior_values", path=path)
         if lookalikes == 1:
             raise PriorError("bad_lookalikes", path=path)
         total = sum(shares.values())
-        return cls(path.stem, {Family(name): share / total for name, share in shares.items()}, evidence, lookalikes)
+        scaled = {Family(name): share / total for name, share in shares.items()}
+        return cls(path.stem, scaled, evidence, lookalikes, plain)
 
     def reweighted(self, factors: Mapping[Family, float]) -> Prior:
         """Return the prior after evidence on the families: shares times factors, scaled to a sum of 1."""

@@ -12,6 +12,7 @@ from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.response.curve import SAMPLES
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE
+from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import BoolArray, EqualByFields, Float32Array, Float64Array, IndexArray
 
 #: The packaged bank; ``python -m training.data.response_bank`` computes it.
@@ -38,6 +39,15 @@ class ResponseBank(EqualByFields):
 
     brightness: Float32Array  # (N, 1024): responses at uniform irradiances, non-decreasing from 0 to 1
     families: tuple[Family, ...]  # the family of each
+
+    @classmethod
+    @cache
+    def plain(cls) -> ResponseBank:
+        """Return the responses of pictures without a camera's tone curve, such as renders: powers, sRGB and Rec.709."""
+        irradiance = np.linspace(0, 1, SAMPLES)
+        powers = [irradiance ** (1 / power) for power in (1.8, 2.0, 2.2, 2.4)]
+        encoded = np.stack([*powers, srgb_encode(irradiance), rec709_encode(irradiance)]).astype(np.float32)
+        return cls(encoded, (Family.UNEXPLAINED,) * len(encoded))
 
     @classmethod
     @cache

@@ -176,11 +176,10 @@ def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> st
         return ""
     kind = estimate.likely_kind
     remedies = [REMEDIES[family] for family in kind.families if family in REMEDIES] if kind else []
-    if not remedies:
-        return f"give the file that the camera wrote{phrases.calibrate}"
-    is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
+    is_known = any(origin.names_device for origin in estimate.origins)
     is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
-    return remedies[0] + ("" if is_known or is_stored else phrases.state_device)
+    advice = remedies[0] if remedies else f"give the file that the camera wrote{phrases.calibrate}"
+    return advice + ("" if is_known or is_stored else phrases.state_device)
 
 
 def _verdict_words(estimate: ResponseEstimate, phrases: Phrases) -> str:

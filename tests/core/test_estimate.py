@@ -40,7 +40,11 @@ class FakeNetwork:
 
 
 def photo(*, seed=0, shape=(300, 400), codes=(0, 256), is_gray=False, name="plate01.jpg", metadata=None):
-    pixels = np.random.default_rng(seed).integers(*codes, (*shape, 3)).astype(np.float32) / np.float32(255)
+    """A photograph of 4 x 4 darker and brighter fields, each with all codes: noise alone would be recognized."""
+    rng = np.random.default_rng(seed)
+    fields = np.kron(rng.uniform(0.4, 2.5, (4, 4, 1)), np.ones((shape[0] // 4, shape[1] // 4, 1)))
+    pixels = np.floor(codes[0] + (codes[1] - codes[0]) * rng.random((*shape, 3)) ** fields).astype(np.float32)
+    pixels /= np.float32(255)
     return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path("shots") / name, metadata=metadata)
 
 

@@ -54,6 +54,7 @@ def test_shape_of_the_picture(width, height, shape):
         # a program that scales may rewrite the size in EXIF
         (493, 328, OWN_CAMERA | {"exif_size": (493, 328)}, True),
         (640, 480, OWN_CAMERA | {"exif_size": (640, 480)}, False),
+        (2048, 1365, OWN_CAMERA | {"exif_size": (2048, 1365)}, None),
         (4000, 3001, OWN_CAMERA | {"exif_size": (4000, 3001)}, False),
     ],
 )
@@ -100,6 +101,8 @@ def test_saved_again_or_not(fields, is_resaved):
         ({"software": "Digital Photo Professional"}, False),  # imitates the camera
         ({"software": "Adobe DNG Converter 15.0 (Macintosh)", "raw_file": "DSC_0001.NEF"}, False),  # keeps its picture
         ({"software": "Ver.1.00"}, False),
+        ({"software": "Ver.1.00", "history": ("Adobe DNG Converter 9.8",), "raw_file": "_DSC9957.NEF"}, False),
+        ({"software": "Adobe DNG Converter 9.8", "history": ("darktable 3.4",), "raw_file": "_DSC9957.NEF"}, True),
     ],
 )
 def test_developed_from_a_raw_file_or_not(fields, is_developed):

@@ -9,7 +9,7 @@ CAMERAS: dict[Device, dict[str, tuple[str, ...]]] = {
         "Apple": ("iPhone 13 Pro",),
         "LG Electronics": ("LG-H870",),
         "Panasonic": ("DMC-CM1",),
-        "samsung": ("SM-G960U", "SAMSUNG-SGH-I747"),
+        "samsung": ("SM-G960U", "SAMSUNG-SM-G920A", "SAMSUNG_SM-G900A", "Nexus S", "404SC", "YP-G70"),
         "Sony": ("D6503", "G8341", "SO-01J", "XQ-CT72"),
         "Sony Ericsson": ("LT26i",),
     },

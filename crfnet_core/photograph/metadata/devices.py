@@ -61,9 +61,11 @@ PATTERNS: dict[str, tuple[tuple[str, Device], ...]] = {
         (r"xq-|so-?\d|so[vg]\d|sgp|pm-\d|[a-z]{2}\d\d[ai]|[a-j]\d{4}\b|a?\d{3}so|xperia", _PHONE),
     ),
     "samsung": (
-        (r"nx|gx-?\d", _CAMERA),
-        (r"(sm|gt|sgh|sch|sph|shv|shw|sc|scv)-?\w|galaxy", _PHONE),
-        (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|digimax|vluu|<|techwin", _COMPACT),
+        (r"nx|gx-?\d|ek-gn|galaxy nx", _CAMERA),
+        (r"[sv]mx|hmx", _UNKNOWN),
+        (r"(sm|gt|sgh|sch|sph|shv|shw|sc|scv|yp)-?\w|\d{3}sc\b|galaxy(?! (nx|camera))|nexus", _PHONE),
+        (r"ek-|ex\d|wb|st\d|es\d|pl\d|nv|dv|mv|l\d|tl\d|sl\d|hz|p\d|s\d|i\d|it\d|galaxy camera", _COMPACT),
+        (r"digimax|kenox|u-ca|vluu|<|techwin", _COMPACT),
     ),
     "panasonic": (
         (r"dmc-(g|l10?$)|dc-[gs]|dc-b(gh|s)1", _CAMERA),
@@ -119,7 +121,7 @@ def device_of(make: str, model: str) -> Device:
             return device
     name = next((name for name in PATTERNS if maker.startswith(name)), "")
     plain = re.sub(
-        rf"^(?:{name}\w*|fujifilm|ricoh)\b[ _-]*", "", model.casefold().strip()
+        rf"^(?:{name}[^\W_]*|fujifilm|ricoh)(?![^\W_])[ _-]*", "", model.casefold().strip()
     )  # without the maker in front
     return next((device for pattern, device in PATTERNS.get(name, ()) if re.match(pattern, plain)), _UNKNOWN)
 

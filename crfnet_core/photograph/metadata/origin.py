@@ -80,10 +80,15 @@ class FileOrigin:
     is_told: bool = False  # whether a person has stated the device: see `with_stated_device`
 
     @property
+    def names_device(self) -> bool:
+        """Whether the file or the user states what took the picture."""
+        return bool(self.camera) or self.is_told
+
+    @property
     def is_sent_copy(self) -> bool:
         """Whether messengers and web sites send such files: without a camera, scaled, and strongly compressed."""
         is_compressed = self.jpeg_quality is not None and self.jpeg_quality <= SENT_QUALITY
-        return is_compressed and self.is_scaled is True and not self.camera and not self.is_told
+        return is_compressed and self.is_scaled is True and not self.names_device
 
     @classmethod
     def from_dict(cls, entry: Mapping[str, Any]) -> FileOrigin:
@@ -144,7 +149,8 @@ def _is_developed(metadata: FileMetadata, editor: str) -> bool:
 
     DNG Converter names the raw file, too, but keeps the camera's own picture of it.
     """
-    if metadata.raw_file and "dng converter" not in metadata.software.casefold():
+    programs = " ".join((metadata.software, *metadata.history)).casefold()
+    if metadata.raw_file and "dng converter" not in programs:
         return not metadata.raw_file.casefold().endswith(ORDINARY_FILES)
     return is_developer(editor)
 
@@ -177,7 +183,7 @@ def _is_scaled(metadata: FileMetadata, *, is_changed: bool) -> bool | None:
     if exif_size and exif_size != size:
         ratios = size[0] / exif_size[0], size[1] / exif_size[1]
         return True if size[1] > exif_size[1] or abs(ratios[0] / ratios[1] - 1) < SAME_SHAPE else None
-    is_whole = size[1] >= SCALED_BELOW or _is_in_blocks(*size)
+    is_whole = (size[1] >= SCALED_BELOW and size[1] not in WEB_SIDES) or _is_in_blocks(*size)
     if exif_size and metadata.has_camera and not is_changed and is_whole:  # programs that scale may rewrite the size
         return False
     if metadata.file_format in FOOTAGE:

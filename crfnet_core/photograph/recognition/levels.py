@@ -43,7 +43,7 @@ MOST_OUTSIDE, LEAST_AT_END = 0.002, 1e-4
 BEYOND, BLACKS, WHITES = 1e-4, (8 / 255, 20 / 255), (231 / 255, 245 / 255)
 
 #: The largest fraction of samples above the codes of white: channels of bright, saturated colors go beyond their luma.
-MOST_ABOVE = 0.01
+MOST_ABOVE = 0.005
 
 _BAND = 2 * MARGIN + 1 / 255
 
@@ -128,16 +128,11 @@ def _has_ends(levels: Levels) -> bool:
 def _has_piles(levels: Levels) -> bool:
     """Return whether the samples end at the codes 16 and 235, and pile up at one of them."""
     below, above = levels.fraction(0, LIMITED_BLACK - _BAND / 2), levels.fraction(LIMITED_WHITE + _BAND / 2, 1)
-    dark, bright = _end(levels, LIMITED_BLACK), _end(levels, LIMITED_WHITE)
+    dark, bright = (levels.fraction(end - MARGIN, end + MARGIN) for end in (LIMITED_BLACK, LIMITED_WHITE))
     inside_dark = levels.fraction(LIMITED_BLACK + _BAND / 2, LIMITED_BLACK + 1.5 * _BAND)
     inside_bright = levels.fraction(LIMITED_WHITE - 1.5 * _BAND, LIMITED_WHITE - _BAND / 2)
     is_inside, is_reached = max(below, above) <= MOST_OUTSIDE, min(dark, bright) >= LEAST_AT_END
     return is_inside and is_reached and (dark > inside_dark or bright > inside_bright)
-
-
-def _end(levels: Levels, end: float) -> float:
-    """Return the fraction of the samples at one end."""
-    return levels.fraction(end - MARGIN, end + MARGIN)
 
 
 def _histogram(samples: Float32Array) -> Float64Array:

@@ -59,15 +59,21 @@ class Recognition:
 
 
 def recognize(
-    levels: Levels, *, log_probability: float, makes: tuple[str, ...] = (), origins: Sequence[FileOrigin] = ()
+    levels: Levels,
+    *,
+    log_probability: float,
+    is_noise: bool = False,
+    makes: tuple[str, ...] = (),
+    origins: Sequence[FileOrigin] = (),
 ) -> Recognition | None:
     """Return the recognition of all pictures of an estimate, or None for ordinary camera photographs.
 
     `levels` are of all pictures together; `log_probability` is of log footage and counts the levels by `log_factor`;
-    `makes` are the makers that the files name.
+    `is_noise`: whether none shows a scene; `makes` are the makers that the files name.
     """
-    if levels.is_flat:
-        return Recognition(Kind.FLAT, str(Notice("flat_frame")), str(Notice("flat_frame_advice")))
+    if levels.is_flat or is_noise:
+        reason = Notice("flat_frame" if levels.is_flat else "noise_frame")
+        return Recognition(Kind.FLAT, str(reason), str(Notice("flat_frame_advice")))
     if is_limited_range(levels):
         return Recognition(Kind.LIMITED_RANGE, str(Notice("limited_range")), str(Notice("limited_range_advice")))
     if log_probability > RECOGNIZED:

@@ -88,6 +88,27 @@ def test_the_unexplained_compete_with_all_responses_together(bank):
     assert posterior.unexplained == pytest.approx(unexplained / (explained + unexplained))
 
 
+@pytest.mark.parametrize("lookalikes", [0.0, 0.2])
+def test_plain_responses_widen_the_errors_and_leave_the_answer(bank, lookalikes):
+    """By hand: of prior odds and a likelihood ratio, which lookalikes bound."""
+    evidence = evidence_for(ResponseBank.plain().weights[2], precision=0.7)
+    shares = dict.fromkeys((Family.PHONE, Family.CAMERA, Family.FILM), 1 / 3)
+    start = Posterior.from_evidences(bank, Prior("p", shares, 0.3)).weights[bank.ordinary]
+    ordinary = start @ np.exp(evidence.log_likelihoods(bank))[bank.ordinary]
+    plain = np.exp(evidence.ordinary_log_likelihoods(ResponseBank.plain().weights)).mean()
+    odds, ratio = 0.2, plain / ordinary
+    posterior = Posterior.from_evidences(bank, Prior("p", shares, 0.3, lookalikes, odds), [evidence])
+    without = Posterior.from_evidences(bank, Prior("p", shares, 0.3, lookalikes), [evidence])
+    expected = odds * ratio / (1 - lookalikes + lookalikes * ratio)
+    assert posterior.families[Family.UNEXPLAINED] == pytest.approx(expected / (1 + expected))
+    np.testing.assert_array_equal(posterior.curve.brightness, without.curve.brightness)
+    errors = [shape_error(true, posterior.curve) for true in curves(ResponseBank.plain())]
+    stated = (1 - posterior.plain.sum()) * without.expected_shape_error + posterior.plain @ errors
+    assert posterior.plain.sum() == pytest.approx(expected / (1 + expected))
+    assert posterior.expected_shape_error == pytest.approx(stated, rel=5e-3)
+    assert not np.allclose(posterior.band(), without.band(), atol=1e-3)
+
+
 def test_the_families_sum_to_1_and_overwhelming_evidence_is_no_overflow(bank):
     for log_odds in ((-2000, -2000, 2000), (-2000, -2000, -2000), (2000, -2000, -2000)):
         posterior = Posterior.from_evidences(

@@ -51,6 +51,7 @@ def test_factors_shift_the_shares():
         ({"shares": {"telephone": 1}, "evidence": 1}, "bad_prior_families"),
         ({"shares": {"phone": -0.1}, "evidence": 1}, "bad_prior_values"),
         ({"shares": {"phone": 1}, "evidence": 1.5}, "bad_prior_values"),
+        ({"shares": {"phone": 1}, "evidence": 1, "plain": -0.1}, "bad_prior_values"),
         ({"shares": {"phone": "1"}, "evidence": 1}, "bad_prior_values"),
         ({"shares": {"phone": 0, "log": 0}, "evidence": 1}, "bad_prior_values"),
         ({"shares": {"phone": 1}, "evidence": 1, "lookalikes": 1}, "bad_lookalikes"),

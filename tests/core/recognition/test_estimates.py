@@ -3,13 +3,17 @@ from pathlib import Path
 import numpy as np
 import OpenImageIO as oiio
 import pytest
+from PIL import Image, ImageDraw
 
 from crfnet_core import AnalysisOptions, Photo, ResponseNetwork, estimate_response, read_photo
 from crfnet_core.errors import PhotoError
-from crfnet_core.photograph.metadata import Encoding, file_origin
+from crfnet_core.photograph.metadata import Device, Encoding, FileMetadata, file_origin
 from crfnet_core.photograph.recognition import Kind
 from crfnet_core.posterior import Family, Verdict
-from tests.helpers.footage import log_picture, ordinary_picture, quantized
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.metrics import shape_error
+from crfnet_core.response.transfer_functions import srgb_encode
+from tests.helpers.footage import blurred, log_picture, ordinary_picture, quantized
 from tests.helpers.images import write_image
 
 
@@ -18,9 +22,35 @@ def network():
     return ResponseNetwork.load()
 
 
-def estimated(pixels, network, name="picture.png"):
-    photo = Photo(pixels=pixels, bit_depth=8, is_gray=False, path=Path(name))
-    return estimate_response(photo, network=network, options=AnalysisOptions(windows=4))
+def estimated(pixels, network, name="picture.png", metadata=None, **options):
+    photo = Photo(pixels=pixels, bit_depth=8, is_gray=False, path=Path(name), metadata=metadata)
+    return estimate_response(photo, network=network, options=AnalysisOptions(windows=4, **options))
+
+
+def rendered(root, encode):
+    """A render of a studio light in a plain encoding, 8 bits, whose file states only its size."""
+    light = np.asarray(oiio.ImageBuf(str(root / "tests/data/lights/city.exr")).get_pixels(oiio.FLOAT))[51:461, :, :3]
+    pixels = quantized(encode(np.clip(light / np.percentile(light, 95), 0, 1)))
+    return {"pixels": pixels, "metadata": FileMetadata(width=1024, height=410, file_format="PNG")}
+
+
+def screenshot():
+    """Windows with words, and a gradient."""
+    image = Image.new("RGB", (960, 640), (245, 245, 247))
+    draw = ImageDraw.Draw(image)
+    for row in range(36):
+        draw.text((20, 18 * row), "file edit view render output compositor frame exposure " * 3, (30, 30, 30))
+    draw.rectangle((500, 60, 900, 300), (40, 90, 160), (0, 0, 0))
+    image.paste(Image.linear_gradient("L").resize((300, 200)).convert("RGB"), (560, 380))
+    return np.asarray(image, np.float32) / np.float32(255)
+
+
+def noise(kind):
+    """Gray, colored or blurred noise: a frame without a scene."""
+    drawn = np.random.default_rng(0).normal(0.5, 0.2, (480, 640, 1 if kind == "gray" else 3))
+    for _ in range(8 if kind == "blurred" else 0):
+        drawn = 0.5 + 1.4 * (blurred(drawn) - 0.5)
+    return quantized(np.broadcast_to(drawn, (480, 640, 3)))
 
 
 @pytest.mark.parametrize("name", ["ARRI LogC3", "Canon Log", "Panasonic V-Log", "Sony S-Log3"])
@@ -37,6 +67,30 @@ def test_limited_range_is_not_to_be_trusted_and_says_what_to_do(network, plate):
     limited = quantized((16 + 219 * np.clip(pixels.astype(float) * 1.05 - 0.02, 0, 1)) / 255)
     estimate = estimated(limited, network)
     assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.LIMITED_RANGE)
+
+
+@pytest.mark.parametrize("kind", ["gray", "color", "blurred"])
+@pytest.mark.parametrize("device", [None, Device.CAMERA])
+def test_noise_is_not_to_be_trusted_whoever_says_what_took_it(network, kind, device):
+    estimate = estimated(noise(kind), network, device=device)
+    assert (estimate.verdict, estimate.recognition.kind) == (Verdict.DO_NOT_TRUST, Kind.FLAT)
+
+
+def test_a_screenshot_is_not_to_be_trusted(network):
+    estimate = estimated(screenshot(), network, metadata=FileMetadata(width=960, height=640, file_format="PNG"))
+    assert estimate.verdict is Verdict.DO_NOT_TRUST
+
+
+@pytest.mark.parametrize("power", [1.8, 2.0, 2.2, 2.4, "sRGB"])
+def test_a_plain_render_is_not_to_be_trusted_and_its_error_is_stated(network, root, power):
+    encode = srgb_encode if power == "sRGB" else lambda light: light ** (1 / power)
+    picture, true = rendered(root, encode), ResponseCurve.from_samples(encode(np.linspace(0, 1, 1024)))
+    estimate = estimated(**picture, network=network)
+    assert estimate.verdict is Verdict.DO_NOT_TRUST
+    assert shape_error(true, estimate.curve) < 2 * estimate.shape_uncertainty
+    believed = estimated(**picture, network=network, device=Device.CAMERA)
+    assert believed.verdict is Verdict.USABLE
+    assert believed.shape_uncertainty < 0.2
 
 
 def test_ordinary_pictures_are_left_alone(network, plate):
