@@ -87,8 +87,8 @@ SENTENCES: Mapping[str, str] = {
     "config_unknown": "{name}: is not a config, a built-in config's name or a Blender with one; built in are {known}",
     "config_unreadable": "{path}: cannot be read ({reason}); choose another config",
     "config_variable_unset": "{name}: the environment variable {variable} is not set; name a config",
-    "config_variables": "{path}: declares more than {most} variables, or some that refer to one another again and again;"
-    " write their values out",
+    "config_variables": "{path}: declares more than {most} variables, or some that multiply one another; write their"
+    " values out",
     "config_without_rec709": (
         "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one of them"
     ),

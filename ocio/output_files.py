@@ -128,7 +128,7 @@ def check_targets(
 
 
 def check_folder(folder: Path) -> None:
-    """Check that `folder` can be written to, or can be made, without the remains of killed runs; or raise PlateError."""
+    """Check that `folder` can be written to, or made, and complete what killed runs left; or raise PlateError."""
     existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     if not existing.is_dir():
         raise PlateError("not_a_folder", path=existing)

@@ -19,8 +19,8 @@ from ..errors import ConfigError
 from ..luts.lut1d import Lut1D
 from .reference_space import rec709_to_reference, steps_to_reference
 
-#: Bytes of the largest config that is read; the ACES configs have less than 1 MB. OpenColorIO takes up to 250 times as many,
-#: and the square of the number of color spaces in time.
+#: Bytes of the largest config that is read; the ACES configs have less than 1 MB. OpenColorIO takes up to 250 times as
+#: much memory, and the square of the number of color spaces in time.
 MAX_CONFIG_SIZE = 2 * 2**20
 
 #: The most YAML aliases (`*name`) of a config. OpenColorIO writes none; aliases of aliases multiply: 1 KB of them takes

@@ -6,8 +6,8 @@ import numpy as np
 import pytest
 
 from crfnet.plates.frame_files import read_frame
-from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.colorimetry import DISPLAY_P3
+from crfnet_core.photograph.image_io import read_photo
 from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import write_image
 from tests.helpers.mutations import mutated
