@@ -21,6 +21,7 @@ SENTENCES: Mapping[str, str] = {
     "exposure_out_of_range": "an exposure of {stops:g} stops is out of range; give one like -2 or 1.5",
     "exr_channels": "{path}: needs channels R, G and B, or a gray one; found {channels}",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
+    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",

@@ -73,7 +73,9 @@ def _is_bounded(text: str, values: Mapping[str, str]) -> bool:
     """Return whether a text has at most `LONGEST_VALUE` characters as its variables are replaced again and again."""
     names = "|".join(map(re.escape, sorted(values, key=len, reverse=True)))
     for _ in range(MOST_VARIABLES):
-        text = re.sub(rf"\$\{{({names})\}}|\$({names})|%({names})%", lambda match: values[match[match.lastindex]], text)
+        text = re.sub(
+            rf"\$\{{({names})\}}|\$({names})|%({names})%", lambda match: values[match[match.lastindex or 0]], text
+        )
         if len(text) > LONGEST_VALUE:
             return False
     return True
