@@ -31,8 +31,8 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
     """Yield a temporary folder in `folder`; if the block succeeds, its files take their names in `folder` together.
 
     Check before whether files of these names may be replaced. If the block fails, or one of the names cannot be taken
-    (a file that is locked, a full disk, an interruption), `folder` is as it was. Temporary folders that killed runs
-    left there are removed; earlier files in them go back where their names are free.
+    (a file that is locked, a full disk, an interruption), `folder` is as it was. What killed runs left there is
+    completed and removed: see `remove_abandoned`.
 
     Parameters
     ----------
@@ -66,11 +66,16 @@ def staged_files(folder: Path, *, overwrite: bool = True, error: type[CRFNetErro
 
 @lru_cache(maxsize=256)
 def remove_abandoned(folder: Path) -> None:
-    """Remove the temporary folders of killed runs; each process looks once."""
+    """Remove the temporary folders of killed runs; each process looks once.
+
+    A set that has some of its names gets the others where they are free; so do earlier files that were moved away.
+    """
     for temporary in folder.glob(f"{_PREFIX}*"):
         with suppress(OSError):
             with (temporary / _LOCK).open("ab") as file:
                 lock(file, wait=False)  # fails while the process lives, and where the file system has no locks
+                if (temporary / _EARLIER).exists():  # all of the set is on the disk
+                    _name_the_rest(temporary, folder)
                 _put_back(temporary, folder)
             if not _earlier_files(temporary):
                 shutil.rmtree(temporary, ignore_errors=True)
@@ -100,7 +105,7 @@ def _renamed(fact: object, temporary: Path, folder: Path) -> object:
 
 def _publish(temporary: Path, folder: Path, *, overwrite: bool, error: type[CRFNetError]) -> None:
     """Move the files of one folder into another, or none of them; earlier files of these names move into `_EARLIER`."""
-    files = sorted(path for path in temporary.iterdir() if path.name != _LOCK)
+    files = _staged(temporary)
     there = [path.name for path in files if os.path.lexists(folder / path.name)]
     if there and not overwrite:
         raise error("written_meanwhile", path=folder / there[0])
@@ -123,6 +128,18 @@ def _publish(temporary: Path, folder: Path, *, overwrite: bool, error: type[CRFN
         if not isinstance(problem, OSError):
             raise
         raise error("not_written", path=target, reason=problem.strerror or problem) from problem
+
+
+def _name_the_rest(temporary: Path, folder: Path) -> None:
+    """Move the files of one folder into another where their names are free."""
+    for path in _staged(temporary):
+        if not os.path.lexists(folder / path.name):
+            path.replace(folder / path.name)
+
+
+def _staged(temporary: Path) -> list[Path]:
+    """Return the files of a set that are in its temporary folder."""
+    return sorted(path for path in temporary.iterdir() if path.name not in (_LOCK, _EARLIER))
 
 
 def _flush(path: Path) -> None:

@@ -31,7 +31,9 @@ class PlateError(OutputError):
 
 
 def error_of_file(problem: BaseException, path: Path) -> CRFNetError:
-    """Return the error of one file of many, with its name, whatever its reader has raised."""
+    """Return the error of one file of many, with its name, whatever its reader has raised; an interruption goes on."""
+    if isinstance(problem, KeyboardInterrupt):
+        raise problem
     if isinstance(problem, CRFNetError):
         return problem
     if isinstance(problem, MemoryError):

@@ -23,6 +23,7 @@ SENTENCES: Mapping[str, str] = {
     "exr_codes": "{path}: most values lie above {most}, but encoded brightness lies in [0, 1]: divide code values by"
     " the largest, such as 255",
     "exr_damaged": "{path}: this EXR file is damaged or cut short ({problem}); write it again",
+    "exr_samples": "{path}: claims {width} x {height} pixels of {channels} channels; keep R, G, B and A alone",
     "exr_unreadable": "{path}: cannot be read ({problem}); check the file",
     "exr_untagged": "{path}: does not say whether its values are linear, as in most OpenEXR files; state it if they are"
     " encoded, as a camera or a program wrote them for a display",
@@ -89,6 +90,8 @@ SENTENCES: Mapping[str, str] = {
     "config_unknown": "{name}: is not a config, a built-in config's name or a Blender with one; built in are {known}",
     "config_unreadable": "{path}: cannot be read ({reason}); choose another config",
     "config_variable_unset": "{name}: the environment variable {variable} is not set; name a config",
+    "config_variables": "{path}: declares more than {most} variables, or some that multiply one another; write their"
+    " values out",
     "config_without_rec709": (
         "the config has neither a space 'lin_rec709_scene' nor a role aces_interchange; add one of them"
     ),

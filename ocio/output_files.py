@@ -128,12 +128,13 @@ def check_targets(
 
 
 def check_folder(folder: Path) -> None:
-    """Check that `folder` can be written to, or can be made; else raise PlateError."""
+    """Check that `folder` can be written to, or made, and complete what killed runs left; or raise PlateError."""
     existing = next(path for path in (folder.absolute(), *folder.absolute().parents) if os.path.lexists(path))
     if not existing.is_dir():
         raise PlateError("not_a_folder", path=existing)
     if not os.access(existing, os.W_OK | os.X_OK):
         raise PlateError("not_writable", path=existing)
+    remove_abandoned(folder.absolute())
 
 
 def check_config_folder(folder: Path) -> None:
@@ -146,13 +147,9 @@ def check_config_folder(folder: Path) -> None:
 
 @contextmanager
 def output_folder(folder: Path) -> Iterator[None]:
-    """Make `folder` for a block, without the remains of killed runs.
-
-    If the block fails, those folders that were made and are empty are removed again.
-    """
+    """Make `folder` for a block; if it fails, those folders that were made and are empty are removed again."""
     made = [path for path in (folder, *folder.parents) if not path.exists()]
     folder.mkdir(parents=True, exist_ok=True)
-    remove_abandoned(folder.absolute())
     try:
         yield
     except BaseException:

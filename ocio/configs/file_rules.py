@@ -82,9 +82,10 @@ def add_file_rule(config: OCIO.Config, name: str, space: str, patterns: Sequence
 
 
 def color_space_of_file(config: OCIO.Config, name: str) -> str:
-    """Return the color space, not the role, that the rules of a config give to a file."""
-    space, _ = config.getColorSpaceFromFilepath(name)
-    return str(config.getColorSpace(space).getName())
+    """Return the color space, not the role, or the named transform that the rules of a config give to a file."""
+    name, _ = config.getColorSpaceFromFilepath(name)
+    space = config.getColorSpace(name)
+    return str(space.getName() if space else name)
 
 
 def plate_rules(config: OCIO.Config, space: str) -> dict[str, str]:

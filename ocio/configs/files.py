@@ -19,15 +19,20 @@ from ..errors import ConfigError
 from ..luts.lut1d import Lut1D
 from .reference_space import rec709_to_reference, steps_to_reference
 
-#: Bytes of the largest config that is read; the ACES configs have less than 1 MB.
-MAX_CONFIG_SIZE = 8 * 2**20
+#: Bytes of the largest config that is read; the ACES configs have less than 1 MB. OpenColorIO takes up to 250 times as
+#: much memory, and the square of the number of color spaces in time.
+MAX_CONFIG_SIZE = 2 * 2**20
 
 #: The most YAML aliases (`*name`) of a config. OpenColorIO writes none; aliases of aliases multiply: 1 KB of them takes
 #: gigabytes.
 MOST_ALIASES = 8
 
+#: The most variables that a config declares, and characters that one of them may expand to: variables of variables
+#: multiply, too.
+MOST_VARIABLES, LONGEST_VALUE = 100, 4096
+
 #: An alias where YAML allows a value.
-_ALIAS = re.compile(rb"(?:^|[\s\[{,:])\*[^\s\[\]{},]", re.MULTILINE)
+_ALIAS = re.compile(r"(?:^|[\s\[{,:])\*[^\s\[\]{},]", re.MULTILINE)
 
 #: Largest difference between a config's processor and the LUT: absolute up to a value of 1, relative above.
 TOLERANCE = 1e-5
@@ -42,19 +47,38 @@ HIDING_VARIABLES = ("OCIO_ACTIVE_DISPLAYS", "OCIO_ACTIVE_VIEWS", "OCIO_INACTIVE_
 def load_config(path: str | Path) -> OCIO.Config:
     """Return the config in a file of at most `MAX_CONFIG_SIZE` bytes and `MOST_ALIASES` aliases.
 
-    Raise a ConfigError if it is absent, larger, or OpenColorIO refuses it.
+    Raise a ConfigError if it is absent, larger, not UTF-8, its variables multiply, or OpenColorIO refuses it.
     """
     path = Path(path)
     if not os.path.lexists(path):
         raise ConfigError("config_absent", path=path)
     try:
-        if len(_ALIAS.findall(read_bytes(path, most=MAX_CONFIG_SIZE))) > MOST_ALIASES:
+        text = read_bytes(path, most=MAX_CONFIG_SIZE).decode()
+        if len(_ALIAS.findall(text.replace("\0", ""))) > MOST_ALIASES:  # in UTF-16, too
             raise ConfigError("config_aliases", path=path, most=MOST_ALIASES)
-        return OCIO.Config.CreateFromFile(str(path))
+        config = OCIO.Config.CreateFromFile(str(path))
+        values = {name: config.getEnvironmentVarDefault(name) for name in config.getEnvironmentVarNames()}
+        if len(values) > MOST_VARIABLES or not all(_is_bounded(value, values) for value in values.values()):
+            raise ConfigError("config_variables", path=path, most=MOST_VARIABLES)
+        return config
     except OSError as problem:
         raise ConfigError("config_unreadable", path=path, reason=problem.strerror or problem) from None
+    except UnicodeDecodeError:  # Python cannot show the names in it, nor OpenColorIO's messages
+        raise ConfigError("config_unreadable", path=path, reason="it is not UTF-8 text") from None
     except (OCIO.Exception, OCIO.ExceptionMissingFile) as problem:
         raise ConfigError("config_refused", path=path, reason=problem) from None
+
+
+def _is_bounded(text: str, values: Mapping[str, str]) -> bool:
+    """Return whether a text has at most `LONGEST_VALUE` characters as its variables are replaced again and again."""
+    names = "|".join(map(re.escape, sorted(values, key=len, reverse=True)))
+    for _ in range(MOST_VARIABLES):
+        text = re.sub(
+            rf"\$\{{({names})\}}|\$({names})|%({names})%", lambda match: values[match[match.lastindex or 0]], text
+        )
+        if len(text) > LONGEST_VALUE:
+            return False
+    return True
 
 
 def role_name(path: str | Path, role: str) -> str:

@@ -22,6 +22,9 @@ MAX_FILE_SIZE = 4 * 2**20
 #: The suffixes of the formats that OpenColorIO reads.
 READABLE = tuple(sorted({f".{suffix}" for _, suffix in OCIO.FileTransform.getFormats()}))
 
+#: The elements of XML by which a LUT file reads others, devices among them, or hides that it does.
+OTHER_FILES = re.compile("<Reference|<!DOCTYPE", re.IGNORECASE)
+
 #: Largest part of the steps of a table that may be level, as integers are in the blacks; decimal commas make more.
 MOST_LEVEL = 0.5
 
@@ -63,14 +66,17 @@ def read_lut(path: str | Path) -> AnyLut:
 
 
 def _checked_text(path: Path) -> list[str]:
-    """Return the lines of comment of a file; raise a LutError if it is absent, too large, or never ends as .csp."""
+    """Return the lines of comment of a file; raise a LutError if it is absent, too large, endless, or reads others."""
     try:
         content = read_bytes(path, most=MAX_FILE_SIZE)
     except OSError as problem:
         raise LutError("lut_unreadable", path=path, reason=problem.strerror or problem) from problem
     if path.suffix.lower() not in READABLE:
         raise LutError("lut_suffix", path=path, suffixes=", ".join(READABLE))
-    lines = [line.strip() for line in content.decode("utf-8", errors="replace").split("\n")]
+    text = content.decode("utf-8", errors="replace")
+    if OTHER_FILES.search(text.replace("\0", "")):  # in UTF-16, too
+        raise LutError("lut_refused", path=path, reason="it reads other files")
+    lines = [line.strip() for line in text.split("\n")]
     begins = [number for number, line in enumerate(lines) if re.search("BEGIN METADATA", line, re.IGNORECASE)]
     if begins and not any(re.match("END METADATA", line, re.IGNORECASE) for line in lines[begins[0] :]):
         raise LutError("lut_refused", path=path, reason="no line END METADATA")  # OpenColorIO would look for ever

@@ -184,6 +184,9 @@ def _check_encoded_exr(path: Path, header: Any, *, is_encoded: bool) -> None:
         raise PlateError("plate_is_linear", path=path, space=space)
     if header.image_pixels() > MAX_PIXELS:
         raise PlateError("plate_too_large", path=path, width=header.width, height=header.height)
+    if header.image_pixels() * header.nchannels > 4 * MAX_PIXELS:  # all are decompressed
+        size = {"width": header.width, "height": header.height, "channels": header.nchannels}
+        raise PlateError("exr_samples", path=path, **size)
     names = set(header.channelnames)
     kinds = {str(header.channelformat(at)) for at, name in enumerate(header.channelnames) if name in "RGBY"}
     if (

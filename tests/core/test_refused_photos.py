@@ -120,6 +120,14 @@ def test_cut_jpeg_is_refused_wherever_it_is_cut(tmp_path, progressive, fraction)
     assert refusal(path) == "damaged"
 
 
+@pytest.mark.parametrize("start", [b"\xff\xe1\0\3a" * 5000, b"\xff" * 2**21], ids=["segments", "fill bytes"])
+def test_a_jpeg_with_an_endless_header_is_refused(tmp_path, start):
+    """Pillow would read it byte by byte, a minute for each 30 MB."""
+    whole = jpeg(tmp_path / "a.jpg")
+    (tmp_path / "a.jpg").write_bytes(whole[:2] + start + whole[2:])
+    assert refusal(tmp_path / "a.jpg") == "damaged"
+
+
 def test_jpeg_of_a_failed_download_is_refused(tmp_path):
     whole = jpeg(tmp_path / "a.jpg")
     (tmp_path / "a.jpg").write_bytes(whole[: len(whole) // 2] + bytes(len(whole) // 2))

@@ -139,6 +139,15 @@ def test_earlier_files_of_killed_runs_go_back_where_there_is_none(tmp_path):
     assert content(tmp_path) == {"a.txt": "old", "b.txt": "new"}
 
 
+def test_a_set_that_a_killed_run_named_in_part_is_completed_where_names_are_free(tmp_path):
+    temporary = left_by_a_killed_run(tmp_path, {"a.txt": "old"})
+    for name in "ab":
+        (temporary / f"{name}.txt").write_text("new")
+    (tmp_path / "c.txt").write_text("new")
+    remove_abandoned(tmp_path)
+    assert content(tmp_path) == {"a.txt": "new", "b.txt": "new", "c.txt": "new"}
+
+
 def test_an_earlier_file_that_cannot_go_back_stays_where_it_is(tmp_path, monkeypatch):
     temporary = left_by_a_killed_run(tmp_path, {"a.txt": "old"})
 

@@ -1,7 +1,8 @@
 """Fuzzing: every test tries damaged files for a while, with other seeds in each run, and names those that fail.
 
 `CRFNET_FUZZ_SECONDS` says how long each test goes on; `make fuzz` gives them an hour together. `CRFNET_FUZZ_SEED` is
-the seed to begin with, to try one again. A single case that hangs ends everything with a traceback.
+the seed to begin with, to try one again. A single case that hangs ends everything with a traceback. The last lines
+count the cases of each test.
 """
 
 import faulthandler
@@ -25,6 +26,14 @@ MOST_SECONDS = 20.0
 
 #: Bytes of memory beyond those at the start.
 MOST_MEMORY = 2 * 2**30
+
+
+def pytest_terminal_summary(terminalreporter):
+    """Print how many cases each test has tried."""
+    reports = [report for outcome in ("passed", "failed") for report in terminalreporter.getreports(outcome)]
+    for report in reports:
+        if cases := dict(report.user_properties).get("cases"):
+            terminalreporter.write_line(f"{cases:8d} cases: {report.head_line}")
 
 
 @pytest.fixture

@@ -6,9 +6,11 @@ import numpy as np
 import pytest
 
 from crfnet.plates.frame_files import read_frame
+from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.posterior.factors import family_factors
+from tests.helpers.color_profiles import matrix_profile, write_tagged
 from tests.helpers.images import write_image
 from tests.helpers.mutations import mutated
 
@@ -49,6 +51,12 @@ def seeds(tmp_path_factory, root):
             write_image(folder / name, samples, **attributes)
         except AssertionError:
             (folder / name).unlink(missing_ok=True)
+    codes, icc = (smooth * 127).astype(np.uint8), matrix_profile(DISPLAY_P3)
+    for name in ("icc.jpg", "icc.png", "icc.tif"):
+        write_tagged(folder / name, codes, icc, ImageDescription="x" * 20)
+    half = smooth.astype(np.float16)
+    write_image(folder / "parts.exr", half, half)
+    write_image(folder / "layers.exr", np.dstack([half, half]), names=("R", "G", "B", "diffuse.R", "diffuse.G", "Z"))
     ultra = (smooth * 4).astype(np.float16)
     write_image(folder / "ultra_hdr.jpg", ultra, jpeg__ultrahdr=1, oiio__ColorSpace="lin_rec709_scene")
     for path in (root / "tests" / "data" / "heif").glob("*.[ah][ve]i[fc]"):

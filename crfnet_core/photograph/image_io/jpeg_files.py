@@ -17,6 +17,10 @@ from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 
 #: A marker with its length, behind bytes that belong to no segment, which decoders skip.
 _SEGMENT = re.compile(rb"\xff+([^\0\xff])(..)", re.DOTALL)
+
+#: The most segments of a header, and bytes between them, which Pillow reads one by one.
+_MOST_SEGMENTS, _MOST_BETWEEN = 4096, 2**20
+
 _START_OF_SCAN, _END_OF_IMAGE = 0xDA, b"\xff\xd9"
 _START_OF_FRAME = frozenset(range(0xC0, 0xD0)) - {0xC4, 0xC8, 0xCC}
 
@@ -39,11 +43,15 @@ def checked_jpeg(path: Path) -> JpegFile:
 
     Where the rest of a file is zeros (a failed download or recovery) the decoder paints gray and does not complain.
     """
-    warnings, scan = set(), 0
+    warnings, scan, before, between = set(), 0, 2, 0
     with _mapped(path) as content:
-        for marker, stray, scan, end in _segments(content):
+        for count, (marker, stray, scan, end) in enumerate(_segments(content)):
             if stray:
                 warnings.add(f"Corrupt JPEG data: {stray} extraneous bytes before marker 0x{marker:02x}")
+            between += scan - before - 4
+            before = end
+            if count >= _MOST_SEGMENTS or between > _MOST_BETWEEN:
+                raise problems.damaged(path, "JPEG", "its header has no end")
             if marker in _START_OF_FRAME:
                 _check_frame(path, content[scan:end])
         if content.rfind(_END_OF_IMAGE, scan) < 0:

@@ -74,6 +74,16 @@ def test_it_is_the_error_of_that_frame(crfnet, frames, look, out, monkeypatch, p
     assert listed(out) == ["a.0001.exr", "a.0003.exr", "a.0005.exr"]
 
 
+def test_an_interruption_stops_them_all(estimate, crfnet, photographs, frames, look, out, monkeypatch):
+    (photographs / "bad.jpg").write_bytes((photographs / "a.jpg").read_bytes())
+    monkeypatch.setattr(source, "read_photo", failing(source.read_photo, KeyboardInterrupt()))
+    monkeypatch.setattr(plate_frames, "read_frame", failing(plate_frames.read_frame, KeyboardInterrupt()))
+    done = estimate(photographs, "--each", "--no-linear", "--workers", "1")
+    assert (done.code, done.err) == (130, "crfnet: interrupted\n")
+    done = crfnet("linearize", frames / "shot.####.jpg", "--lut", look / "plate.spi1d", "--out", out / "a.####.exr")
+    assert (done.code, done.err) == (130, "crfnet: interrupted\n")
+
+
 class FailingBatch(EstimateBatch):
     """A batch whose photograph "bad.jpg" raises an error that no process can send."""
 

@@ -95,12 +95,19 @@ class TestLoading:
         with refused(ConfigError, "config_refused"):
             load_config(tmp_path / "config.ocio")
 
-    @pytest.mark.parametrize("depth", [3, 9])
-    def test_nested_aliases_are_refused_before_they_multiply(self, tmp_path, depth):
+    def test_a_config_that_is_not_utf8_is_refused(self, tmp_path):
+        """Python could not show its names."""
+        text = portable_config([]).serialize().replace("name: crfnet", "name: Voigtl\u00e4nder")
+        (tmp_path / "config.ocio").write_text(text, encoding="latin-1")
+        with refused(ConfigError, "config_unreadable"):
+            load_config(tmp_path / "config.ocio")
+
+    @pytest.mark.parametrize(("depth", "encoding"), [(3, "utf-8"), (9, "utf-8"), (9, "utf-16-le")])
+    def test_nested_aliases_are_refused_before_they_multiply(self, tmp_path, depth, encoding):
         """Nine levels of nine make a kilobyte take gigabytes."""
         lines = ["a0: &a0 [x, x, x, x, x, x, x, x, x]"]
         lines += [f"a{n}: &a{n} [{', '.join([f'*a{n - 1}'] * 9)}]" for n in range(1, depth + 1)]
-        (tmp_path / "config.ocio").write_text("\n".join([*lines, portable_config([]).serialize()]))
+        (tmp_path / "config.ocio").write_text("\n".join([*lines, portable_config([]).serialize()]), encoding)
         with refused(ConfigError, "config_aliases"):
             load_config(tmp_path / "config.ocio")
 
@@ -109,6 +116,29 @@ class TestLoading:
         text = text.replace("description: Camera", "description: 2 * 3 * x, a*b*c *.exr Camera", 1)
         (tmp_path / "config.ocio").write_text(text.replace("family: Data", "family: *title"))
         assert load_config(tmp_path / "config.ocio").getColorSpace("Non-Color").getFamily() == "crfnet"
+
+    @pytest.mark.parametrize(
+        "variables",
+        [
+            {f"k{n:02}": f"$k{n + 1:02}%k{n + 1:02}%" for n in range(40)},
+            {"A": "$B$B", "B": "${A}${A}"},
+            {"D": "$", **{f"k{n:02}": f"${{D}}k{n + 1:02}${{D}}k{n + 1:02}" for n in range(40)}},
+            {f"k{n}": "x" for n in range(101)},
+        ],
+    )
+    def test_variables_that_multiply_are_refused_before_they_do(self, tmp_path, variables):
+        declared = ", ".join(f'{name}: "{value}"' for name, value in variables.items())
+        text = portable_config([]).serialize().replace("environment:\n  {}", f"environment: {{{declared}}}")
+        (tmp_path / "config.ocio").write_text(text)
+        with pytest.raises(ConfigError) as caught:
+            load_config(tmp_path / "config.ocio")
+        assert caught.value.code == "config_variables"
+
+    def test_variables_of_variables_are_accepted(self, tmp_path):
+        text = portable_config([]).serialize()
+        declared = 'environment: {SHOW: a, ROOT: /shows/$SHOW, SHOT: s1, SHOT_ROOT: "$ROOT/${SHOT}", LOOP: $LOOP}'
+        (tmp_path / "config.ocio").write_text(text.replace("environment:\n  {}", declared))
+        assert len(list(load_config(tmp_path / "config.ocio").getEnvironmentVarNames())) == 5
 
     def test_a_config_of_many_megabytes_is_refused(self, tmp_path):
         with (tmp_path / "config.ocio").open("wb") as file:

@@ -125,6 +125,16 @@ class TestBase:
         assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, ())
         assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
 
+    def test_a_rule_may_give_a_named_transform(self, studio, small_look, tmp_path):
+        config = loaded(studio)
+        config.addNamedTransform(OCIO.NamedTransform(name="curve", forwardTransform=OCIO.RangeTransform(0, 1, 0, 1)))
+        rules = config.getFileRules()
+        rules.setDefaultRuleColorSpace("curve")
+        config.setFileRules(rules)
+        studio.write_text(config.serialize())
+        result = loaded(add(studio, tmp_path / "new", small_look).path)
+        assert [space_of(result, name) for name in ("plate01.jpg", "other.xyz")] == [NAME, "curve"]
+
     def test_a_folder_that_opencolorio_takes_for_a_variable_is_refused(self, studio, small_look, tmp_path):
         moved = studio.parent.rename(tmp_path / "a$b") / studio.name
         with refused(ConfigError, "base_folder_is_variable"):

@@ -112,6 +112,19 @@ def test_other_files_are_refused(tmp_path, name, text, code):
         read_lut(path)
 
 
+@pytest.mark.parametrize("encoding", ["utf-8", "utf-16"])
+@pytest.mark.parametrize("before", ["", "<!DOCTYPE a [<!ENTITY r '&#60;REF'>]>"])
+def test_a_file_that_reads_others_is_refused(tmp_path, before, encoding):
+    """They may be devices without an end, or files that read one another twice each."""
+    (tmp_path / "other.ctf").write_text(clf().replace('compCLFversion="3.0"', 'version="1.3"'))
+    reference = f'<Reference inBitDepth="32f" outBitDepth="32f" path="{tmp_path / "other.ctf"}"/>'
+    text = f'{before}<ProcessList id="x" version="1.3">{"&r;" if before else "REF"}</ProcessList>'
+    (tmp_path / "a.ctf").write_text(text.replace("REF", reference[1:] if before else reference), encoding=encoding)
+    with pytest.raises(LutError) as caught:
+        read_lut(tmp_path / "a.ctf")
+    assert caught.value.facts["reason"] == "it reads other files"
+
+
 @pytest.mark.parametrize("make", [cube, spi1d])
 def test_decimal_commas_are_refused(tmp_path, make):
     """OpenColorIO reads "0,1" as 0."""

@@ -7,6 +7,7 @@ import OpenImageIO as oiio
 import pytest
 
 from crfnet.errors import PlateError
+from crfnet.plates import frame_files
 from crfnet.plates.frame_files import read_color_tags, read_frame
 from crfnet_core.colorimetry import DISPLAY_P3
 from crfnet_core.errors import PhotoError
@@ -40,6 +41,17 @@ def test_gray_encoded_exr_is_replicated(tmp_path, channels):
     values = np.array([[[0.25, 1.0][: len(channels)]]])
     frame = read_frame(write_exr(tmp_path / "a.exr", values, channels), is_encoded=True)
     np.testing.assert_array_equal(frame.samples, [[[0.25] * 3]])
+
+
+def test_an_exr_of_many_large_channels_is_refused(tmp_path, monkeypatch):
+    """All of them are decompressed to read three."""
+    path = write_exr(tmp_path / "a.exr", np.zeros((10, 10, 41)), ("R", "G", "B", *map(str, range(38))))
+    monkeypatch.setattr(frame_files, "MAX_PIXELS", 1100)
+    assert read_frame(path, is_encoded=True).samples.shape == (10, 10, 3)
+    monkeypatch.setattr(frame_files, "MAX_PIXELS", 1000)
+    with pytest.raises(PlateError) as caught:
+        read_frame(path, is_encoded=True)
+    assert caught.value.code == "exr_samples"
 
 
 @pytest.mark.parametrize(

@@ -1,0 +1,70 @@
+"""OpenColorIO configs: plates are added to a damaged one, which then means the same, or it is refused in one line."""
+
+import numpy as np
+import PyOpenColorIO as OCIO
+import pytest
+
+from crfnet.configs.derived import write_derived_config
+from crfnet.configs.looks import read_looks
+from crfnet.configs.sources import find_config
+from crfnet_core.errors import CRFNetError
+from tests.helpers.configs import loaded
+from tests.helpers.looks import add, all_names, write_look
+from tests.helpers.mutations import mutated, mutated_text
+
+#: Words that are put into configs, with bars between.
+WORDS = (
+    "search_path: [., luts, .]|search_path: $A:/x|inactive_colorspaces: [a, A]|&a|*a|!<Look>|!<FileTransform> {src: x}|"
+    "ocio_profile_version: 2.4|ocio_profile_version: 1|strictparsing: false|environment: {A: $A}|"
+    "family: Camera Response|"
+    r"name: CRF plate01|aliases: [crf_plate01]|roles: {}|shared_views: [a]|!<Views> [a]|isdata: true|regex: .*|{|[|- |"
+    r'name: "\ud800"|"\xff"'
+)
+
+
+@pytest.fixture(scope="module")
+def seeds(tmp_path_factory, root):
+    """The text of small configs: of an estimate, of one with two plates, and built-in ones."""
+    folder = tmp_path_factory.mktemp("seeds")
+    done = add("cg-config-v1.0.0_aces-v1.3_ocio-v2.1", folder / "cg", write_look(folder / "look", ["shot.0001.jpg"]))
+    return [path.read_text() for path in (root / "docs" / "sample" / "config.ocio", done.path)]
+
+
+def conversions(config, names):
+    """Return what becomes of a few colors, or None where OpenColorIO refuses, for each color space."""
+    results = []
+    for name in names:
+        pixels = np.linspace(0, 1, 12, dtype=np.float32).reshape(-1, 3)
+        try:
+            config.getProcessor(name, "scene_linear").getDefaultCPUProcessor().applyRGB(pixels)
+        except (OCIO.Exception, OCIO.ExceptionMissingFile):
+            results.append(None)
+        else:
+            results.append(pixels.tolist())
+    return results
+
+
+def test_damaged_configs_mean_the_same_with_a_plate_or_are_refused(fuzz, seeds, tmp_path):
+    looks, path = read_looks(write_look(tmp_path / "look")), tmp_path / "base" / "config.ocio"
+    path.parent.mkdir()
+
+    def case(generator):
+        text = seeds[generator.integers(len(seeds))]
+        is_binary = generator.random() < 0.3
+        content = mutated_text(text, generator, WORDS.split("|")).encode(errors="surrogatepass")
+        path.write_bytes(mutated(text.encode(), generator) if is_binary else content)
+        try:
+            done = write_derived_config(find_config(str(path)), tmp_path / "show", looks, overwrite=True)
+        except CRFNetError as problem:
+            line = str(problem)
+        else:
+            line = ""
+        assert line.isprintable()
+        if line:
+            return
+        base, result = loaded(path), loaded(done.path)
+        assert all_names(result) == all_names(base)
+        names = all_names(base)["spaces"]
+        assert repr(conversions(result, names)) == repr(conversions(base, names))
+
+    fuzz(case)
