@@ -97,11 +97,13 @@ def _new_spaces(
 
 def _free_space(base: ConfigSource, look: Look, names: Collection[str], lut_files: Collection[str]) -> PlateColorSpace:
     """Return a plate's color space under a name, and with a LUT file, that are new to the base and not taken."""
-    file, taken = Path(look.space.lut_file), {name.casefold() for name in names}
+    file, config = Path(look.space.lut_file), base.config
+    hidden = map(str.strip, config.getInactiveColorSpaces().split(","))
+    taken = {name.casefold() for name in (*names, *hidden, *config.getNamedTransformNames(OCIO.NAMEDTRANSFORM_ALL))}
     stems = (f"{stem}{file.suffix}" for stem in distinct_names(file.stem, look.folder))
     lut_file = next(name for name in stems if name not in lut_files and not _has_file(base, name))
     free = (name for name in distinct_names(look.space.name, look.folder) if name.casefold() not in taken)
-    name = next(name for name in free if base.config.getColorSpace(name) is None)
+    name = next(name for name in free if config.getColorSpace(name) is None)
     return replace(look.space, name=name, lut_file=lut_file)
 
 

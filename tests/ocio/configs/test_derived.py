@@ -6,6 +6,7 @@ import pytest
 
 from crfnet.configs import derived
 from crfnet.configs.files import load_config
+from crfnet.configs.plate_color_space import plates_in_config
 from crfnet.configs.portable import portable_config
 from crfnet.configs.reference_space import REC709_TO_AP0
 from crfnet.errors import ConfigError, PlateError
@@ -124,6 +125,23 @@ class TestBase:
         done = add(studio, tmp_path / "new", small_look)
         assert (load_config(done.path).getMajorVersion(), done.without_rule) == (1, ())
         assert list(load_config(done.path).getColorSpaceNames())[-1] == NAME
+
+    @pytest.mark.parametrize("is_hidden", [True, False])
+    def test_a_name_that_is_hidden_or_a_named_transform_is_not_taken(self, studio, small_look, tmp_path, is_hidden):
+        config = loaded(studio)
+        if is_hidden:
+            config.setInactiveColorSpaces(f"film, {NAME}")
+        else:
+            config.addNamedTransform(OCIO.NamedTransform(name=NAME, forwardTransform=OCIO.MatrixTransform()))
+        studio.write_text(config.serialize())
+        done = add(studio, tmp_path / "new", small_look)
+        assert [plate.name for plate in done.plates] == [f"{NAME} (look)"]
+        assert f"{NAME} (look)" in loaded(done.path).getColorSpaceNames()
+
+    def test_hidden_plates_are_listed(self, studio, small_look, tmp_path):
+        config = loaded(add(studio, tmp_path / "new", small_look).path)
+        config.setInactiveColorSpaces(NAME)
+        assert [plate.name for plate in plates_in_config(config)] == [NAME]
 
     def test_a_rule_may_give_a_named_transform(self, studio, small_look, tmp_path):
         config = loaded(studio)
