@@ -17,6 +17,7 @@ from crfnet_core.library import CameraLibrary
 from crfnet_core.photograph.metadata import FileOrigin
 from crfnet_core.photograph.metadata.devices import Device
 from crfnet_core.photograph.metadata.origin import SHAPES, Encoding
+from crfnet_core.photograph.recognition.recognition import Kind
 from crfnet_core.posterior import Family, Verdict
 from tests.helpers.cameras import camera, photograph
 from tests.helpers.looks import write_look
@@ -146,6 +147,7 @@ def test_the_schemas_name_the_code_s_own_choices():
     assert schema["$id"].endswith(f":{SCHEMA_VERSION}")
     assert set(WRITERS) >= {f".{name}" for name in entries["files"]["required"][:3]}
     assert entries["verdict"]["enum"] == [*Verdict]
+    assert entries["recognition"]["properties"]["kind"]["enum"] == [*Kind]
     assert entries["families"]["propertyNames"]["enum"] == [*Family]
     assert origin["device"]["enum"] == [*Device]
     assert origin["encoding"]["enum"] == [*Encoding]
