@@ -13,6 +13,7 @@ from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from crfnet_core.types import EqualByFields, Float32Array, Float64Array
 
@@ -31,6 +32,7 @@ class Posterior(EqualByFields):
     weights: Float64Array  # (N,): the probability of each response, given that one of them is right; their sum is 1
     unexplained: float  # the probability that none of them is
     prior: Prior | None = None  # the knowledge before photographs were seen; None if there were none
+    answer: Float64Array | None = None  # (11,): the network's own answer in EMoR weights; None of evidence on fewer
 
     @classmethod
     def from_evidences(
@@ -59,7 +61,9 @@ class Posterior(EqualByFields):
         explained = _log_sum(logarithms)
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - unexplained, 700.0))))
-        return cls(bank, weights, probability, prior if evidences else None)
+        answers = [evidence.location for evidence in evidences if evidence.is_answer]
+        answer = np.mean(answers, axis=0) if answers else None
+        return cls(bank, weights, probability, prior if evidences else None, answer)
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -72,9 +76,13 @@ class Posterior(EqualByFields):
     def curve(self) -> ResponseCurve:
         """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25.
 
+        The network's own answer, if it has one, stands in its place, projected by Eq. 26 and 27.
+
         Linear and log members count only if no other does: no answer lies between them and the others in the
         middle, and where they win, the answer is not to be trusted anyway.
         """
+        if self.answer is not None:
+            return ResponseCurve.from_samples(EmorBasis.load().reconstruct(self.answer))
         ordinary = np.where(self.bank.ordinary, self.weights, 0)
         weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
         irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
@@ -87,7 +95,7 @@ class Posterior(EqualByFields):
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         answer = self.curve.brightness
         spread = float(_weighed(self.weights, self.bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1)))
-        if self.prior is None or self.prior.evidence in (0, 1):
+        if self.prior is None or self.prior.evidence in (0, 1) or self.answer is not None:
             return spread
         moved = estimation_error(Posterior.from_evidences(self.bank, self.prior).curve, self.curve)
         doubt = (1 - self.prior.evidence) / 2
@@ -103,8 +111,8 @@ class Posterior(EqualByFields):
 
     @cached_property
     def mean_weights(self) -> Float64Array:
-        """The mean EMoR weights, shape (11,)."""
-        return self.weights @ self.bank.weights
+        """The mean EMoR weights, or the network's own answer, shape (11,)."""
+        return self.weights @ self.bank.weights if self.answer is None else self.answer
 
     @cached_property
     def expected_distance(self) -> float:

@@ -164,7 +164,8 @@ def test_a_spoiled_config_is_refused(copied, text, code):
     ("entries", "code"),
     [
         ({"opset": "18"}, "bad_model_config"),
-        ({"components": 11}, "other_kind_of_model"),
+        ({"components": 7}, "other_kind_of_model"),
+        ({"components": 11}, "bad_output"),
         ({"basis": "pca"}, "other_kind_of_model"),
         ({"input_name": "pixels"}, "other_kind_of_model"),
         ({"output_names": ["weights", "log_errors"]}, "other_kind_of_model"),
