@@ -8,6 +8,7 @@ pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.response.emor import EmorBasis
+from training.crfnet2017 import train as command
 from training.crfnet2017.export import fit_worth, fold_normalization, load_network
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
@@ -127,6 +128,30 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run,
     for name, _ in CRFNet().named_parameters():
         assert torch.allclose(averaged[name], (moving[name] + before[name]) / 2, rtol=1e-5, atol=1e-7)
     assert not torch.equal(averaged["head.weight"], moving["head.weight"])
+
+
+def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "read_splits", lambda data: {"train": scenes, "validation": scenes})
+    monkeypatch.setattr(command, "training_digest", lambda data: "data")
+    monkeypatch.setattr(command, "VALIDATION_WINDOWS", 2)
+    monkeypatch.setattr(command, "RECIPES", {"default": {"regress": replace(REGRESSION.recipe, augmented=True)}})
+    options = [
+        "train",
+        "--data",
+        "data",
+        "--run",
+        str(tmp_path),
+        "--stage",
+        "regress",
+        "--device",
+        "cpu",
+        "--steps",
+        "1",
+    ]
+    monkeypatch.setattr("sys.argv", options)
+    command.main()
+    assert capsys.readouterr().out.startswith("step,train_loss,validation\n1,")
+    assert load_network(tmp_path).network.head.out_features == 11
 
 
 def test_another_configuration_is_refused(scenes, validation, run):
