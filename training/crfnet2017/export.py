@@ -15,7 +15,7 @@ from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM
 from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
-from training.crfnet2017.train import validation_windows
+from training.crfnet2017.train import VALIDATION_BATCH, validation_windows
 from training.crfnet2017.windows import Windows, read_splits
 from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
@@ -89,7 +89,7 @@ def fit_worth(network: ShippedCRFNet, validation: Windows, responses: Tensor) ->
     """Fit the evidence of a network to validation windows, and return its mean distance from their true weights."""
     known = torch.from_numpy(EmorBasis.load().project(responses.double().numpy()))
     with torch.inference_mode():
-        answers = torch.cat([network.network(part.float() / 255) for part in validation.codes.split(25)]).double()
+        answers = torch.cat([network.network(part) for part in validation.inputs(VALIDATION_BATCH)]).double()
     true = known[validation.classes]
     network.state_worth(answers, true, known)
     return float((answers - true).norm(dim=1).mean())

@@ -106,7 +106,8 @@ class Trainer:
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(recipe, self.state.step) * group["factor"]
         self.state.network.train()
-        loss = self.task.loss(self._outputs(self.state.network, batch.inputs()), batch.classes)
+        (inputs,) = batch.inputs(recipe.batch)
+        loss = self.task.loss(self._outputs(self.state.network, inputs), batch.classes)
         optimizer.zero_grad()
         loss.backward()
         if recipe.clip:
@@ -120,8 +121,7 @@ class Trainer:
         """Return the mean figure of the held-out windows by the average: top-1 accuracy, or E_est."""
         network = self.state.averaged.module.eval()
         with torch.inference_mode():
-            parts = self.validation.inputs().split(VALIDATION_BATCH)
-            outputs = torch.cat([self._outputs(network, part) for part in parts])
+            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
         return float(self.task.figures(outputs, self.validation.classes).mean())
 
     def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:

@@ -7,6 +7,7 @@ every window has a photograph of its own. `render` applies the response and roun
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -29,6 +30,9 @@ EXPOSURES = (0.6, 1.4)
 
 #: Photographs tried for a window before its response is drawn anew: under some, hardly a window covers the range.
 TRIED = 240
+
+#: Windows that are rendered at a time: a batch of an accelerator.
+PART = 256
 
 
 @dataclass(frozen=True)
@@ -63,9 +67,10 @@ class Windows:
     classes: Tensor
     exposures: Tensor
 
-    def inputs(self) -> Tensor:
-        """Return the network's input: code values in [0, 1], float32 (N, 3, 227, 227)."""
-        return (self.codes.float() / 255).contiguous(memory_format=torch.channels_last)
+    def inputs(self, part: int = PART) -> Iterator[Tensor]:
+        """Yield the network's input by parts: code values in [0, 1], float32 (N, 3, 227, 227)."""
+        for codes in self.codes.split(part):
+            yield (codes.float() / 255).contiguous(memory_format=torch.channels_last)
 
 
 def read_splits(data: Path) -> dict[str, TrainingScenes]:
@@ -105,17 +110,25 @@ def draw_windows(scenes: TrainingScenes, count: int, *, seed: int, augment: bool
     for turn in range(TRIED * count):
         if turn % TRIED == 0:
             drawn.classes[pending] = _integers(len(scenes.curves), len(pending), generator)
-        exposures = _uniform(EXPOSURES, len(pending), generator)
-        light = _crops(scenes, len(pending), generator)
-        if augment:
-            light = augmented(light, _crops(scenes, len(pending), generator), generator)
-        codes = render(light, scenes, drawn.classes[pending], exposures)
-        covers = filled(codes) >= FULL_COVERAGE
-        drawn.codes[pending[covers]], drawn.exposures[pending[covers]] = codes[covers], exposures[covers]
-        pending = pending[~covers]
+        drawn.exposures[pending] = _uniform(EXPOSURES, len(pending), generator)
+        places = _places(scenes, len(pending), generator)
+        parts = zip(pending.split(PART), places.split(PART), strict=True)
+        covers = [_fill(drawn, scenes, *part, generator if augment else None) for part in parts]
+        pending = pending[~torch.cat(covers)]
         if len(pending) == 0:
             return drawn
     raise ValueError("hardly a window of these scenes covers the range of brightness; give other scenes")
+
+
+def _fill(
+    drawn: Windows, scenes: TrainingScenes, index: Tensor, places: Tensor, generator: torch.Generator | None
+) -> Tensor:
+    """Render the windows of a batch at `index`, in place, and return which of them cover the range."""
+    light = _crops(scenes, places)
+    if generator is not None:
+        light = augmented(light, _crops(scenes, _places(scenes, len(index), generator)), generator)
+    drawn.codes[index] = render(light, scenes, drawn.classes[index], drawn.exposures[index])
+    return filled(drawn.codes[index]) >= FULL_COVERAGE
 
 
 def render(light: Tensor, scenes: TrainingScenes, classes: Tensor, exposures: Tensor) -> Tensor:
@@ -135,13 +148,18 @@ def filled(codes: Tensor) -> Tensor:
     return seen.scatter_(1, codes.flatten(1).long(), 1).sum(dim=1)
 
 
-def _crops(scenes: TrainingScenes, count: int, generator: torch.Generator) -> Tensor:
-    """Return `count` squares of irradiance at random places of random scenes, float16 (N, 3, 227, 227)."""
-    numbers = _integers(len(scenes.pixels), count, generator).tolist()
-    places = torch.rand(count, 2, device=scenes.curves.device, generator=generator).tolist()
+def _places(scenes: TrainingScenes, count: int, generator: torch.Generator) -> Tensor:
+    """Return random scenes and places in them: number, and fractions of height and width, float32 (count, 3)."""
+    numbers = _integers(len(scenes.pixels), count, generator)
+    fractions = torch.rand(count, 2, device=generator.device, generator=generator)
+    return torch.cat([numbers[:, None], fractions], dim=1)
+
+
+def _crops(scenes: TrainingScenes, places: Tensor) -> Tensor:
+    """Return the squares of irradiance at `places`, float16 (N, 3, 227, 227)."""
     crops = []
-    for number, place in zip(numbers, places, strict=True):
-        scene = scenes.pixels[number]
+    for number, *place in places.tolist():
+        scene = scenes.pixels[int(number)]
         y, x = (int(part * (side - WINDOW_SIZE + 1)) for part, side in zip(place, scene.shape[1:], strict=True))
         crops.append(scene[:, y : y + WINDOW_SIZE, x : x + WINDOW_SIZE])
     return torch.stack(crops)

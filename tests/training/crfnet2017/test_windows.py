@@ -25,7 +25,7 @@ def test_scenes_are_averaged_to_just_above_a_window(size, shape):
 
 @pytest.mark.parametrize("augment", [False, True])
 def test_windows_meet_the_papers_rule(scenes, augment):
-    windows = draw_windows(scenes, 6, seed=1, augment=augment).inputs()
+    (windows,) = draw_windows(scenes, 6, seed=1, augment=augment).inputs()
     assert windows.shape == (6, 3, 227, 227)
     assert min(filled_bins(window.numpy()) for window in windows) >= 220
 
