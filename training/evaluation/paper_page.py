@@ -42,7 +42,7 @@ TEMPLATE = Path(__file__).with_name("paper_page.md")
 
 #: Heads of groups of rows -> label of a row -> condition of the protocol `PAPER`.
 EXPERIMENTS: dict[str, dict[str, str]] = {
-    "Table 2: exposure, times s_crf": {
+    "Table 2: exposure": {
         "0.6": "exposure 0.6",
         "0.8": "exposure 0.8",
         "1.0": "clean",
@@ -50,18 +50,18 @@ EXPERIMENTS: dict[str, dict[str, str]] = {
         "1.4": "exposure 1.4",
     },
     "Sec. 5.2: resolution": {f"{times}x": f"resolution {times}x" for times in (1, 2, 4)},
-    "Sec. 5.3": {"without color": "grayscale"},
-    "Table 3: noise, variance": {each: f"noise variance {each}" for each in ("0.5", "1", "2", "4")},
-    "Table 4: blur, variance": {each: f"blur variance {each}" for each in ("1", "2", "4", "8")},
+    "Sec. 5.3:": {"without color": "grayscale"},
+    "Table 3: noise": {each: f"noise variance {each}" for each in ("0.5", "1", "2", "4")},
+    "Table 4: blur": {each: f"blur variance {each}" for each in ("1", "2", "4", "8")},
     "Fig. 7: severe exposure": {each: f"exposure {each}" for each in ("0.15", "4")},
     "Fig. 8: white balance": {each: f"{each} white balance" for each in ("cool", "warm")},
 }
 
 #: Groups that are plotted, the place of the clean photographs on their axis, and the word under it.
 PLOTTED = {
-    "Table 2: exposure, times s_crf": (None, "exposure, times s_crf"),
-    "Table 3: noise, variance": (0.0, "variance of the noise"),
-    "Table 4: blur, variance": (0.0, "variance of the blur"),
+    "Table 2: exposure": (None, "exposure, times s_crf"),
+    "Table 3: noise": (0.0, "variance of the noise"),
+    "Table 4: blur": (0.0, "variance of the blur"),
 }
 
 #: Quantiles of the network's E_est on P0: of the photographs whose curves are drawn.
@@ -95,14 +95,15 @@ class Page:
     def experiments(self) -> str:
         """Return the table of all conditions."""
         stated = [_stated(paper.OVERALL), *self.cells("P0", estimators=self.estimators[1:3]), _gamma(self.report)]
-        rows = [["**Sec. 4**: all photographs of P0", *stated]]
+        rows = [["Sec. 4: all photographs", *stated]]
         for head, conditions in EXPERIMENTS.items():
-            rows += [[f"**{head}** {label}", *self.cells(PAPER, name)] for label, name in conditions.items()]
+            rows += [[f"{head} {label}", *self.cells(PAPER, name)] for label, name in conditions.items()]
         return markdown_table(["E_est [95 %] (E_lin)", *self.estimators], rows)
 
     def wins(self) -> str:
         """Return the table of Sec. 5.6."""
-        rows = [["the paper", *(f"{part:.0%}" for part in (paper.WIN_RATE.estimation, paper.WIN_RATE.linearization))]]
+        rates = (paper.WIN_RATE.estimation, paper.WIN_RATE.linearization)
+        rows = [["the paper", *(f"{100 * rate:.0f} %" for rate in rates)]]
         for name in self.models:
             row = self.report.row("P0", name)
             rows.append([name, *(_percent(row[f"{error} win rate"]) for error in ("E_est", "E_lin"))])
@@ -217,7 +218,11 @@ def _save(figure: Figure, path: Path) -> None:
 
 def _errors(row: ReportRow) -> str:
     """Return E_est with its interval, and E_lin in parentheses."""
-    return f"{_interval(row['E_est mean'])} ({value(row['E_lin mean']):.2f})" if row else ""
+    if not row:
+        return ""
+    linearization = row["E_lin mean"]
+    stated = f"{linearization[0]:.2f}" if isinstance(linearization, list | tuple) else f"{linearization:.3f}"
+    return f"{_interval(row['E_est mean'])} ({stated})"
 
 
 def _interval(figure: Any, decimals: int = 2) -> str:

@@ -13,7 +13,7 @@ from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import simulated
 from training.evaluation.measure.simulated import Job
 from training.evaluation.models import Model
-from training.evaluation.plan import CLEAN, Condition
+from training.evaluation.plan import CLEAN, RESOLUTIONS, Condition
 from training.evaluation.protocols import Evaluation, Settings
 from training.evaluation.report.document import read_report
 from training.evaluation.test_sets import bundled_test_set
@@ -79,6 +79,16 @@ def test_stress_hardly_changes_a_model_that_hardly_looks(stressed):
 def test_one_window_is_asked_alone_on_clean_photographs(stressed):
     names = [row["estimator"] for row in stressed[1].table("paper") if row["group"] == "clean"]
     assert names[:3] == ["fixed_model", "fixed_model, one chosen window", "fixed_model, one random window"]
+
+
+def test_resolutions_are_area_means_of_an_original():
+    test_set = bundled_test_set()
+    test_set = replace(test_set, originals=test_set.scenes[:1])
+    number, (usual, *_, full) = len(test_set.scenes), RESOLUTIONS
+    job = Job("paper", (), test_set, ())
+    small, large = (job.photo(number, 0, condition) for condition in (usual, full))
+    assert small.shape[:2] == tuple(side // 4 for side in large.shape[:2])
+    assert test_set.digest == bundled_test_set().digest
 
 
 def test_the_report_shows_every_table(stressed):
