@@ -160,7 +160,7 @@ def draw_stress(path: Path, report: Report) -> None:
                 [float(at) for at in conditions], [value(error) for error in errors], "o-", color=color, label=name
             )
         axes.set_xlabel(word)
-        axes.set_ylim(bottom=0)
+    figure.axes[0].set_ylim(bottom=0)  # for all, once each has widened the range
     figure.axes[0].set_ylabel("E_est")
     figure.axes[0].legend(fontsize=7)
     _save(figure, path)
