@@ -31,6 +31,7 @@ REMEDIES = {
 
 #: Code of a warning -> the few words that fit into Blender's status bar; other warnings stand there as they are.
 SHORT_WARNINGS = {
+    "answer_of_windows": "the paper's network, worse than the default",
     "clipped": "mostly clipped",
     "developed": "developed from a raw file by {editor}",
     "edited": "saved by {editor}",

@@ -48,7 +48,8 @@ def estimate_response(
     Windows are cut from every photograph. The network reads them, or statistics that are counted in them, and states
     evidence: which responses make such a photograph likely. Prior times the evidence of all photographs is the
     posterior over a bank of responses, and the answer is their mean in log irradiance: the response of least expected
-    squared error in stops.
+    squared error in stops. A network whose evidence is about whole responses answers with the mean of its windows that
+    agree, as in the CRF-net paper; its posterior gives only the uncertainty.
 
     Parameters
     ----------
@@ -112,7 +113,7 @@ def estimate_from_evidence(
         verdict=_verdict(posterior, recognition, doubts),
         prior=prior.name,
         origins=origins,
-        warnings=_warnings(photographs, origins, recognition, doubts),
+        warnings=_warnings(photographs, origins, recognition, doubts, has_own_answer=posterior.answer is not None),
         model=model,
         photos=tuple(photograph.name for photograph in photographs),
         recognition=recognition,
@@ -162,9 +163,13 @@ def _warnings(
     origins: Sequence[FileOrigin],
     recognition: Recognition | None,
     doubts: Sequence[Notice],
+    *,
+    has_own_answer: bool,
 ) -> tuple[Notice, ...]:
     """Return the reasons to expect a poor estimate."""
     warnings = [*input_warnings(recognition, origins), *doubts]
+    if has_own_answer:
+        warnings.append(Notice("answer_of_windows"))
     windows = [window for photograph in photographs for window in photograph.windows]
     if not any(window.covers_range for window in windows):
         warnings.append(Notice("narrow_range"))

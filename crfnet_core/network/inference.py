@@ -98,5 +98,5 @@ def _statistics(windows: Float32Array, progress: Progress | None) -> Float32Arra
 
 
 def _evidences(outputs: Sequence[Float32Array]) -> tuple[Evidence, ...]:
-    """Return the evidence in a network's locations (N, 5), factors (N, 5, 5) and log-odds (N, 3)."""
+    """Return the evidence in a network's locations (N, K), factors (N, K, K) and log-odds (N, 3)."""
     return tuple(Evidence(*parts) for parts in zip(*(output.astype(np.float64) for output in outputs), strict=True))

@@ -11,6 +11,7 @@ from typing import Any, get_origin, get_type_hints
 from crfnet_core.errors import ModelError
 from crfnet_core.files import atomic_write_text, read_bytes, read_json
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
+from crfnet_core.response.emor import COMPONENTS
 from crfnet_core.statistics.windows import WINDOW_SIZE
 
 #: The packaged models, and the one that is used unless another is asked for.
@@ -20,8 +21,10 @@ DEFAULT_MODEL = MODELS / "photograph-statistics-2.4"
 #: Size in bytes of the largest model.onnx that is read.
 MAX_GRAPH_SIZE = 256 * 2**20
 
-#: Basis, number of weights and side of the windows that every network is made for, and the inputs that it may read.
-KIND = ("emor", EVIDENCE_WEIGHTS, WINDOW_SIZE)
+#: Basis and side of the windows that every network is made for, the numbers of weights that its evidence may be about,
+#: and the inputs that it may read.
+KIND = ("emor", WINDOW_SIZE)
+WEIGHTS = (EVIDENCE_WEIGHTS, COMPONENTS)
 INPUTS = ("windows", "statistics")
 
 
@@ -32,11 +35,11 @@ class ModelConfig:
     name: str  # the model's and its folder's
     sha256: str  # of model.onnx; checked at load
     basis: str  # the response model of the outputs: "emor"
-    components: int  # number of its first weights that the evidence is about
+    components: int  # number K of its first weights that the evidence is about; 11 are a whole response: the answer
     window_size: int  # side of a window in samples
     #: "windows", float32 (N, 227, 227, 3), or "statistics" of them, float32 (N, LENGTH): see `crfnet_core.statistics`.
     input_name: str
-    #: Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, 5), factors (N, 5, 5) and log-odds (N,
+    #: Evidence (`crfnet_core.posterior.Evidence`) of each window: locations (N, K), factors (N, K, K) and log-odds (N,
     #: 3); of a network that pools its windows, then the same of all of them together, (1, ...).
     output_names: tuple[str, ...]
     normalization: str  # the scale of the input, in words
@@ -59,9 +62,9 @@ class ModelConfig:
             raise ModelError("bad_model_config", path=path, entries=", ".join(unfit))
         names = tuple(map(str, entries["output_names"]))
         config = cls(**{name: entries[name] for name in _KINDS} | {"output_names": names})
-        kind = (config.basis, config.components, config.window_size)
+        kind = (config.basis, config.window_size)
         is_evidence = len(set(names)) == len(names) in (3, 6)  # of windows, and of all of them together if it pools
-        if kind != KIND or config.input_name not in INPUTS or not is_evidence:
+        if kind != KIND or config.components not in WEIGHTS or config.input_name not in INPUTS or not is_evidence:
             raise ModelError("other_kind_of_model", path=path, found=kind, needed=KIND)
         return config
 

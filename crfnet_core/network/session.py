@@ -11,12 +11,8 @@ import numpy as np
 from crfnet_core.errors import ModelError
 from crfnet_core.network.model import ModelConfig
 from crfnet_core.network.runtime import onnxruntime
-from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.posterior.families import UNUSUAL
 from crfnet_core.types import Float32Array
-
-#: Shapes of the outputs: location, factor and log-odds, once or twice.
-OUTPUT_SHAPES = ((EVIDENCE_WEIGHTS,), (EVIDENCE_WEIGHTS, EVIDENCE_WEIGHTS), (len(UNUSUAL),))
 
 #: A tensor whose weights lie in another file has an entry "location"; in Protocol Buffers the last byte of a text's
 #: length, here 8, stands before it.
@@ -65,14 +61,15 @@ class Session:
         """
         options = onnxruntime.RunOptions()
         options.log_severity_level = _FATAL
-        names = list(self._config.output_names)
+        names, weights = list(self._config.output_names), self._config.components
+        shapes = ((weights,), (weights, weights), (len(UNUSUAL),))  # of location, factor and log-odds
         try:
             read = {self._config.input_name: inputs[:, : self._read]}
             outputs: list[Float32Array] = self._session.run(names, read, options)
         except _PROBLEMS as problem:
             raise ModelError("failing_graph", folder=self._folder, reason=problem) from None
         for number, (name, output) in enumerate(zip(names, outputs, strict=True)):
-            shape = (len(inputs) if number < 3 else 1, *OUTPUT_SHAPES[number % 3])
+            shape = (len(inputs) if number < 3 else 1, *shapes[number % 3])
             if output.shape != shape or not np.isfinite(output).all():
                 raise ModelError("bad_output", folder=self._folder, name=name, shape=output.shape, needed=shape)
         return outputs

@@ -13,6 +13,7 @@ from crfnet_core.posterior.families import UNUSUAL, Family
 from crfnet_core.posterior.prior import Prior
 from crfnet_core.posterior.responses import BAND_SAMPLES, SHAPE_SAMPLES, ResponseBank
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
+from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from crfnet_core.types import EqualByFields, Float32Array, Float64Array
 
@@ -34,6 +35,7 @@ class Posterior(EqualByFields):
     #: (6,): the probability of each of `ResponseBank.plain`, given that one of these or of the bank is right. They
     #: count in the expected errors and the band, and among the unexplained, and never in the answer.
     plain: Float64Array = field(default_factory=lambda: np.zeros(len(ResponseBank.plain().families)))
+    answer: Float64Array | None = None  # (11,): the network's own answer in EMoR weights; None of evidence on fewer
 
     @classmethod
     def from_evidences(
@@ -69,7 +71,9 @@ class Posterior(EqualByFields):
         weights = np.exp(logarithms - explained)
         probability = float(1 / (1 + np.exp(min(explained - np.logaddexp(unexplained, plain_sum), 700.0))))
         plain_weights = np.exp(plain - np.logaddexp(explained, plain_sum)) if prior.plain else np.zeros(len(plain))
-        return cls(bank, weights, probability, prior if evidences else None, plain_weights)
+        answers = [evidence.location for evidence in evidences if evidence.is_answer]
+        answer = np.mean(answers, axis=0) if answers else None
+        return cls(bank, weights, probability, prior if evidences else None, plain_weights, answer)
 
     @cached_property
     def families(self) -> dict[Family, float]:
@@ -82,9 +86,13 @@ class Posterior(EqualByFields):
     def curve(self) -> ResponseCurve:
         """The answer: the response whose inverse is the geometric mean of the inverses, weighted: Eq. 25.
 
+        The network's own answer, if it has one, stands in its place, projected by Eq. 26 and 27.
+
         Linear and log members count only if no other does: no answer lies between them and the others in the
         middle, and where they win, the answer is not to be trusted anyway.
         """
+        if self.answer is not None:
+            return ResponseCurve.from_samples(EmorBasis.load().reconstruct(self.answer))
         ordinary = np.where(self.bank.ordinary, self.weights, 0)
         weights = ordinary / ordinary.sum() if ordinary.any() else self.weights
         irradiance = np.exp2(_weighed(weights, self.bank.log_irradiance, lambda rows: rows))
@@ -97,7 +105,7 @@ class Posterior(EqualByFields):
         """The expected E_est of the answer: Eq. 28 of docs/METHOD.md."""
         answer = self.curve.brightness
         spread = self._expected(lambda bank: bank.brightness, lambda rows: np.linalg.norm(rows - answer, axis=1))
-        if self.prior is None or self.prior.evidence in (0, 1):
+        if self.prior is None or self.prior.evidence in (0, 1) or self.answer is not None:
             return spread
         moved = estimation_error(Posterior.from_evidences(self.bank, self.prior).curve, self.curve)
         doubt = (1 - self.prior.evidence) / 2
@@ -121,8 +129,8 @@ class Posterior(EqualByFields):
 
     @cached_property
     def mean_weights(self) -> Float64Array:
-        """The mean EMoR weights, shape (11,)."""
-        return self.weights @ self.bank.weights
+        """The mean EMoR weights, or the network's own answer, shape (11,)."""
+        return self.weights @ self.bank.weights if self.answer is None else self.answer
 
     @cached_property
     def expected_distance(self) -> float:

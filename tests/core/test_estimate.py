@@ -18,6 +18,7 @@ from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Evidence, Family, Posterior, Verdict
 from crfnet_core.posterior.factors import family_factors
+from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.metrics import estimation_error
 from tests.helpers.posteriors import even_prior, evidence_for, small_bank
@@ -83,6 +84,39 @@ def test_a_network_that_pools_has_the_last_word(bank):
     true = bank.brightness[2]
     assert np.linalg.norm(estimate.curve.brightness - true) < 0.1
     assert [window.kept for window in estimate.windows] == [True, True, False, True, True]
+
+
+def answer(weights):
+    """Evidence about a whole response, which is the answer of a window."""
+    return Evidence(np.asarray(weights, float), np.eye(11), np.full(3, -4.0))
+
+
+def test_windows_with_whole_responses_are_answered_by_the_mean_of_those_that_agree(bank):
+    """The bank and the prior have no part in the answer."""
+    rows = bank.weights[4] + 0.3 * np.random.default_rng(2).standard_normal((6, 11))
+    rows[2, 0] += 9
+    estimate = asked(photo(), FakeNetwork([answer(row) for row in rows]))
+    mean = np.delete(rows, 2, axis=0).mean(axis=0)
+    expected = ResponseCurve.from_samples(EmorBasis.load().reconstruct(mean))
+    np.testing.assert_allclose(estimate.curve.brightness, expected.brightness, atol=1e-12)
+    np.testing.assert_array_equal([window.weights for window in estimate.windows], rows)
+    assert [window.kept for window in estimate.windows] == [True, True, False, True, True, True]
+    assert [warning.code for warning in estimate.warnings] == ["answer_of_windows"]
+
+
+def test_a_mean_of_windows_that_is_no_response_is_made_one():
+    wild = np.zeros(11)
+    wild[5:] = 3.0
+    assert np.diff(EmorBasis.load().reconstruct(wild)).min() < 0
+    brightness = asked(photo(), FakeNetwork([answer(wild)] * 2)).curve.brightness
+    assert (brightness[0], brightness[-1]) == (0, 1)
+    assert np.diff(brightness).min() > 0
+
+
+def test_an_answer_far_from_the_bank_is_expected_to_be_wrong(bank):
+    near, far = bank.weights[4], bank.weights[4] + np.eye(11)[0] * 30
+    first, second = (asked(photo(), FakeNetwork([answer(row)] * 2)) for row in (near, far))
+    assert second.uncertainty > 10 > 3 * first.uncertainty
 
 
 def test_the_estimate_says_what_the_posterior_says(bank):

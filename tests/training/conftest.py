@@ -7,13 +7,15 @@ import pytest
 @pytest.fixture(scope="session")
 def scenes():
     """Smooth scenes from black to clipping, and four responses, as the paper's network trains on them."""
+    import torch
+
     from training.crfnet2017.windows import TrainingScenes
 
     rng = np.random.default_rng(0)
-    ramp = np.linspace(0, 1.2, 260 * 300 * 3).reshape(260, 300, 3)
-    pixels = tuple((ramp * rng.uniform(0.8, 1.2, ramp.shape)).astype(np.float16) for _ in range(2))
+    ramp = np.linspace(0, 1.2, 260 * 300 * 3).reshape(260, 300, 3).transpose(2, 0, 1)
+    pixels = tuple(torch.from_numpy((ramp * rng.uniform(0.8, 1.2, ramp.shape)).astype(np.float16)) for _ in range(2))
     curves = np.linspace(0, 1, 1024) ** np.array([[0.3], [0.45], [0.7], [1.0]])
-    return TrainingScenes(pixels, np.float32(curves), np.float32([1, 1.1, 0.9, 1]))
+    return TrainingScenes(pixels, torch.from_numpy(np.float32(curves)), torch.tensor([1, 1.1, 0.9, 1]))
 
 
 @pytest.fixture

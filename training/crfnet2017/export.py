@@ -1,7 +1,7 @@
 """Turn a run of the regression into a model folder: ``python -m training.crfnet2017.export --run DIR --data DIR ...``.
 
-The steps are as in `training.export.model_folder`. The paper's network states no uncertainty, so what its answers
-are worth as evidence is fitted on photographs of the validation scenes: see `training.crfnet2017.likelihood`.
+The steps are as in `training.export.model_folder`. The network answers with EMoR weights and no uncertainty; what an
+answer is worth as evidence is the covariance of its errors on windows of the validation scenes.
 """
 
 from __future__ import annotations
@@ -12,48 +12,45 @@ import torch
 from torch import Tensor, nn
 
 from crfnet_core.posterior import UNUSUAL
-from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from training.crfnet2017.likelihood import Likelihood, fit, validation_answers
+from crfnet_core.posterior.evidence import DEGREES_OF_FREEDOM
+from crfnet_core.response.emor import COMPONENTS, EmorBasis
 from training.crfnet2017.network import CRFNet
+from training.crfnet2017.train import VALIDATION_BATCH, validation_windows
+from training.crfnet2017.windows import Windows, read_splits
 from training.export.golden import golden_windows
 from training.export.model_folder import export_options, write_model
 from training.export.onnx_graph import WINDOWED, rounded
 
 
-class WindowAnswers(nn.Module):
-    """Windows of shape (N, 227, 227, 3) in [0, 1] to EMoR weights (N, 11)."""
+class ShippedCRFNet(nn.Module):
+    """The network as the product runs it: windows of shape (N, 227, 227, 3) in [0, 1] to evidence about 11 weights."""
 
     def __init__(self, network: CRFNet) -> None:
         super().__init__()
         self.network = network
-
-    def forward(self, windows: Tensor) -> Tensor:
-        """Return the answers of the network for each window."""
-        answers: Tensor = self.network(windows.permute(0, 3, 1, 2))
-        return answers
-
-
-class ShippedCRFNet(nn.Module):
-    """The network as the product runs it: its answers as evidence.
-
-    likelihood: what its answers are worth
-    """
-
-    def __init__(self, answers: WindowAnswers, likelihood: Likelihood) -> None:
-        super().__init__()
-        self.answers = answers
-        for name in ("slopes", "intercepts", "factor"):
-            self.register_buffer(name, torch.from_numpy(getattr(likelihood, name)).float())
-        self.log_odds = likelihood.log_odds
+        self.register_buffer("factor", torch.eye(COMPONENTS))
+        self.log_odds = 0.0
 
     def forward(self, windows: Tensor) -> tuple[Tensor, Tensor, Tensor]:
-        """Return the evidence of windows, shape (N, 227, 227, 3) in [0, 1]."""
-        locations = (self.answers(windows)[:, :EVIDENCE_WEIGHTS] - self.intercepts) / self.slopes
+        """Return the network's answers, and the factors and log-odds, which are the same for every window."""
+        answers: Tensor = self.network(windows.permute(0, 3, 1, 2))
         factors = self.factor.expand(windows.shape[0], -1, -1)
-        return locations, factors, locations[:, : len(UNUSUAL)] * 0 + self.log_odds
+        return answers, factors, answers[:, : len(UNUSUAL)] * 0 + self.log_odds
+
+    def state_worth(self, answers: Tensor, true: Tensor, known: Tensor) -> None:
+        """Fit the evidence to answers and true weights, (N, 11), and the weights of all known responses, (M, 11).
+
+        The log-odds are the mean log likelihood of the known responses, so that an answer says nothing for or against
+        the families `UNUSUAL`, which the network does not know.
+        """
+        scale = torch.cov((answers - true).T) * (DEGREES_OF_FREEDOM - 2) / DEGREES_OF_FREEDOM
+        factor = torch.linalg.cholesky(torch.linalg.inv(scale))
+        squares = ((answers[:, None] - known) @ factor).square().sum(dim=2)
+        likelihoods = (1 + squares / DEGREES_OF_FREEDOM) ** (-(DEGREES_OF_FREEDOM + COMPONENTS) / 2)
+        self.factor, self.log_odds = factor.float(), float(likelihoods.mean(dim=1).log().mean())
 
 
-def load_network(run: Path) -> WindowAnswers:
+def load_network(run: Path) -> ShippedCRFNet:
     """Return the best network of a run, ready to infer, with its normalizations folded.
 
     Raise SystemExit if the run is of the first stage, which classifies responses.
@@ -63,7 +60,7 @@ def load_network(run: Path) -> WindowAnswers:
     if state["network"]["head.weight"].shape != network.head.weight.shape:
         raise SystemExit(f"{run}: is a run of the stage classify; export one of the stage regress")
     network.load_state_dict(state["network"])
-    return WindowAnswers(fold_normalization(network)).eval()
+    return ShippedCRFNet(fold_normalization(network)).eval()
 
 
 def fold_normalization(network: CRFNet) -> CRFNet:
@@ -77,26 +74,37 @@ def fold_normalization(network: CRFNet) -> CRFNet:
     return network
 
 
-def cost_of_rounding(network: WindowAnswers) -> float:
+def cost_of_rounding(network: ShippedCRFNet) -> float:
     """Return the largest change of a weight (units of E_est) on the golden windows when the network is `rounded`.
 
     The network stays rounded.
     """
     windows = torch.from_numpy(golden_windows())
     with torch.inference_mode():
-        before = network(windows)
-        return float((rounded(network)(windows) - before).abs().max())
+        before = network(windows)[0]
+        return float((rounded(network)(windows)[0] - before).abs().max())
+
+
+def fit_worth(network: ShippedCRFNet, validation: Windows, responses: Tensor) -> float:
+    """Fit the evidence of a network to validation windows, and return its mean distance from their true weights."""
+    known = torch.from_numpy(EmorBasis.load().project(responses.double().numpy()))
+    with torch.inference_mode():
+        answers = torch.cat([network.network(part) for part in validation.inputs(VALIDATION_BATCH)]).double()
+    true = known[validation.classes]
+    network.state_worth(answers, true, known)
+    return float((answers - true).norm(dim=1).mean())
 
 
 def main() -> None:
     """Export the best network of a run."""
     parser = export_options((__doc__ or "").splitlines()[0])
-    parser.add_argument("--data", type=Path, required=True, help="folder with dorf, camera_curves and linear")
+    parser.add_argument("--data", type=Path, required=True, help="folder with dorf and linear")
     options = parser.parse_args()
     network = load_network(options.run)
     print(f"half precision moves the weights by at most {cost_of_rounding(network):.1e}")
-    likelihood = fit(*validation_answers(network, options.data))
-    write_model(ShippedCRFNet(network, likelihood).eval(), WINDOWED, options)
+    scenes = read_splits(options.data)["validation"]
+    print(f"E_est of the validation windows: {fit_worth(network, validation_windows(scenes), scenes.curves):.3f}")
+    write_model(network, WINDOWED, options)
 
 
 if __name__ == "__main__":

@@ -14,14 +14,14 @@ STAGES = ("classify", "regress")
 
 
 class StageTask:
-    """The loss and the validation figure of a stage, for windows under `curves`, shape (N, 1024), of DoRF (N = 201).
+    """The loss and the validation figure of a stage, for windows under `responses`, shape (N, 1024), of DoRF (N = 201).
 
     "classify" has cross-entropy and top-1 accuracy, "regress" the distance of the EMoR weights and the mean E_est.
     `squared` is as in `training.crfnet2017.recipes.Recipe`.
     """
 
-    def __init__(self, stage: str, curves: np.ndarray, *, squared: bool, device: torch.device) -> None:
-        basis = EmorBasis.load()
+    def __init__(self, stage: str, responses: Tensor, *, squared: bool) -> None:
+        basis, curves, device = EmorBasis.load(), responses.cpu().double().numpy(), responses.device
         weights = basis.project(curves)
         residuals = np.linalg.norm(basis.reconstruct(weights) - curves, axis=1)
         self.classifies, self.squared = stage == "classify", squared

@@ -13,31 +13,22 @@ import time
 from dataclasses import asdict, dataclass, field, replace
 from pathlib import Path
 
-import numpy as np
 import torch
 from torch import Tensor, nn
 from torch.optim.swa_utils import AveragedModel
-from torch.utils.data import DataLoader
 from tqdm import tqdm
 
 from crfnet_core.files import atomic_write, atomic_write_text
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
 from training.crfnet2017.stages import STAGES, StageTask
-from training.crfnet2017.windows import (
-    LinearWindows,
-    TrainingScenes,
-    WindowStream,
-    draw_windows,
-    read_splits,
-    render_windows,
-)
+from training.crfnet2017.windows import TrainingScenes, Windows, draw_windows, read_splits
 from training.data.manifest import training_digest
 from training.network.moving_average import moving_average, resume_average
 from training.provenance import record_run
 
-#: Validation windows, the same for every run, and how many go through the network at once.
-VALIDATION_WINDOWS, VALIDATION_BATCH = 2000, 25
+#: Validation windows, the seed that makes them the same for every run, and how many run at once.
+VALIDATION_WINDOWS, VALIDATION_SEED, VALIDATION_BATCH = 2000, 2017, 25
 
 #: Steps between validations, and seconds between checkpoints where no validation comes before.
 VALIDATE_EVERY, CHECKPOINT_SECONDS = 500, 300.0
@@ -91,24 +82,16 @@ class Trainer:
     """One stage of the training, from where `state` stands."""
 
     def __init__(
-        self,
-        config: RunConfig,
-        task: StageTask,
-        state: TrainingState,
-        scenes: TrainingScenes,
-        validation: LinearWindows,
+        self, config: RunConfig, task: StageTask, state: TrainingState, scenes: TrainingScenes, validation: Windows
     ) -> None:
         self.config, self.task, self.state, self.scenes, self.validation = config, task, state, scenes, validation
-        self.device = task.weights.device
-        self.curves = torch.from_numpy(scenes.curves).to(self.device)
 
-    def run(self, folder: Path, steps: range, workers: int) -> None:
-        """Do the steps; validate, log and save."""
+    def run(self, folder: Path, steps: range) -> None:
+        """Do the steps; validate, log and save. The windows of a step depend on the seed and the step only."""
         state, recipe, losses, saved = self.state, self.config.recipe, list[Tensor](), time.monotonic()
-        stream = WindowStream(self.scenes, batch=recipe.batch, steps=steps, seed=self.config.seed)
-        batches = DataLoader(stream, batch_size=None, num_workers=workers)
-        for batch in tqdm(batches, desc=self.config.stage, unit="step", initial=steps.start, total=recipe.steps):
-            losses.append(self.step(batch))
+        for step in tqdm(steps, desc=self.config.stage, unit="step", initial=steps.start, total=recipe.steps):
+            seed = self.config.seed * 10**9 + step
+            losses.append(self.step(draw_windows(self.scenes, recipe.batch, seed=seed, augment=recipe.augmented)))
             if state.step % VALIDATE_EVERY == 0 or state.step == recipe.steps:
                 self._validate(folder, float(torch.stack(losses).mean()))
                 losses.clear()
@@ -117,14 +100,14 @@ class Trainer:
             state.save(folder / "last.pt")
             saved = time.monotonic()
 
-    def step(self, batch: LinearWindows) -> Tensor:
+    def step(self, batch: Windows) -> Tensor:
         """Move the weights once and return the loss."""
         recipe, optimizer = self.config.recipe, self.state.optimizer
         for group in optimizer.param_groups:
             group["lr"] = learning_rate(recipe, self.state.step) * group["factor"]
         self.state.network.train()
-        batch = batch.to(self.device)
-        loss = self.task.loss(self._outputs(self.state.network, batch), batch.classes)
+        (inputs,) = batch.inputs(recipe.batch)
+        loss = self.task.loss(self._outputs(self.state.network, inputs), batch.classes)
         optimizer.zero_grad()
         loss.backward()
         if recipe.clip:
@@ -137,18 +120,14 @@ class Trainer:
     def validation_figure(self) -> float:
         """Return the mean figure of the held-out windows by the average: top-1 accuracy, or E_est."""
         network = self.state.averaged.module.eval()
-        figures = []
         with torch.inference_mode():
-            for batch in self.validation.split(VALIDATION_BATCH):
-                batch = batch.to(self.device)
-                figures.append(self.task.figures(self._outputs(network, batch), batch.classes))
-        return float(torch.cat(figures).mean())
+            outputs = torch.cat([self._outputs(network, part) for part in self.validation.inputs(VALIDATION_BATCH)])
+        return float(self.task.figures(outputs, self.validation.classes).mean())
 
-    def _outputs(self, network: nn.Module, batch: LinearWindows) -> Tensor:
-        """Return the network's outputs for a batch on its device."""
-        windows = render_windows(batch, self.curves).contiguous(memory_format=torch.channels_last)
-        with torch.autocast(self.device.type, torch.bfloat16, enabled=self.config.recipe.mixed):
-            outputs: Tensor = network(windows)
+    def _outputs(self, network: nn.Module, inputs: Tensor) -> Tensor:
+        """Return the network's outputs."""
+        with torch.autocast(inputs.device.type, torch.bfloat16, enabled=self.config.recipe.mixed):
+            outputs: Tensor = network(inputs)
         return outputs.float()
 
     def _validate(self, folder: Path, loss: float) -> None:
@@ -167,26 +146,25 @@ class Trainer:
 
 def train(
     scenes: TrainingScenes,
-    validation: LinearWindows,
+    validation: Windows,
     run: Path,
     config: RunConfig,
     *,
     digest: str,
-    workers: int = 0,
     stop: int | None = None,
 ) -> TrainingState:
     """Train until the last step, or until `stop`, resuming what `run` holds, and return where the run stands.
 
-    The folder `run` gets run.json, log.csv and the checkpoints last.pt and best.pt. `digest` identifies the data, and
-    `workers` processes draw windows. Raise SystemExit if `run` holds a run with another configuration or other data.
+    It trains on the device of the scenes. The folder `run` gets run.json, log.csv and the checkpoints last.pt and
+    best.pt. `digest` identifies the data. Raise SystemExit if `run` holds a run with another configuration or other
+    data.
     """
-    device = torch.device("cuda" if torch.cuda.is_available() else "cpu")
     start = "random weights" if config.init == "none" else config.init
     record_run(run, recipe=asdict(config), seed=config.seed, data={"sha256": digest}, start=start)
-    task = StageTask(config.stage, scenes.curves, squared=config.recipe.squared, device=device)
+    task = StageTask(config.stage, scenes.curves, squared=config.recipe.squared)
     state = _start(config, task, run / "last.pt")
     trainer = Trainer(config, task, state, scenes, validation)
-    trainer.run(run, range(state.step, min(config.recipe.steps, stop or config.recipe.steps)), workers)
+    trainer.run(run, range(state.step, min(config.recipe.steps, stop or config.recipe.steps)))
     return state
 
 
@@ -216,6 +194,11 @@ def _start(config: RunConfig, task: StageTask, last: Path) -> TrainingState:
     return state
 
 
+def validation_windows(scenes: TrainingScenes) -> Windows:
+    """Return the windows of the validation scenes that every run is judged by, the same on one kind of device."""
+    return draw_windows(scenes, VALIDATION_WINDOWS, seed=VALIDATION_SEED)
+
+
 def main() -> None:
     """Train as the options say."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").splitlines()[0])
@@ -227,15 +210,19 @@ def main() -> None:
     parser.add_argument("--steps", type=int, help="other than the recipe's")
     parser.add_argument("--float32", action="store_true", help="faster on processors without AVX-512 (/proc/cpuinfo)")
     parser.add_argument("--seed", type=int, default=1)
-    parser.add_argument("--workers", type=int, default=0, help="processes that draw windows; for GPUs")
+    parser.add_argument("--device", default="cuda" if torch.cuda.is_available() else "cpu", help="as torch names it")
     options = parser.parse_args()
     recipe = RECIPES[options.recipe][options.stage]
     recipe = replace(recipe, steps=options.steps or recipe.steps, mixed=recipe.mixed and not options.float32)
     config = RunConfig(options.stage, recipe, options.seed, options.init)
-    splits = read_splits(options.data)
-    validation = draw_windows(splits["validation"], VALIDATION_WINDOWS, np.random.default_rng(2017))
-    digest = training_digest(options.data)
-    train(splits["train"], validation, options.run, config, digest=digest, workers=options.workers)
+    splits = {name: split.to(torch.device(options.device)) for name, split in read_splits(options.data).items()}
+    train(
+        splits["train"],
+        validation_windows(splits["validation"]),
+        options.run,
+        config,
+        digest=training_digest(options.data),
+    )
     print((options.run / "log.csv").read_text(), end="")
 
 

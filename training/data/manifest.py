@@ -24,6 +24,9 @@ from training.data.scenes import split_scenes
 #: The manifest of the data that the packaged models were trained and measured with.
 MANIFEST_FILE = Path(__file__).with_name("manifest.csv")
 
+#: The 66 scenes that only crfnet2017-2.0 was trained on, which are in no data folder; the hashes are of the originals.
+CRFNET2017_FILE = Path(__file__).with_name("manifest_crfnet2017.csv")
+
 #: Comes with DoRF; nothing reads it.
 UNUSED = "dorf/invemor.txt"
 

@@ -1,6 +1,6 @@
 """Measure models where the response is known.
 
-    python -m training.evaluation --data DATA --out FOLDER [--model NAME_OR_FOLDER ...] [--protocol p0 p3 ...]
+    python -m training.evaluation --data DATA --out FOLDER [--model NAME_OR_FOLDER ...] [--protocol p0 paper ...]
     python -m training.evaluation --quick --out FOLDER
 
 writes FOLDER/photographs.jsonl, a row for each photograph and estimator, and from it report.json and report.md. Rows
@@ -23,7 +23,7 @@ from training.evaluation.protocols import ALL_PHOTOGRAPHS, PROTOCOLS, Evaluation
 from training.evaluation.test_sets import LIGHTS_FOLDER, bundled_test_set, dorf_test_set
 
 #: The protocols of --quick, its photographs, and how many of these are under stress.
-QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "p3"), 40, 5
+QUICK_PROTOCOLS, QUICK_PHOTOGRAPHS, QUICK_STRESS_PHOTOGRAPHS = ("p0", "paper"), 40, 5
 
 
 def parser() -> argparse.ArgumentParser:
@@ -38,8 +38,10 @@ def parser() -> argparse.ArgumentParser:
     )
     command.add_argument("--protocol", nargs="+", choices=PROTOCOLS, help="all that the models allow by default")
     command.add_argument("--photographs", type=int, help="the most photographs of P0 and P2 (all, or 40 with --quick)")
-    command.add_argument("--stressed", type=int, help="photographs of P3 (200, or 5 with --quick)")
-    command.add_argument("--condition", nargs="+", choices=[each.name for each in CONDITIONS], help="conditions of P3")
+    command.add_argument("--stressed", type=int, help="photographs of the protocol paper (200, or 5 with --quick)")
+    command.add_argument(
+        "--condition", nargs="+", choices=[each.name for each in CONDITIONS], help="conditions of the protocol paper"
+    )
     command.add_argument("--workers", type=int, default=2, help="processes")
     command.add_argument("--seed", type=int, default=2017)
     command.add_argument("--quick", action="store_true", help="bundled lights and formulas instead of the data")

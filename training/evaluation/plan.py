@@ -11,8 +11,11 @@ import numpy as np
 from crfnet_core.errors import CRFNetError
 from training.synthesis.camera import EXPOSURE_FACTORS, Capture
 
-#: Photographs of P3, each under every condition.
+#: Photographs of the protocol "paper", each under every condition.
 STRESS_PHOTOGRAPHS = 200
+
+#: Factors on the exposure that no automatic exposure chooses (CRF-net paper, Fig. 7).
+SEVERE_EXPOSURES = (0.15, 4)
 
 #: Gains on red, green and blue in linear light of a camera whose white balance is off by about a stop and a half
 #: between red and blue; `training.synthesis.camera` scales them so that a neutral keeps its luminance.
@@ -30,6 +33,7 @@ class Condition:
         which it clips. The CRF-net paper (Sec. 5.4, Table 3) gives no unit; this is our reading of it.
     blur: variance, in squared pixels, of the Gaussian that blurs the linear scene
     gains: factors on red, green and blue of the linear scene
+    averaged: samples along each side of a larger original whose mean is one pixel; 0 takes a scene of the test set
     jpeg_quality: quality of a JPEG with subsampled chroma
     """
 
@@ -39,6 +43,7 @@ class Condition:
     noise: float = 0.0
     blur: float = 0.0
     gains: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    averaged: int = 0
     jpeg_quality: int | None = None
 
     @property
@@ -54,9 +59,17 @@ class Condition:
 
 CLEAN = Condition("clean")
 
+#: The resolutions of Sec. 5.2 of the paper, the first of which is the usual one.
+RESOLUTIONS = tuple(Condition(f"resolution {4 // averaged}x", averaged=averaged) for averaged in (4, 2, 1))
+
 CONDITIONS = (
     CLEAN,
-    *(Condition(f"exposure {factor:g}", factor=factor) for factor in EXPOSURE_FACTORS if factor != 1),
+    *(
+        Condition(f"exposure {factor:g}", factor=factor)
+        for factor in EXPOSURE_FACTORS + SEVERE_EXPOSURES
+        if factor != 1
+    ),
+    *RESOLUTIONS,
     Condition("grayscale", is_gray=True),
     *(Condition(f"noise variance {variance:g}", noise=variance) for variance in (0.5, 1, 2, 4)),
     *(Condition(f"blur variance {variance:g}", blur=variance) for variance in (1, 2, 4, 8)),
@@ -119,7 +132,14 @@ def stress_photographs(
     count: int,
     seed: int,
     conditions: Sequence[Condition] = CONDITIONS,
+    originals: Sequence[int] = (),
 ) -> list[TestPhotograph]:
-    """Return the photographs of P3: `count` of them under every condition."""
-    cells = [(scene, curve) for scene, curve, _ in balanced(scenes, curves, count=count, seed=seed)]
-    return [TestPhotograph(scene, curve, condition) for condition in conditions for scene, curve in cells]
+    """Return the photographs of the protocol "paper": `count` of them under every condition.
+
+    `originals`: numbers of the scenes that `RESOLUTIONS` are made of.
+    """
+    photographs = []
+    for condition in conditions:
+        cells = balanced(originals if condition.averaged else scenes, curves, count=count, seed=seed)
+        photographs += [TestPhotograph(scene, curve, condition) for scene, curve, _ in cells]
+    return photographs

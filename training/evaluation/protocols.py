@@ -13,10 +13,11 @@ from training.data.response_bank import make_bank
 from training.evaluation.baselines import GAMMA
 from training.evaluation.measure import unusual
 from training.evaluation.measure.real import POOLED, measure_pooled, measure_real, pooled_groups, ways_of
-from training.evaluation.measure.simulated import Job, measure_simulated
+from training.evaluation.measure.simulated import PAPER, WAYS, Job, measure_simulated
 from training.evaluation.measure.table import TABLE_FILE, Cases, Table, code_digest
 from training.evaluation.models import Model
 from training.evaluation.plan import (
+    CLEAN,
     CONDITIONS,
     STRESS_PHOTOGRAPHS,
     Condition,
@@ -32,7 +33,7 @@ from training.evaluation.test_sets import TestSet
 from training.synthesis.unusual import UnusualKind
 
 #: The protocols. P5, the reliability of the uncertainty, comes with P0, P2 and P4.
-PROTOCOLS = ("p0", "p2", "p3", "p4", "p6")
+PROTOCOLS = ("p0", "p2", "paper", "p4", "p6")
 
 #: Photographs of P0: every response with every test scene.
 ALL_PHOTOGRAPHS = 4020
@@ -55,8 +56,8 @@ class Settings:
     photographs: the most photographs in P0 and P2
     workers: processes; 1 measures in this one
     seed: of the choice of photographs, of dither, noise and bootstrap
-    stress_photographs: the most photographs in P3 under each condition; also limited by `photographs`
-    conditions: of P3
+    stress_photographs: the most photographs in "paper" under each condition; also limited by `photographs`
+    conditions: of "paper"
     """
 
     out: Path
@@ -90,7 +91,7 @@ class Evaluation:
         steps = {
             "p0": lambda: self._clean("P0", every),
             "p2": lambda: self._clean("P2", held_out),
-            "p3": self._stress,
+            "paper": self._paper,
             "p4": self._real,
             "p6": self._unusual,
         }
@@ -160,22 +161,26 @@ class Evaluation:
         self._with_uncertainty[protocol] = cases, list(self._models)
         return sums.clean_rows(protocol, cases, list(self._models), seed=settings.seed)
 
-    def _stress(self) -> Iterator[ReportRow]:
-        """Measure P3, and return the figures under every condition."""
-        settings = self.settings
+    def _paper(self) -> Iterator[ReportRow]:
+        """Repeat the experiments of the CRF-net paper, and return the figures under every condition."""
+        settings, scenes = self.settings, len(self.test_set.scenes)
+        chosen = [one for one in settings.conditions if self.test_set.originals or not one.averaged]
         photographs = stress_photographs(
-            range(len(self.test_set.scenes)),
+            range(scenes),
             range(len(self.test_set.curves)),
             count=min(settings.stress_photographs, settings.photographs),
             seed=settings.seed,
-            conditions=settings.conditions,
+            conditions=chosen,
+            originals=range(scenes, len(self.test_set.files)),
         )
-        self._simulated("P3", photographs)
+        self._simulated(PAPER, photographs)
 
-        estimators, conditions = self._models | {GAMMA: ""}, dict[str, Cases]()
-        for condition in settings.conditions:
-            chosen = [photograph.label for photograph in photographs if photograph.condition == condition]
-            conditions[condition.name] = Cases(self._table.rows("P3", estimators, chosen))
+        conditions = dict[str, Cases]()
+        for condition in chosen:
+            names = [photograph.label for photograph in photographs if photograph.condition == condition]
+            ways = {model + way: key for model, key in self._models.items() for way in WAYS}
+            estimators = self._models | (ways if condition == CLEAN else {}) | {GAMMA: ""}
+            conditions[condition.name] = Cases(self._table.rows(PAPER, estimators, names))
         return sums.stress_rows(conditions, seed=settings.seed)
 
     def _real(self) -> Iterator[ReportRow]:

@@ -16,6 +16,7 @@ from crfnet_core.response.emor import EmorBasis
 from crfnet_core.response.transfer_functions import rec709_encode, srgb_encode
 from crfnet_core.types import Float32Array, Float64Array
 from training.data.curves import DORF_FILE, IRRADIANCE, read_dorf
+from training.data.linear_files import linear_scene
 from training.data.scenes import BAND, Scene, read_scene, split_scenes
 from training.data.splits import checked_splits
 from training.evaluation.baselines import constant_curves
@@ -31,9 +32,13 @@ LIGHTS = ("city.exr", "courtyard.exr", "forest.exr", "interior.exr", "studio.exr
 REFERENCE_STOPS = 2.0
 
 
+#: The kind of a camera's raw file.
+RAW = "raw photograph"
+
+
 @dataclass(frozen=True)
 class SceneFile:
-    """A scene on disk; `kind` is "panorama" or "photograph", and `is_light` marks a studio light of Blender."""
+    """A scene on disk; `kind` is "panorama", "photograph" or `RAW`, and `is_light` marks a studio light of Blender."""
 
     name: str
     kind: str
@@ -42,6 +47,8 @@ class SceneFile:
 
     def read(self) -> Scene:
         """Return the scene."""
+        if self.kind == RAW:
+            return Scene.scaled(self.name, linear_scene(self.path, scale=1)[0].astype(np.float32), False)
         return read_light(self.path) if self.is_light else read_scene(self.path, self.kind == "panorama")
 
 
@@ -52,6 +59,7 @@ class TestSet:
     curves, float64 (N, 1024): true responses at 1024 uniform irradiances
     held_out: numbers of the responses that P2 holds out; empty without such a split
     data: the folder of the data; None for the bundled test set
+    originals: raw photographs of high resolution, for the resolutions of the paper's Sec. 5.2
     """
 
     __test__ = False  # no test class of pytest
@@ -60,6 +68,12 @@ class TestSet:
     curves: Float64Array
     held_out: tuple[int, ...] = ()
     data: Path | None = None
+    originals: tuple[SceneFile, ...] = ()
+
+    @property
+    def files(self) -> tuple[SceneFile, ...]:
+        """Scenes and originals, as they are numbered."""
+        return self.scenes + self.originals
 
     @cached_property
     def constants(self) -> dict[str, ResponseCurve]:
@@ -91,7 +105,8 @@ def dorf_test_set(data: Path) -> TestSet:
         SceneFile(Path(name).stem, "panorama" if is_panorama else "photograph", data / "linear" / name)
         for name, is_panorama in files
     )
-    return TestSet(scenes, curves, tuple(held_out), data)
+    originals = tuple(SceneFile(path.stem, RAW, path) for path in sorted((data / "raw_pairs").glob("*.crw")))
+    return TestSet(scenes, curves, tuple(held_out), data, originals)
 
 
 def bundled_test_set(lights: Path = LIGHTS_FOLDER) -> TestSet:

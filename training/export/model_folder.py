@@ -15,7 +15,6 @@ from torch import nn
 
 from crfnet_core.files import file_sha256
 from crfnet_core.network import ModelConfig
-from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.data.splits import SPLITS_FILE
 from training.export.golden import assert_parity, write_golden
@@ -42,7 +41,7 @@ def write_config(folder: Path, signature: Signature, record: Record) -> None:
         name=folder.name,
         sha256=file_sha256(folder / "model.onnx"),
         basis="emor",
-        components=EVIDENCE_WEIGHTS,
+        components=signature.weights,
         window_size=WINDOW_SIZE,
         input_name=signature.input_name,
         output_names=signature.output_names,

@@ -13,6 +13,8 @@ from onnx import TensorProto, helper, numpy_helper
 from torch import nn
 
 from crfnet_core.files import atomic_write
+from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
+from crfnet_core.response.emor import COMPONENTS
 from crfnet_core.statistics import LENGTH
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from training.network.start import HALF_SUFFIX
@@ -29,11 +31,13 @@ class Signature:
     input_name: "statistics" or "windows"
     input_shape: shape of the input of one window
     output_names: names of the outputs, in their order
+    weights: number of EMoR weights that its evidence is about
     """
 
     input_name: str
     input_shape: tuple[int, ...]
     output_names: tuple[str, ...]
+    weights: int = EVIDENCE_WEIGHTS
 
 
 #: The parts of evidence, of every window and of all windows together.
@@ -42,8 +46,8 @@ OF_WINDOWS, POOLED = ("locations", "factors", "log_odds"), ("pooled_location", "
 #: A network that reads the statistics of windows and pools them.
 POOLING = Signature("statistics", (LENGTH,), (*OF_WINDOWS, *POOLED))
 
-#: A network that reads windows and answers for each by itself.
-WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), OF_WINDOWS)
+#: A network that reads windows and answers for each by itself, with a whole response.
+WINDOWED = Signature("windows", (WINDOW_SIZE, WINDOW_SIZE, 3), OF_WINDOWS, COMPONENTS)
 
 
 def rounded(network: Network) -> Network:

@@ -22,7 +22,7 @@ from training.data.scenes import LUMINANCE, Scene, dithered
 #: Mean brightness that the automatic exposure aims at.
 TARGET_BRIGHTNESS = 0.45
 
-#: Factors on the automatic exposure of a test photograph (CRF-net paper, Sec. 3.3: s_crf +- 0.4).
+#: Factors on the automatic exposure of a test photograph (CRF-net paper, Table 2).
 EXPOSURE_FACTORS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
 #: Rows captured at a time where no step looks at neighboring samples: the largest photographs then fit into memory.

@@ -8,8 +8,8 @@ pytest.importorskip("onnxscript", reason="training needs the train extra")
 
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.response.emor import EmorBasis
-from training.crfnet2017.export import ShippedCRFNet, fold_normalization, load_network
-from training.crfnet2017.likelihood import Likelihood
+from training.crfnet2017 import train as command
+from training.crfnet2017.export import fit_worth, fold_normalization, load_network
 from training.crfnet2017.network import CRFNet
 from training.crfnet2017.recipes import RECIPES, Recipe, learning_rate, make_optimizer
 from training.crfnet2017.stages import StageTask
@@ -21,18 +21,13 @@ from training.export.onnx_graph import WINDOWED, export_onnx, rounded
 from training.network.moving_average import moving_average
 from training.provenance import read_run
 
-CPU = torch.device("cpu")
-
-#: What an answer may be worth.
-LIKELIHOOD = Likelihood(np.linspace(0.2, 0.9, 5), np.linspace(-1, 1, 5), np.tril(np.full((5, 5), 0.5)), -2.0)
-
 REGRESSION = RunConfig("regress", Recipe(steps=2, batch=2, mixed=False, averaged_steps=2.0))
 
 
 @pytest.fixture(scope="module")
 def validation(scenes):
     """Held-out windows."""
-    return draw_windows(scenes, 3, np.random.default_rng(7))
+    return draw_windows(scenes, 3, seed=7)
 
 
 @pytest.fixture(scope="module")
@@ -45,10 +40,10 @@ def run(scenes, validation, tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def model(run, tmp_path_factory):
-    """The model folder of the run, with a likelihood by hand and its golden file in it."""
+    """The model folder of the run, with its golden file in it."""
     model = tmp_path_factory.mktemp("model") / "crfnet2017"
     model.mkdir()
-    network = ShippedCRFNet(rounded(load_network(run)), LIKELIHOOD).eval()
+    network = rounded(load_network(run))
     export_onnx(network, WINDOWED, model / "model.onnx")
     write_config(model, WINDOWED, read_run(run))
     write_golden(network, WINDOWED, model / "golden.npz")
@@ -72,15 +67,15 @@ def test_the_network_has_the_papers_parameters():
 
 def test_the_stages_measure_what_they_say():
     curves = EmorBasis.load().reconstruct(np.eye(3, 11))
-    classify = StageTask("classify", curves, squared=False, device=CPU)
-    regress = StageTask("regress", curves, squared=False, device=CPU)
+    curves = torch.from_numpy(curves)
+    classify, regress = (StageTask(stage, curves, squared=False) for stage in ("classify", "regress"))
     classes = torch.tensor([0, 2])
     assert (classify.outputs, regress.outputs) == (3, 11)
     assert classify.figures(torch.eye(3)[[0, 1]], classes).tolist() == [1, 0]
     assert float(classify.loss(torch.zeros(2, 3), classes)) == pytest.approx(np.log(3))
     assert regress.figures(torch.zeros(2, 11), classes).tolist() == pytest.approx([1, 1], abs=1e-5)
     assert float(regress.loss(torch.zeros(2, 11), classes)) == pytest.approx(1, abs=1e-5)
-    halved = StageTask("regress", curves, squared=True, device=CPU)
+    halved = StageTask("regress", curves, squared=True)
     assert float(halved.loss(torch.zeros(2, 11), classes)) == pytest.approx(0.5, abs=1e-5)
     assert classify.is_better(0.2, [0.1])
     assert not regress.is_better(0.2, [0.1])
@@ -104,12 +99,12 @@ def test_the_default_learning_rate_is_one_cycle():
 
 def test_the_first_stage_learns(scenes):
     config = RunConfig("classify", Recipe(steps=3, batch=2, learning_rate=2e-3, head_factor=0.01))
-    task = StageTask("classify", scenes.curves, squared=False, device=CPU)
+    task = StageTask("classify", scenes.curves, squared=False)
     torch.manual_seed(0)
     network = CRFNet(task.outputs)
     averaged = moving_average(network, config.recipe.averaged_steps)
     state = TrainingState(network, averaged, make_optimizer(network, config.recipe))
-    batch = draw_windows(scenes, 2, np.random.default_rng(5))
+    batch = draw_windows(scenes, 2, seed=5)
     trainer = Trainer(config, task, state, scenes, batch)
     losses = [float(trainer.step(batch)) for _ in range(3)]
     assert losses[0] == pytest.approx(np.log(4), abs=1e-3)
@@ -135,6 +130,30 @@ def test_a_stopped_run_goes_on_as_if_it_had_not_stopped(scenes, validation, run,
     assert not torch.equal(averaged["head.weight"], moving["head.weight"])
 
 
+def test_the_command_trains_on_a_processor(scenes, tmp_path, monkeypatch, capsys):
+    monkeypatch.setattr(command, "read_splits", lambda data: {"train": scenes, "validation": scenes})
+    monkeypatch.setattr(command, "training_digest", lambda data: "data")
+    monkeypatch.setattr(command, "VALIDATION_WINDOWS", 2)
+    monkeypatch.setattr(command, "RECIPES", {"default": {"regress": replace(REGRESSION.recipe, augmented=True)}})
+    options = [
+        "train",
+        "--data",
+        "data",
+        "--run",
+        str(tmp_path),
+        "--stage",
+        "regress",
+        "--device",
+        "cpu",
+        "--steps",
+        "1",
+    ]
+    monkeypatch.setattr("sys.argv", options)
+    command.main()
+    assert capsys.readouterr().out.startswith("step,train_loss,validation\n1,")
+    assert load_network(tmp_path).network.head.out_features == 11
+
+
 def test_another_configuration_is_refused(scenes, validation, run):
     with pytest.raises(SystemExit, match="another seed"):
         train(scenes, validation, run, replace(REGRESSION, seed=2), digest="data")
@@ -154,17 +173,40 @@ def test_the_model_folder_says_what_torch_says(model):
     assert 7.7e6 < (model / "model.onnx").stat().st_size < 7.9e6
 
 
-def test_locations_are_the_answers_without_slope_and_offset(model, run):
+def test_the_product_answers_with_the_weights_of_the_network(model, run):
     windows = np.random.default_rng(0).random((2, 227, 227, 3), np.float32)
     with torch.inference_mode():
-        answers = rounded(load_network(run))(torch.from_numpy(windows)).numpy()[:, :5]
+        answers = rounded(load_network(run))(torch.from_numpy(windows))[0].numpy()
     evidence = ResponseNetwork.load(model).predict(windows).windows
-    locations = np.stack([one.location for one in evidence])
-    np.testing.assert_allclose(locations, (answers - LIKELIHOOD.intercepts) / LIKELIHOOD.slopes, atol=1e-3)
-    assert np.ptp(locations, axis=0).min() > 0
-    for one in evidence:
-        np.testing.assert_allclose(one.factor, LIKELIHOOD.factor, rtol=1e-6)
-        np.testing.assert_allclose(one.log_odds, LIKELIHOOD.log_odds)
+    np.testing.assert_allclose([one.location for one in evidence], answers, atol=1e-3)
+    assert all(one.is_answer for one in evidence)
+
+
+def test_an_answer_is_worth_what_its_errors_on_validation_windows_allow(scenes, run):
+    """A Student's t of 5 degrees of freedom has 5/3 of the covariance of its scale."""
+    network = load_network(run)
+    known = torch.from_numpy(EmorBasis.load().project(scenes.curves.double().numpy()))
+    rng = torch.Generator().manual_seed(0)
+    true, deviations = known[torch.arange(4000) % 4], torch.linspace(0.5, 0.1, 11).double()
+    answers = true + deviations * torch.randn(4000, 11, generator=rng).double()
+    network.state_worth(answers, true, known)
+    covariance = torch.linalg.inv(network.factor @ network.factor.T) * 5 / 3
+    torch.testing.assert_close(covariance.diagonal().sqrt().double(), deviations, rtol=0.05, atol=0)
+    assert network.log_odds < 0
+
+
+def test_the_errors_that_count_are_of_validation_windows(scenes, run):
+    basis = EmorBasis.load()
+    curves = basis.reconstruct(np.random.default_rng(0).normal(0, 0.3, (30, 11)))
+    many = replace(scenes, curves=torch.from_numpy(curves).float(), exposures=torch.ones(30))
+    network = load_network(run)
+    windows = draw_windows(many, 40, seed=2)
+    distance = fit_worth(network, windows, many.curves)
+    with torch.inference_mode():
+        answers = network.network(next(windows.inputs())).numpy()
+    true = basis.project(curves)[windows.classes]
+    assert distance == pytest.approx(np.linalg.norm(answers - true, axis=1).mean(), abs=1e-4)
+    assert not torch.equal(network.factor, torch.eye(11))
 
 
 def test_folding_changes_nothing():

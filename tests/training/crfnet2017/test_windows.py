@@ -6,15 +6,10 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics.windows import filled_bins
-from training.crfnet2017.windows import (
-    LinearWindows,
-    WindowStream,
-    code_table,
-    draw_windows,
-    render_windows,
-    scene_pixels,
-)
+from training.crfnet2017.augmentation import augmented
+from training.crfnet2017.windows import draw_windows, filled, render, scene_pixels
 from training.data.scenes import Scene
+from training.synthesis.camera import apply_response
 
 
 @pytest.mark.parametrize(
@@ -24,48 +19,71 @@ def test_scenes_are_averaged_to_just_above_a_window(size, shape):
     pixels = np.random.default_rng(0).random((*size, 3), np.float32)
     scaled = scene_pixels(Scene("made", pixels, False), 0)
     factor = size[0] // shape[0]
-    assert scaled.shape == (*shape, 3)
-    np.testing.assert_allclose(scaled[0, 0], pixels[:factor, :factor].mean(axis=(0, 1)), atol=1e-3)
+    assert scaled.shape == (3, *shape)
+    np.testing.assert_allclose(scaled[:, 0, 0], pixels[:factor, :factor].mean(axis=(0, 1)), atol=1e-3)
 
 
-def test_windows_meet_the_papers_rule(scenes):
-    windows = render_windows(draw_windows(scenes, 6, np.random.default_rng(1)), torch.from_numpy(scenes.curves))
+@pytest.mark.parametrize("augment", [False, True])
+def test_windows_meet_the_papers_rule(scenes, augment):
+    (windows,) = draw_windows(scenes, 6, seed=1, augment=augment).inputs()
     assert windows.shape == (6, 3, 227, 227)
     assert min(filled_bins(window.numpy()) for window in windows) >= 220
 
 
 def test_exposures_spread_evenly_around_that_of_the_response(scenes):
-    batch = draw_windows(scenes, 60, np.random.default_rng(1))
-    factors = batch.exposures.numpy() / scenes.exposures[batch.classes]
+    factors = draw_windows(scenes, 60, seed=1).exposures
     assert 0.6 <= factors.min() < 0.68
     assert 1.32 < factors.max() <= 1.4
-    assert len(np.unique(factors)) == 60
+    assert len(factors.unique()) == 60
 
 
 def test_dull_scenes_give_no_windows(scenes):
-    dull = np.full((300, 300, 3), 0.5, np.float16)
+    dull = torch.full((3, 300, 300), 0.5, dtype=torch.float16)
     mixed = replace(scenes, pixels=(dull, scenes.pixels[0]))
-    irradiance = draw_windows(mixed, 8, np.random.default_rng(1)).irradiance
-    assert all(window.unique().numel() > 1 for window in irradiance)
+    assert all(window.unique().numel() > 1 for window in draw_windows(mixed, 8, seed=1).codes)
 
 
-def test_the_device_makes_the_codes_of_the_host(scenes):
-    batch = draw_windows(scenes, 2, np.random.default_rng(2))
-    codes = (render_windows(batch, torch.from_numpy(scenes.curves)) * 255).permute(0, 2, 3, 1).round().byte().numpy()
-    for n, curve in enumerate(batch.classes):
-        table = code_table(scenes.curves[curve], float(batch.exposures[n]))
-        assert np.mean(codes[n] != table[batch.irradiance[n].numpy().view(np.uint16)]) < 1e-3
+def test_scenes_without_range_are_refused(scenes, monkeypatch):
+    monkeypatch.setattr("training.crfnet2017.windows.TRIED", 2)
+    dull = torch.full((3, 300, 300), 0.5, dtype=torch.float16)
+    with pytest.raises(ValueError, match="give other scenes"):
+        draw_windows(replace(scenes, pixels=(dull,)), 2, seed=1)
 
 
-def test_a_known_irradiance_gets_a_known_code():
-    irradiance = torch.full((1, 227, 227, 3), 0.5, dtype=torch.float16)
-    square = torch.linspace(0, 1, 1024)[None] ** 2
-    windows = render_windows(LinearWindows(irradiance, torch.tensor([0]), torch.tensor([1.2])), square)
-    assert windows.unique().tolist() == pytest.approx([92 / 255])
+def test_light_is_rendered_as_the_simulated_camera_does(scenes):
+    light = torch.rand(2, 3, 40, 40, generator=torch.Generator().manual_seed(0)) * 1.4
+    classes, exposures = torch.tensor([2, 0]), torch.tensor([0.7, 1.3])
+    found = render(light, scenes, classes, exposures).numpy().astype(int)
+    for row, curve in enumerate(classes):
+        factor = np.float32(exposures[row] * scenes.exposures[curve])
+        codes = np.rint(apply_response(light[row].numpy() * factor, scenes.curves[curve].numpy()) * 255)
+        assert np.abs(found[row] - codes).max() <= 1
+        assert np.mean(found[row] != codes) < 1e-2
 
 
-def test_the_windows_of_a_step_do_not_depend_on_the_start(scenes):
-    def irradiance(steps):
-        return [batch.irradiance for batch in WindowStream(scenes, batch=2, steps=steps, seed=3)]
+def test_codes_are_counted_once_in_each_window():
+    codes = torch.zeros(2, 3, 5, 5, dtype=torch.uint8)
+    codes[1, 0, 0, :3] = torch.tensor([7, 255, 7], dtype=torch.uint8)
+    assert filled(codes).tolist() == [1, 3]
 
-    assert torch.equal(irradiance(range(4))[3], irradiance(range(3, 4))[0])
+
+def test_the_windows_of_a_seed_are_the_same(scenes):
+    first, again, other = (draw_windows(scenes, 2, seed=seed, augment=True).codes for seed in (3, 3, 4))
+    assert torch.equal(first, again)
+    assert not torch.equal(first, other)
+
+
+def test_augmented_light_stays_light(scenes):
+    light = torch.stack([scene[:, :227, :227] for scene in scenes.pixels])
+    found = augmented(light, light.flip(0), torch.Generator().manual_seed(0))
+    assert found.shape == light.shape
+    assert found.min() >= 0
+    assert (found - light.float()).abs().mean() > 0.01
+
+
+def test_augmentation_of_neutral_light_only_scales_its_channels():
+    """Color matrices keep neutrals, and the gains are one for each channel."""
+    light = torch.linspace(0.1, 1, 227).expand(1, 3, 227, 227)
+    found = augmented(light, light, torch.Generator().manual_seed(2))[0].flatten(1)
+    correlation = np.corrcoef(found.numpy())
+    np.testing.assert_allclose(correlation, 1, atol=1e-3)

@@ -31,9 +31,9 @@ def test_a_smaller_part_is_the_beginning_of_a_larger_one_and_seeds_differ():
 
 
 def test_every_photograph_has_a_label_of_its_own():
-    photographs = stress_photographs(range(5), range(13), count=5, seed=1)
+    photographs = stress_photographs(range(5), range(13), count=5, seed=1, originals=(5,))
     labels = {photograph.label for photograph in photographs + clean_photographs(range(5), range(13), count=65, seed=1)}
-    same = 1  # of the 5 clean ones of P3, the one that P0 takes at exposure 1 as well
+    same = 1  # of the 5 clean ones of the protocol "paper", the one that P0 takes at exposure 1 as well
     assert len(labels) == len(photographs) + 65 - same
     assert "scene 1, curve 2, exposure 0.6, clean" in {
         photograph.label for photograph in clean_photographs([1], [2], count=1, seed=1)
@@ -41,9 +41,16 @@ def test_every_photograph_has_a_label_of_its_own():
 
 
 def test_every_condition_has_the_same_photographs():
-    photographs = stress_photographs(range(20), range(201), count=40, seed=3)
-    assert len(photographs) == 40 * len(CONDITIONS) == 40 * 20
-    assert len({(photograph.scene, photograph.curve) for photograph in photographs}) == 40
+    photographs = stress_photographs(range(20), range(201), count=40, seed=3, originals=(20, 21))
+    assert len(photographs) == 40 * len(CONDITIONS) == 40 * 25
+    cells = {(photograph.scene, photograph.curve) for photograph in photographs if not photograph.condition.averaged}
+    assert len(cells) == 40
+
+
+def test_resolutions_are_means_of_the_originals_alone():
+    photographs = stress_photographs(range(3), range(13), count=5, seed=1, originals=(3, 4))
+    assert {photograph.scene for photograph in photographs if photograph.condition.averaged} == {3, 4}
+    assert [condition.averaged for condition in CONDITIONS if condition.averaged] == [4, 2, 1]
 
 
 def test_conditions_that_differ_behind_the_lens_share_their_light():

@@ -13,7 +13,7 @@ from training.evaluation.__main__ import main, parsed
 from training.evaluation.measure import simulated
 from training.evaluation.measure.simulated import Job
 from training.evaluation.models import Model
-from training.evaluation.plan import CLEAN, Condition
+from training.evaluation.plan import CLEAN, RESOLUTIONS, Condition
 from training.evaluation.protocols import Evaluation, Settings
 from training.evaluation.report.document import read_report
 from training.evaluation.test_sets import bundled_test_set
@@ -40,7 +40,7 @@ def stressed(tmp_path_factory, model):
     settings = Settings(
         out,
         (model,),
-        protocols=("p0", "p3"),
+        protocols=("p0", "paper"),
         photographs=15,
         workers=1,
         stress_photographs=3,
@@ -69,17 +69,32 @@ def test_a_model_that_answers_nearly_the_same(stressed):
 
 
 def test_stress_hardly_changes_a_model_that_hardly_looks(stressed):
-    rows = [row for row in stressed[1].rows if row["table"].startswith("P3") and row["estimator"] == "fixed_model"]
+    rows = [row for row in stressed[1].rows if row["table"].startswith("paper") and row["estimator"] == "fixed_model"]
     assert len(rows) == 3
     for row in rows:
         assert [row[f"{error} x clean"][0] for error in ("E_est", "E_lin", "shape")] == pytest.approx([1] * 3, abs=0.1)
-    assert rows[0]["partial ratio"][0] < 1
+    assert rows[0]["partial mean"][0] < rows[0]["lower mean"][0]
+
+
+def test_one_window_is_asked_alone_on_clean_photographs(stressed):
+    names = [row["estimator"] for row in stressed[1].table("paper") if row["group"] == "clean"]
+    assert names[:3] == ["fixed_model", "fixed_model, one chosen window", "fixed_model, one random window"]
+
+
+def test_resolutions_are_area_means_of_an_original():
+    test_set = bundled_test_set()
+    test_set = replace(test_set, originals=test_set.scenes[:1])
+    number, (usual, *_, full) = len(test_set.scenes), RESOLUTIONS
+    job = Job("paper", (), test_set, ())
+    small, large = (job.photo(number, 0, condition) for condition in (usual, full))
+    assert small.shape[:2] == tuple(side // 4 for side in large.shape[:2])
+    assert test_set.digest == bundled_test_set().digest
 
 
 def test_the_report_shows_every_table(stressed):
     text = (stressed[0] / "report.md").read_text()
     assert "bundled lights and formulas instead of the data" in text
-    for title in ("## P0: known responses", "## P3: stress", "## P5: reliability"):
+    for title in ("## P0: known responses", "## The paper's experiments", "## P5: reliability"):
         assert title in text
     assert "## P4" not in text
     mean, low, high = stressed[1].row("P0", "fixed_model")["E_est mean"]
@@ -115,9 +130,9 @@ def test_an_interrupted_evaluation_goes_on_and_ends_the_same(stressed, fixed_mod
 
 def test_the_command_line_chooses_what_is_measured(fixed_model, tmp_path):
     quick = parsed(["--quick", "--out", str(tmp_path), "--model", str(fixed_model), "crfnet2017"]).settings
-    assert quick.protocols == ("p0", "p3")
+    assert quick.protocols == ("p0", "paper")
     assert (quick.photographs, quick.stress_photographs, quick.workers, quick.seed) == (40, 5, 2, 2017)
-    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-1.4"]
+    assert [model.name for model in quick.models] == ["fixed_model", "crfnet2017-2.0"]
 
 
 @pytest.mark.parametrize(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import numpy as np
+from scipy.optimize import minimize_scalar
 
 from crfnet_core.estimate.result import ResponseEstimate
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
@@ -15,8 +16,9 @@ from crfnet_core.types import Float64Array, IndexArray
 #: The errors that reports give; E_lin is x 1e-2, "shape" is in stops (definitions: `crfnet_core.response.metrics`).
 ERRORS = ("E_est", "E_lin", "shape")
 
-#: The part of the irradiance that a partial response covers (CRF-net paper, Fig. 9).
-PARTIAL_IRRADIANCE = 0.8
+#: The part of the brightness that a partial response covers, and the factors on the irradiance that may scale it
+#: (CRF-net paper, Fig. 9: the upper 20 % of the pixel range are ignored, and the estimate is scaled).
+PARTIAL_BRIGHTNESS, SCALES = 0.8, (0.3, 3.0)
 
 #: Decimals of the figures.
 DECIMALS = 6
@@ -35,19 +37,31 @@ def curve_figures(true: ResponseCurve, estimated: ResponseCurve, counts: IndexAr
     """Return the errors of one response on one photograph.
 
     `true`, `estimated`: the responses. `counts`, int (256,): how often each code occurs in the photograph. The result:
-    the errors of `ERRORS`; "scale", by how many stops the light is too bright; and "partial", the E_est over the
-    samples with E <= `PARTIAL_IRRADIANCE`, both responses as they are.
+    the errors of `ERRORS`; "scale", by how many stops the light is too bright; and "lower" and "partial", the E_est
+    over the samples up to `PARTIAL_BRIGHTNESS`, without and with the scaling of the irradiance that fits best.
     """
-    lower = round(PARTIAL_IRRADIANCE * (SAMPLES - 1)) + 1
-    difference = true.brightness - estimated.brightness
     linearization = round(linearization_error(CODES, true, estimated, counts=counts), DECIMALS)
     return {
         "E_est": round(estimation_error(true, estimated), DECIMALS),
         "E_lin": 100 * linearization,
         "shape": round(shape_error(true, estimated), DECIMALS),
         "scale": round(scale_error(true, estimated), DECIMALS),
-        "partial": round(float(np.linalg.norm(difference[:lower])), DECIMALS),
+        "lower": round(_lower_error(true, estimated), DECIMALS),
+        "partial": round(_partial_error(true, estimated), DECIMALS),
     }
+
+
+def _lower_error(true: ResponseCurve, estimated: ResponseCurve, scale: float = 1.0) -> float:
+    """Return the E_est over the samples up to `PARTIAL_BRIGHTNESS`, of an estimate whose irradiance is scaled."""
+    irradiance = np.linspace(0, 1, SAMPLES)[true.brightness <= PARTIAL_BRIGHTNESS]
+    squares = (true.forward(irradiance) - estimated.forward(np.minimum(scale * irradiance, 1))) ** 2
+    return float(np.sqrt(SAMPLES * np.mean(squares)))
+
+
+def _partial_error(true: ResponseCurve, estimated: ResponseCurve) -> float:
+    """Return the least `_lower_error` of all scales."""
+    found = minimize_scalar(lambda scale: _lower_error(true, estimated, scale), bounds=SCALES, method="bounded")
+    return min(float(found.fun), _lower_error(true, estimated))
 
 
 def estimate_figures(true: ResponseCurve, estimate: ResponseEstimate, counts: IndexArray) -> dict[str, Any]:

@@ -1,11 +1,11 @@
-"""Measure simulated photographs (P0, P2, P3) with every model and baseline, on several processes."""
+"""Measure simulated photographs (P0, P2, paper) with every model and baseline, on several processes."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from concurrent.futures import ProcessPoolExecutor
 from dataclasses import dataclass, replace
-from functools import cache, lru_cache
+from functools import cache, lru_cache, partial
 from itertools import compress, groupby
 from multiprocessing import get_context
 from pathlib import Path
@@ -15,21 +15,32 @@ import numpy as np
 from tqdm import tqdm
 
 from crfnet_core.estimate.estimate import estimate_response
+from crfnet_core.estimate.options import AnalysisOptions
 from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.photo import Photo
 from crfnet_core.posterior import Prior, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.types import Float32Array
+from training.data.scenes import Scene, area_averaged
 from training.evaluation.baselines import GAMMA, oracle_curves
 from training.evaluation.measure.figures import curve_figures, estimate_figures
 from training.evaluation.measure.table import Row, Table
 from training.evaluation.models import Model
-from training.evaluation.plan import Condition, TestPhotograph
+from training.evaluation.plan import CLEAN, Condition, TestPhotograph
 from training.evaluation.test_sets import SceneFile, TestSet
 from training.synthesis.camera import code_counts, render_photo, sensor_light
 
 #: The prior of simulated photographs, whose responses are of any kind.
 PRIOR = "any"
+
+#: The name, in the table, of the protocol that repeats the experiments of the CRF-net paper.
+PAPER = "paper"
+
+#: What follows a model's name -> how it is asked: the paper's Fig. 3, on the clean photographs of `PAPER`.
+WAYS = {
+    ", one chosen window": AnalysisOptions(windows=1),
+    ", one random window": AnalysisOptions(windows=1, coverage=0),
+}
 
 #: The most photographs of a job: few enough to spread over processes and to write often.
 JOB_SIZE = 20
@@ -39,7 +50,7 @@ JOB_SIZE = 20
 class Job:
     """Simulated photographs, and the estimators to measure on them.
 
-    protocol: the protocol; in P3 gamma 2.2 is the only baseline
+    protocol: the protocol; in `PAPER` gamma 2.2 is the only baseline
     has_baselines: whether to measure the baselines
     bank: the responses that estimates choose from; None for the packaged ones
     seed: of dither and noise
@@ -56,18 +67,18 @@ class Job:
     def photo(self, scene: int, curve: int, condition: Condition) -> Photo:
         """Return one photograph; its dither belongs to the scene, its noise to itself."""
         return render_photo(
-            _light(self.test_set.scenes[scene], scene, condition.light, self.seed),
+            _light(self.test_set.files[scene], scene, condition.light, self.seed),
             self.test_set.curves[curve],
             float(self.test_set.exposures[curve]) * condition.factor,
             np.random.default_rng([self.seed, scene, curve]),
-            name=self.test_set.scenes[scene].name,
+            name=self.test_set.files[scene].name,
             capture=condition.capture,
             is_gray=condition.is_gray and not condition.noise,
         )
 
     def row(self, photograph: TestPhotograph, estimator: str, model: str, figures: dict[str, Any]) -> Row:
         """Return a row of the table."""
-        scene = self.test_set.scenes[photograph.scene]
+        scene = self.test_set.files[photograph.scene]
         return {
             "protocol": self.protocol,
             "photograph": photograph.label,
@@ -133,11 +144,12 @@ def run_job(job: Job) -> list[Row]:
         counts, true = code_counts(photo), ResponseCurve.from_samples(job.test_set.curves[photograph.curve])
         for name, guess in _baselines(job, true).items():
             rows.append(job.row(photograph, name, "", curve_figures(true, guess, counts)))
+        has_ways = job.protocol == PAPER and photograph.condition == CLEAN
         for model in job.models:
-            estimate = estimate_response(
-                [photo], network=_network(model.folder), prior=Prior.load(PRIOR), bank=job.bank
-            )
-            rows.append(job.row(photograph, model.name, model.key, estimate_figures(true, estimate, counts)))
+            ask = partial(estimate_response, photo, network=_network(model.folder), prior=Prior.load(PRIOR))
+            for way, options in ({"": AnalysisOptions()} | (WAYS if has_ways else {})).items():
+                figures = estimate_figures(true, ask(bank=job.bank, options=options), counts)
+                rows.append(job.row(photograph, model.name + way, model.key, figures))
     return rows
 
 
@@ -146,14 +158,17 @@ def _baselines(job: Job, true: ResponseCurve) -> dict[str, ResponseCurve]:
     if not job.has_baselines:
         return {}
     constants = job.test_set.constants
-    return {GAMMA: constants[GAMMA]} if job.protocol == "P3" else constants | oracle_curves(true)
+    return {GAMMA: constants[GAMMA]} if job.protocol == PAPER else constants | oracle_curves(true)
 
 
 @lru_cache(maxsize=1)
 def _light(file: SceneFile, number: int, condition: Condition, seed: int) -> Float32Array:
     """Return the light of a scene under the part of a condition that comes before exposure, shape (H, W, 3)."""
+    scene = file.read()
+    if condition.averaged:
+        scene = Scene(scene.name, area_averaged(scene.pixels, condition.averaged), scene.is_panorama)
     return sensor_light(
-        file.read(),
+        scene,
         np.random.default_rng([seed, number]),
         gains=condition.gains,
         is_gray=condition.is_gray,

@@ -10,6 +10,7 @@ from typing import Any
 
 from crfnet_core.files import atomic_write_text
 from training.evaluation.baselines import GAMMA, MEAN_CURVE, OTHER_BODIES
+from training.evaluation.measure.simulated import PAPER
 from training.evaluation.report import paper
 from training.evaluation.report.document import Report, ReportRow, value
 
@@ -104,14 +105,15 @@ SECTIONS = (
         (Listed(("P2",), ERROR_FIGURES),),
     ),
     Section(
-        "P3: stress",
-        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones. Noise is Gaussian before the"
-        " response, its variance in squared 255ths of the irradiance that saturates; blur is Gaussian in linear light,"
-        " its variance in squared pixels; JPEG has subsampled chroma. Below, E_est over irradiance up to 0.8, and its"
-        " ratio to that over all.",
+        "The paper's experiments",
+        "Photographs of P0 at exposure s_crf: E_est, and its ratio to the clean ones, or to resolution 1x. Noise is"
+        " Gaussian before the response, its variance in squared 255ths of the irradiance that saturates; blur is"
+        " Gaussian in linear light, its variance in squared pixels; JPEG has subsampled chroma; resolutions are"
+        " means of larger raw photographs. Below, E_est over brightness up to 0.8, and the same with the irradiance"
+        " scaled to fit.",
         (
-            Crossed(("P3",), ("E_est mean", "E_est x clean")),
-            Listed(("P3",), {"lower E_est": "partial mean", "ratio": "partial ratio"}, ("clean",)),
+            Crossed((PAPER,), ("E_est mean", "E_est x clean")),
+            Listed((PAPER,), {"E_est": "E_est mean", "lower": "lower mean", "scaled": "partial mean"}, ("clean",)),
         ),
     ),
     Section(

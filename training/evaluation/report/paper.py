@@ -20,14 +20,17 @@ GAMMA = PaperFigures(3.132, 5.821)
 #: The fractions of photographs on which the network wins against gamma 2.2.
 WIN_RATE = PaperFigures(0.78, 0.86)
 
-#: Tables 2 (exposure), 3 (noise) and 4 (blur), and Sec. 5.3 (grayscale): by the name of our condition. Double and
-#: quadruple resolution (Sec. 5.2: 1.864 and 2.144) need originals that have it, and have no condition here.
+#: Tables 2 (exposure), 3 (noise) and 4 (blur), and Sec. 5.2 (resolution) and 5.3 (grayscale): by the name of our
+#: condition.
 STRESS = {
     "clean": OVERALL,
     "exposure 0.6": PaperFigures(1.621, 2.551),
     "exposure 0.8": PaperFigures(1.611, 2.331),
     "exposure 1.2": PaperFigures(1.647, 2.792),
     "exposure 1.4": PaperFigures(1.676, 2.999),
+    "resolution 1x": OVERALL,
+    "resolution 2x": PaperFigures(1.864, 2.701),
+    "resolution 4x": PaperFigures(2.144, 3.029),
     "grayscale": PaperFigures(3.546, 4.028),
     "noise variance 0.5": PaperFigures(2.302, 3.359),
     "noise variance 1": PaperFigures(3.036, 4.419),

@@ -86,9 +86,8 @@ def change_figures(cases: Cases, clean: Cases, resampling: Resampling, estimator
 
 
 def partial_figures(cases: Cases, resampling: Resampling, estimator: str) -> Figures:
-    """Return E_est over the lower part of the irradiance, and its ratio to the whole (CRF-net paper, Fig. 9)."""
-    lower, whole = column(cases, "partial", estimator), column(cases, "E_est", estimator)
-    return {"partial mean": resampling.mean(lower), "partial ratio": resampling.ratio(lower, whole)}
+    """Return E_est over the lower part of the brightness, and the same of scaled estimates (CRF-net paper, Fig. 9)."""
+    return {f"{name} mean": resampling.mean(column(cases, name, estimator)) for name in ("lower", "partial")}
 
 
 def verdict_figures(cases: Cases, estimator: str) -> Figures:

@@ -9,7 +9,9 @@ import numpy as np
 
 from training.evaluation.baselines import GAMMA, OTHER_BODIES
 from training.evaluation.measure.real import POOLED
+from training.evaluation.measure.simulated import PAPER
 from training.evaluation.measure.table import Cases
+from training.evaluation.plan import RESOLUTIONS
 from training.evaluation.report import paper
 from training.evaluation.report.bootstrap import Resampling
 from training.evaluation.report.document import ReportRow
@@ -42,17 +44,24 @@ def clean_rows(protocol: str, cases: Cases, models: Sequence[str], *, seed: int)
 
 
 def stress_rows(conditions: dict[str, Cases], *, seed: int) -> Iterator[ReportRow]:
-    """Yield the figures of P3 under every condition, the first of which is clean, and the paper's."""
+    """Yield the figures of the protocol "paper" under every condition, the first of which is clean, and the paper's.
+
+    Resolutions are compared with the first of them, other conditions with clean.
+    """
     clean = next(iter(conditions.values()))
-    weights = of_scenes(clean, seed=seed)
     for group, cases in conditions.items():
+        weights = of_scenes(cases, seed=seed)
+        base = conditions.get(RESOLUTIONS[0].name, cases) if group.startswith("resolution") else clean
         for name in cases.rows:
-            figures = error_figures(cases, weights, name) | change_figures(cases, clean, weights, name)
-            yield _row("P3", group, name, cases, figures | partial_figures(cases, weights, name))
+            figures = error_figures(cases, weights, name) | partial_figures(cases, weights, name)
+            if name in base.rows:
+                figures |= change_figures(cases, base, weights, name)
+            yield _row(PAPER, group, name, cases, figures)
         if group in paper.STRESS:
             error = paper.STRESS[group].estimation
             figures = {"E_est mean": error, "E_est x clean": error / paper.OVERALL.estimation}
-            yield _row("P3", group, paper.PAPER, cases, figures)
+            figures |= {"E_lin mean": paper.STRESS[group].linearization}
+            yield _row(PAPER, group, paper.PAPER, cases, figures)
 
 
 def real_rows(protocol: str, cases: Cases, ways: Sequence[str], *, seed: int) -> Iterator[ReportRow]:
