@@ -12,8 +12,8 @@ from .test_addon_movies import CODECS, encode, load, stored_curve  # noqa: E402
 
 MODES = ("STRAIGHT", "PREMUL", "CHANNEL_PACKED", "NONE")
 
-#: Blender 4.5 looks brightnesses up by the nearest of 65536, and those that were divided by alpha lie between them.
-NEAREST = 1e-4
+#: The curve is linear between 8-bit codes; brightnesses that were divided by alpha lie between them.
+BETWEEN = 3e-4
 
 
 @pytest.fixture
@@ -56,7 +56,7 @@ def test_nodes_and_baked_files_take_it_alike(image, codes, alpha, mode, composit
     tree = compositor_tree(bpy.context.scene)
     (group,) = (node for node in tree.nodes if node.type == "GROUP")
     should = expected(image, codes, alpha, mode)
-    assert np.abs(composited(group.outputs[0]) - should).max() < NEAREST
+    assert np.abs(composited(group.outputs[0]) - should).max() < (BETWEEN if mode == "PREMUL" else 1e-5)
     bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float")
     baked = read_image(tmp_path / "plate_linear.exr")
     assert np.abs(baked - should[..., : baked.shape[2]]).max() < 1e-6
@@ -132,7 +132,7 @@ def test_what_was_painted_is_not_multiplied_by_alpha_whatever_the_setting(
     tree = compositor_tree(bpy.context.scene)
     (group,) = (node for node in tree.nodes if node.type == "GROUP")
     should = expected(image, codes, alpha, "STRAIGHT")
-    assert np.abs(composited(group.outputs[0]) - should).max() < NEAREST
+    assert np.abs(composited(group.outputs[0]) - should).max() < (BETWEEN if mode == "PREMUL" else 1e-5)
     bpy.ops.crf.apply_response(image=image.name, apply="BAKE", depth="float", folder=str(tmp_path))
     assert np.abs(read_image(tmp_path / "painted_linear.exr") - should).max() < 1e-6
     assert np.abs(shown_as_linear(image, in_editor) - should).max() < 1e-4

@@ -64,14 +64,18 @@ def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, ch
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
 
 
-def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
+def test_it_undoes_a_bake_at_16_bits(look, composited, tmp_path):
     """The look is exact; between its entries the LUT is linear and the inverse response is not, by a code or so."""
     from blender_addon.scene.stored_estimate import restored
 
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
     image, node = look(write_image(tmp_path / "deep.png", samples))
     curve = restored(image).curve
-    expected = curve.forward(inverse_response_lut(curve).apply(samples / 65535))
+    light = inverse_response_lut(curve).apply(samples / 65535).astype(np.float32)
+    baked = scene_tree().nodes.new("CompositorNodeImage")
+    baked.image = bpy.data.images.load(str(write_image(tmp_path / "light.exr", light)))
+    scene_tree().links.new(baked.outputs[0], node.inputs["Image"])
+    expected = curve.forward(light)
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - expected).max() < ROUND_TRIP
     assert np.abs(expected - samples / 65535).max() < 2 / 65535
 

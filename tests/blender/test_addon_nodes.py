@@ -9,8 +9,8 @@ bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
-#: Largest difference against numpy on 8-bit and 16-bit plates.
-CODES = 1e-6
+#: Largest difference against numpy on 8-bit plates.
+CODES = 1e-5
 
 
 @pytest.fixture
@@ -30,24 +30,18 @@ def scene_tree():
     return scene.compositing_node_group if IS_BLENDER_5 else scene.node_tree
 
 
-def linear(curve, brightness):
-    """What `crfnet linearize` makes of a brightness: a LUT of the usual length, which all 8-bit codes are in."""
-    from crfnet.luts.lut1d import inverse_response_lut
-
-    return inverse_response_lut(curve).apply(brightness)
-
-
 def test_every_8_bit_code(load, composited, plate_file, codes, estimate):
     _, group = load(plate_file)
     expected = estimate(plate_file).curve.inverse(codes / 255)
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
-def test_a_16_bit_plate(load, composited, tmp_path, estimate):
+def test_a_16_bit_plate_is_linear_between_8_bit_codes(load, composited, tmp_path, estimate):
     samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
     path = write_image(tmp_path / "deep.png", samples)
     _, group = load(path)
-    expected = linear(estimate(path).curve, samples / 65535)
+    eight_bits = np.arange(256) / 255
+    expected = np.interp(samples / 65535, eight_bits, estimate(path).curve.inverse(eight_bits))
     assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < CODES
 
 
@@ -91,7 +85,6 @@ def test_the_group_goes_between_the_plate_and_what_it_was_linked_to(addon, plate
         assert group.inputs["Image"].links[0].from_node == plate
         assert group.inputs["Exposure"].default_value == exposure
         assert [g.name for g in bpy.data.node_groups if g.name.startswith("Camera")] == ["Camera Response plate"]
-        assert len([image for image in bpy.data.images if image.name.endswith("LUT")]) == 1
 
 
 def test_the_active_node_of_the_compositor(addon, plate_file, in_editor):
