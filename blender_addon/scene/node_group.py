@@ -7,8 +7,6 @@ bits, and linear between them on more. Values are clipped to [0, 1], as where fi
 
 from __future__ import annotations
 
-from pathlib import Path
-
 import bpy
 import PyOpenColorIO as OCIO
 
@@ -16,7 +14,6 @@ from crfnet.configs.files import role_name
 from crfnet.configs.reference_space import LINEAR_REC709
 from crfnet.errors import ConfigError
 from crfnet.luts.lut1d import inverse_response_lut
-from crfnet.output_files import distinct_names
 from crfnet_core import ResponseCurve
 from crfnet_core.types import Float64Array
 
@@ -32,14 +29,14 @@ from .node_building import (
     multiply_by_matrix,
 )
 from .node_links import PLATE
-from .plates import Datablock
+from .plates import Datablock, short_hash
 
 #: The 8-bit code value of white.
 WHITE = 255
 
 
 def build_group(plate: Datablock, name: str, curve: ResponseCurve, exposure: float) -> bpy.types.NodeTree:
-    """Return the plate's node group "Camera Response <name>"; one that exists already is updated.
+    """Return the plate's node group "Camera Response <name> <hash>"; one that exists already is updated.
 
     Every plate has a group of its own, which survives renaming, saving and appending. `exposure` is the default of its
     Exposure socket, in stops. Raise ConfigError if the config has no linear Rec.709.
@@ -78,12 +75,10 @@ def working_space() -> str:
 def new_group(plate: Datablock, title: str, mark: str, exposure: str) -> bpy.types.NodeTree:
     """Return a plate's new node group, with sockets and without nodes.
 
-    If there is a group of this title, the folder of the plate is added to its name. The custom property `mark`, whose
-    value is the plate, finds it again. `exposure` is the description of the Exposure socket.
+    A short hash of the plate ends its name. The custom property `mark`, whose value is the plate, finds it again.
+    `exposure` is the description of the Exposure socket.
     """
-    names = distinct_names(title, Path(bpy.path.abspath(plate.filepath)).parent.name)
-    free = next(name for name in names if name not in bpy.data.node_groups)
-    group = bpy.data.node_groups.new(free, "CompositorNodeTree")
+    group = bpy.data.node_groups.new(f"{title} {short_hash(plate)}", "CompositorNodeTree")
     group[mark] = plate
     group.interface.new_socket("Image", in_out="OUTPUT", socket_type="NodeSocketColor")
     group.interface.new_socket("Image", in_out="INPUT", socket_type="NodeSocketColor")

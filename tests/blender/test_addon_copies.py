@@ -2,11 +2,17 @@
 
 import pytest
 
+from tests.helpers.images import write_image
+
 bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
 from .test_addon_changed_plates import apply_nodes  # noqa: E402 - after the skip
+
+
+def code_values_of(plate):
+    return next(image for image in bpy.data.images if image.get("camera_response_code_values_of") == plate)
 
 
 class TestOpenedAgain:
@@ -21,7 +27,7 @@ class TestOpenedAgain:
 
         apply_nodes(image)
         with in_editor("IMAGE_EDITOR") as space:
-            space.image = bpy.data.images["plate.png code values"]
+            space.image = code_values_of(image)
             assert plates.active_datablock(bpy.context) == image
             assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
             assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
@@ -30,7 +36,7 @@ class TestOpenedAgain:
     def test_the_code_values_are_no_plate_of_their_own(self, image):
         apply_nodes(image)
         with pytest.raises(RuntimeError, match="open the photograph itself"):
-            bpy.ops.crf.estimate_response(image="plate.png code values", apply="ESTIMATE")
+            bpy.ops.crf.estimate_response(image=code_values_of(image).name, apply="ESTIMATE")
 
     @pytest.mark.parametrize("letter", ["n", "Z", "ü", "图"])
     def test_the_plate_is_found_however_long_its_name_is(self, image, plate_file, letter):
@@ -46,10 +52,11 @@ def test_a_plate_that_was_linked_and_made_local_gets_a_copy_of_its_own(image, tm
     from blender_addon.scene.compositor import compositor_tree
 
     apply_nodes(image)
+    names = [image.name, code_values_of(image).name]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with bpy.data.libraries.load(str(tmp_path / "other.blend"), link=True) as (_, linked):
-        linked.images = ["plate.png", "plate.png code values"]
+        linked.images = names
     tree = compositor_tree(bpy.context.scene)
     for found in linked.images:
         tree.nodes.new("CompositorNodeImage").image = found
@@ -57,5 +64,18 @@ def test_a_plate_that_was_linked_and_made_local_gets_a_copy_of_its_own(image, tm
     bpy.ops.wm.open_mainfile(filepath=str(tmp_path / "shot.blend"))
     plate = bpy.data.images["plate.png"].make_local()
     apply_nodes(plate)
-    (copy,) = (found for found in bpy.data.images if found.library is None and found.name.endswith("code values"))
+    (copy,) = (found for found in bpy.data.images if found.library is None and "code values" in found.name)
     assert copy["camera_response_code_values_of"] == plate
+
+
+def test_plates_of_one_name_in_two_files_share_no_name_of_copy_or_group(addon, tmp_path, codes):
+    """Where nodes are copied from one file to the other, Blender takes data of one name for the same."""
+    names = []
+    for folder in ("a", "b"):
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        (tmp_path / folder).mkdir()
+        plate = bpy.data.images.load(str(write_image(tmp_path / folder / "IMG_0001.png", codes)))
+        bpy.ops.crf.estimate_response(image=plate.name, apply="NODES")
+        made = [each for each in bpy.data.node_groups if "Response" in each.name]
+        names += [code_values_of(plate).name, *(each.name for each in made)]
+    assert len(set(names)) == len(names) == 4

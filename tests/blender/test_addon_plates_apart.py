@@ -70,7 +70,7 @@ class TestTwoPlatesOfOneName:
         for image in twins:
             apply(image)
         found = [group_with(tree, image) for image in twins]
-        assert [node.node_tree.name for node in found] == ["Camera Response IMG_0001", "Camera Response IMG_0001 (b)"]
+        assert len({node.node_tree.name for node in found}) == 2
         for image, node in zip(twins, found, strict=True):
             expected = curves[image].inverse(codes / 255)
             assert np.abs(composited(node.outputs[0])[..., :3] - expected).max() < CODES
@@ -161,8 +161,8 @@ class TestNothingIsLinearizedTwice:
 
         wanted = compositor.PlateNodes(
             plate=image,
-            codes=bpy.data.images["plate.png code values"],
-            group=bpy.data.node_groups["Camera Response plate"],
+            codes=next(each for each in bpy.data.images if "code values" in each.name),
+            group=next(each for each in bpy.data.node_groups if "Response" in each.name),
             exposure=1,
         )
         compositor.apply_group(edited, wanted)
@@ -193,5 +193,6 @@ class TestTheRestStaysAsItIs:
         """And does not outlive its user."""
         apply(image)
         others = [other for other in bpy.data.images if other != image and other.type == "IMAGE"]
-        assert [other.name for other in others] == ["plate.png code values"]
+        assert len(others) == 1
+        assert others[0].name.startswith("plate.png code values ")
         assert not any(datablock.use_fake_user for datablock in (*others, *bpy.data.node_groups))
