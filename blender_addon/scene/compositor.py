@@ -180,7 +180,7 @@ def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
             wanted.timing.set_on(node)
     else:
         node = tree.nodes.new("CompositorNodeMovieClip")
-    node.location = (0, bottom - 200)
+    node.location, node.width = (0, bottom - 200), WIDTH
     viewer = next((other for other in tree.nodes if other.type == "VIEWER" and _is_free(other)), None)
     if viewer is None:
         viewer = tree.nodes.new("CompositorNodeViewer")

@@ -210,3 +210,11 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
         defaults.MAX_EXPOSURE,
     )
     assert defaults.CONFIG_NAME == CONFIG_NAME
+
+
+def test_a_long_option_is_broken_behind_a_colon(addon):
+    from blender_addon.ui.estimate_box import draw_text
+
+    layout = Layout()
+    draw_text(layout, "use its filter scale=in_range=limited:out_range=full first", 32)
+    assert labels(layout.drawn) == ["use its filter", "scale=in_range=limited:", "out_range=full first"]
