@@ -11,7 +11,7 @@ import bpy
 
 from .node_building import GAP, WIDTH
 from .node_links import compositor_trees, holds_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
-from .plates import Datablock, datablock_of_node
+from .plates import Datablock, datablock_of_node, plate_itself
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -129,7 +129,7 @@ def _show(node: bpy.types.Node, codes: Datablock) -> None:
         node.image = codes
     else:
         node.clip = codes
-    node.label = node.label or codes.name
+    node.label = node.label or f"{plate_itself(codes).name} code values"
 
 
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
