@@ -80,7 +80,7 @@ class TestAnotherFile:
         assert lines_of(image) == []
         (group,) = (node for node in tree.nodes if node.type == "GROUP")
         expected = stored_estimate.restored(image).curve.inverse((255 - codes) / 255)
-        assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 1e-6
+        assert np.abs(composited(group.outputs[0])[..., :3] - expected).max() < 1e-5
 
     def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, tree, composited):
         """The nodes have read its earlier pixels."""
@@ -89,10 +89,10 @@ class TestAnotherFile:
         apply_nodes(image)
         (group,) = (node for node in tree.nodes if node.type == "GROUP")
         curve = stored_estimate.restored(image).curve
-        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse(codes / 255)).max() < 1e-6
+        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse(codes / 255)).max() < 1e-5
         other_file(plate_file.parent, codes, plate_file.name)
         apply_nodes(image)
-        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
+        assert np.abs(composited(group.outputs[0])[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-5
 
     def test_a_file_that_is_gone_is_not_to_be_applied(self, image, lines_of, plate_file):
         apply_nodes(image)
@@ -144,7 +144,7 @@ class TestPacked:
         from blender_addon.scene.compositor import compositor_tree
 
         opened = compositor_tree(bpy.context.scene)
-        assert np.abs(composited(group_of(opened).outputs[0]) - expected).max() < 1e-6
+        assert np.abs(composited(group_of(opened).outputs[0]) - expected).max() < 1e-5
         assert expected[..., :3].max() > 0.5
 
 
@@ -239,7 +239,7 @@ class TestTwice:
         assert lines_of(image) == []
         (link,) = by_hand.outputs["Image"].links
         expected = stored_estimate.restored(image).curve.inverse(codes / 255)
-        assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-6
+        assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-5
 
     def test_two_groups_in_a_row_are_told(self, image, lines_of, tree):
         apply_nodes(image)

@@ -161,19 +161,18 @@ def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
     settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
     gray = settings.gray if settings.anchor == "GRAY" else None
     stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
-    if comparison.show_again(space, key := _key(space, stops)):
+    if comparison.show_again(space, key := _key(space.image, stops)):
         return
     codes = comparison.code_values(space.image, space.image_user)
     pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
     comparison.begin(space, pixels, lazy_import.load(".scene.node_group").linear_rec709(), key)
 
 
-def _key(space: bpy.types.SpaceImageEditor, stops: float) -> str:
-    """Return a text that differs between different linear plates; an empty one if the plate may change unnoticed."""
-    plate, frame = space.image, space.image_user.frame_current
+def _key(plate: bpy.types.Image, stops: float) -> str:
+    """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
     response = hash(stored_estimate.curve_and_band(plate).tobytes())
-    details = (response, stops, frame, plates.alpha_mode(plate), stored_estimate.primaries(plate))
-    return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source != "SEQUENCE" else ""
+    details = (response, stops, plates.alpha_mode(plate), stored_estimate.primaries(plate))
+    return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source == "FILE" else ""
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(
