@@ -165,5 +165,5 @@ def test_of_a_movie_it_is_the_frame_that_the_editor_shows(movie, codes, in_edito
             expected = stored_curve(image).inverse(frame_codes(codes, number) / 255)
             assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
             bpy.ops.crf.compare(is_after=False)
-    assert len(bpy.data.images) == 2  # no copy of the movie is left, only its linear frame
+    assert len(bpy.data.images) == len(before) + 1  # the linear frame; no copy of the movie is left
     assert not image.is_dirty
