@@ -11,7 +11,7 @@ import bpy
 
 from .node_building import GAP, WIDTH
 from .node_links import compositor_trees, holds_group_of, linearizes, neighbors_behind, nodes_behind, nodes_of
-from .plates import Datablock, datablock_of_node, plate_itself
+from .plates import Datablock, datablock_of_node
 
 #: Holds the timing of a sequence: the image user of an editor, or a compositor's Image node.
 ImageUser: TypeAlias = bpy.types.ImageUser | bpy.types.CompositorNodeImage
@@ -105,7 +105,7 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
     """
     sources = [node for node in tree.nodes if datablock_of_node(node) == wanted.plate]
     for source in sources or [_add_plate(tree, wanted)]:
-        _show(source, wanted.codes)
+        _show(source, wanted)
         if not _groups_behind(source, wanted.plate):
             _activate(_insert(tree, source, wanted.group))
     for node in (node for other in compositor_trees() for node in other.nodes if holds_group_of(node, wanted.plate)):
@@ -123,13 +123,13 @@ def _groups_behind(source: bpy.types.Node, plate: Datablock) -> list[bpy.types.N
     return [node for node in nodes_behind(source) if holds_group_of(node, plate)]
 
 
-def _show(node: bpy.types.Node, codes: Datablock) -> None:
+def _show(node: bpy.types.Node, wanted: PlateNodes) -> None:
     """Show the code values of a plate in a node; its frame settings stay."""
     if node.type == "IMAGE":
-        node.image = codes
+        node.image = wanted.codes
     else:
-        node.clip = codes
-    node.label = node.label or f"{plate_itself(codes).name} code values"
+        node.clip = wanted.codes
+    node.label = node.label or f"{wanted.plate.name} code values"
 
 
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
