@@ -103,7 +103,7 @@ define install
 endef
 
 # The zip, the plates and what the command says of them; where they are up to date, the test needs no environment.
-$(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio tests/blender_window/make_files.py -name '*.pyc' -o -name '* *' -o -type f -print)
+$(WINDOW)/ready: $(shell find blender_addon crfnet_core ocio tests/blender_window/make_files.py -name '*.pyc' -o -name '*.png' -o -name '* *' -o -type f -print)
 	$(MAKE) $(ADDON)/ready $(PLOT)/ready
 	rm -rf $(WINDOW)
 	$(ADDON)/bin/python blender_addon/build.py --platform linux-x64-any-python --out $(WINDOW)/zip

@@ -20,7 +20,7 @@ from . import stored_estimate
 from .color_management import data_space
 from .node_links import LOOK, PLATE
 from .packed_images import has_own_file, is_painted
-from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state
+from .plates import CODE_VALUES_OF, Datablock, alpha_mode, file_state, short_hash
 
 #: The custom property of a copy with the state of the plate's file that it has read: `plates.file_state`.
 _READ = "camera_response_read"
@@ -41,7 +41,7 @@ def code_values(plate: Datablock) -> Datablock:
             earlier.user_remap(copy)
             _collection(plate).remove(earlier)
         copy[CODE_VALUES_OF] = plate
-    copy.name = _name_behind(plate.name)
+    copy.name = _name_behind(plate)
     copy[_READ] = file_state(plate)
     return copy
 
@@ -130,13 +130,14 @@ def _copies(plate: Datablock) -> Iterator[Datablock]:
             yield copy
 
 
-def _name_behind(name: str) -> str:
-    """Return the name of a plate's copy, which begins with the plate's name and comes behind it.
+def _name_behind(plate: Datablock) -> str:
+    """Return the name of a plate's copy, which begins with the plate's name and comes behind it, with a short hash.
 
     A long name is cut, so that the end fits. The wide tilde then stands where the plate's name goes on, and comes
     behind the letters of all languages.
     """
-    most, end = bpy.types.ID.bl_rna.properties["name"].length_max - 1, " code values"  # bytes
+    most = bpy.types.ID.bl_rna.properties["name"].length_max - 1  # bytes
+    name, end = plate.name, f" code values {short_hash(plate)}"
     if len(name.encode() + end.encode()) > most:
         end = f"\N{FULLWIDTH TILDE}{end}"
         name = name.encode()[: most - len(end.encode())].decode(errors="ignore")

@@ -105,7 +105,7 @@ def apply_group(tree: bpy.types.NodeTree, wanted: PlateNodes) -> None:
     """
     sources = [node for node in tree.nodes if datablock_of_node(node) == wanted.plate]
     for source in sources or [_add_plate(tree, wanted)]:
-        _show(source, wanted.codes)
+        _show(source, wanted)
         if not _groups_behind(source, wanted.plate):
             _activate(_insert(tree, source, wanted.group))
     for node in (node for other in compositor_trees() for node in other.nodes if holds_group_of(node, wanted.plate)):
@@ -123,13 +123,13 @@ def _groups_behind(source: bpy.types.Node, plate: Datablock) -> list[bpy.types.N
     return [node for node in nodes_behind(source) if holds_group_of(node, plate)]
 
 
-def _show(node: bpy.types.Node, codes: Datablock) -> None:
+def _show(node: bpy.types.Node, wanted: PlateNodes) -> None:
     """Show the code values of a plate in a node; its frame settings stay."""
     if node.type == "IMAGE":
-        node.image = codes
+        node.image = wanted.codes
     else:
-        node.clip = codes
-    node.label = node.label or codes.name
+        node.clip = wanted.codes
+    node.label = node.label or f"{wanted.plate.name} code values"
 
 
 def _insert(tree: bpy.types.NodeTree, source: bpy.types.Node, group: bpy.types.NodeTree) -> bpy.types.Node:
@@ -180,7 +180,7 @@ def _add_plate(tree: bpy.types.NodeTree, wanted: PlateNodes) -> bpy.types.Node:
             wanted.timing.set_on(node)
     else:
         node = tree.nodes.new("CompositorNodeMovieClip")
-    node.location = (0, bottom - 200)
+    node.location, node.width = (0, bottom - 200), WIDTH
     viewer = next((other for other in tree.nodes if other.type == "VIEWER" and _is_free(other)), None)
     if viewer is None:
         viewer = tree.nodes.new("CompositorNodeViewer")

@@ -22,12 +22,12 @@ from .color_management import color_spaces, data_space
 from .node_building import (
     CHANNELS,
     GAP,
+    IS_BLENDER_5,
+    SHADER,
     WIDTH,
     NodeGrid,
-    combine_node,
     convert_color_space,
     divide_by_alpha,
-    map_uv,
     math_node,
     multiply_by_alpha,
     multiply_by_matrix,
@@ -62,7 +62,7 @@ def add_look(tree: bpy.types.NodeTree, plate: Datablock, name: str, curve: Respo
 
 def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None:
     """Bring the plate's look up to date, and every node of it in the file; nothing happens if it has none."""
-    group = made_for(plate, bpy.data.node_groups, LOOK)
+    group = made_for(plate, LOOK)
     if group is None:
         return
     _build(plate, "", curve)
@@ -75,7 +75,7 @@ def update_look(plate: Datablock, curve: ResponseCurve, exposure: float) -> None
 def _build(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.NodeTree:
     """Return the plate's look; one that exists already is updated."""
     linear, srgb_space, working = linear_rec709(), srgb(), working_space()
-    group = made_for(plate, bpy.data.node_groups, LOOK)
+    group = made_for(plate, LOOK)
     if group is None:
         group = new_group(plate, f"Camera Look {name}", LOOK, "Exposure of the linear plate in stops, taken back here")
         codes = group.interface.new_socket(CODE_VALUES, in_out="OUTPUT", socket_type="NodeSocketColor")
@@ -116,10 +116,8 @@ def _encoded(
         clipped.node.use_clamp = True
         position = math_node(grid, "MULTIPLY", 6, row, clipped, SAMPLES - 1)
         sample = math_node(grid, "FLOOR", 7, row, position)
-        vector = combine_node(grid, 8, row)
-        grid.link(math_node(grid, "MULTIPLY_ADD", 7.5, row, sample, 1 / SAMPLES, 0.5 / SAMPLES), vector.inputs["X"])
         read = grid.node("CompositorNodeSeparateColor", 10, row=row)
-        grid.link(map_uv(grid, table.outputs["Image"], vector.outputs[0], 9, row).outputs[0], read.inputs[0])
+        grid.link(_sample(grid, table.outputs["Image"], sample, row), read.inputs[0])
         between = math_node(grid, "MULTIPLY_ADD", 11, row, math_node(grid, "FRACT", 7, row + 0.5, position))
         grid.link(read.outputs["Green"], between.node.inputs[1])
         grid.link(read.outputs["Red"], between.node.inputs[2])
@@ -127,9 +125,27 @@ def _encoded(
     return join.outputs[0]
 
 
+def _sample(
+    grid: NodeGrid, table: bpy.types.NodeSocket, number: bpy.types.NodeSocket, row: int
+) -> bpy.types.NodeSocket:
+    """Return the socket of the pixel of a number in the image of a response."""
+    vector = grid.node(f"{SHADER}NodeCombineXYZ", 8, row=row)
+    vector.inputs["Y"].default_value, vector.inputs["Z"].default_value = 0.5, 1
+    grid.link(math_node(grid, "MULTIPLY_ADD", 7.5, row, number, 1 / SAMPLES, 0.5 / SAMPLES), vector.inputs["X"])
+    node = grid.node("CompositorNodeMapUV", 9, row=row)
+    if IS_BLENDER_5:
+        node.inputs["Interpolation"].default_value = "Nearest"
+        node.inputs["Extension X"].default_value = node.inputs["Extension Y"].default_value = "Extend"
+    else:
+        node.filter_type = "NEAREST"
+    grid.link(table, node.inputs["Image"])
+    grid.link(vector.outputs[0], node.inputs["UV"])
+    return node.outputs[0]
+
+
 def _response_image(plate: Datablock, name: str, curve: ResponseCurve) -> bpy.types.Image:
     """Return the packed image of a response, red f at each sample, green the step to the next; hidden by its name."""
-    image = made_for(plate, bpy.data.images, LOOK)
+    image = next((item for item in bpy.data.images if item.get(LOOK) == plate and item.library is None), None)
     if image is None:
         image = bpy.data.images.new(name, SAMPLES, 1, alpha=False, float_buffer=True)
         image[LOOK] = plate

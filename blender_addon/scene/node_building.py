@@ -11,16 +11,14 @@ import bpy
 if TYPE_CHECKING:
     from crfnet_core.types import Float64Array
 
-#: Whether this is Blender 5.0 or later, whose Map UV node interpolates and whose nodes have other names and sockets.
+#: Whether this is Blender 5.0 or later, whose nodes have other names and sockets.
 IS_BLENDER_5 = bpy.app.version >= (5, 0, 0)
 
 #: The distance between a group's node and its neighbors, and its width, in units of the node editor.
 GAP, WIDTH = 60, 220
 
-#: Nodes that Blender 5.0 replaced by shader nodes.
-_MATH, _COMBINE = (
-    ("ShaderNodeMath", "ShaderNodeCombineXYZ") if IS_BLENDER_5 else ("CompositorNodeMath", "CompositorNodeCombineXYZ")
-)
+#: The beginning of the names of nodes that Blender 5.0 replaced by shader nodes.
+SHADER = "Shader" if IS_BLENDER_5 else "Compositor"
 
 #: The sockets of the nodes that separate and combine colors.
 CHANNELS = ("Red", "Green", "Blue")
@@ -50,7 +48,7 @@ def math_node(
     grid: NodeGrid, operation: str, column: float, row: float, value: bpy.types.NodeSocket, *numbers: float
 ) -> bpy.types.NodeSocket:
     """Return the socket of a value that a Math node has computed, with numbers as its further operands."""
-    node = grid.node(_MATH, column, row=row)
+    node = grid.node(f"{SHADER}NodeMath", column, row=row)
     node.operation = operation
     grid.link(value, node.inputs[0])
     for index, number in enumerate(numbers, 1):
@@ -71,28 +69,6 @@ def multiply_by_matrix(
             total = added
         products.append(total)
     return products
-
-
-def combine_node(grid: NodeGrid, column: float, row: float) -> bpy.types.Node:
-    """Return a new node that combines X and Y to a position for a Map UV node; Y is 0.5 until something is linked."""
-    node = grid.node(_COMBINE, column, row=row)
-    node.inputs["Y"].default_value, node.inputs["Z"].default_value = 0.5, 1
-    return node
-
-
-def map_uv(
-    grid: NodeGrid, table: bpy.types.NodeSocket, position: bpy.types.NodeSocket, column: float, row: float
-) -> bpy.types.Node:
-    """Return a new node that reads the pixel of an image that is nearest to a position in [0, 1]."""
-    node = grid.node("CompositorNodeMapUV", column, row=row)
-    if IS_BLENDER_5:
-        node.inputs["Interpolation"].default_value = "Nearest"
-        node.inputs["Extension X"].default_value = node.inputs["Extension Y"].default_value = "Extend"
-    else:
-        node.filter_type = "NEAREST"
-    grid.link(table, node.inputs["Image"])
-    grid.link(position, node.inputs["UV"])
-    return node
 
 
 def convert_color_space(

@@ -3,6 +3,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from pathlib import Path
 from typing import Any, TypeAlias
 
@@ -237,6 +238,15 @@ def file_state(datablock: Datablock) -> str:
     except OSError:
         return ""
     return f"{path.name}\n{status.st_size}\n{status.st_mtime:.0f}"
+
+
+def short_hash(datablock: Datablock) -> str:
+    """Return four digits that differ between plates of one name: Blender takes data of one name for the same.
+
+    It does so where nodes are copied from one .blend file to another.
+    """
+    path = str(_path(datablock)) if has_own_file(datablock) else f"{bpy.data.filepath}/{datablock.name}"
+    return hashlib.sha256(path.encode(errors="surrogateescape")).hexdigest()[:4]
 
 
 def alpha_mode(datablock: Datablock) -> str:

@@ -4,6 +4,7 @@
 from __future__ import annotations
 
 import math
+import re
 import textwrap
 
 import bpy
@@ -43,6 +44,12 @@ _SMALLEST, _LARGEST = 9, 18
 
 #: The distance of lines that belong together, relative to the distance of buttons.
 _LINE = 0.75
+
+
+class _Wrapper(textwrap.TextWrapper):
+    """Breaks lines behind hyphens, colons and slashes, too, as in the options of a program."""
+
+    wordsep_re = re.compile(r"(\s+|(?<=\w[-:/])(?=\w))")
 
 
 def draw_estimate(layout: bpy.types.UILayout, context: bpy.types.Context, datablock: plates.Datablock) -> None:
@@ -106,7 +113,7 @@ def draw_text(layout: bpy.types.UILayout, text: str, letters: int, *, icon: str 
     column = layout.column(align=True)
     column.scale_y = _LINE
     width = letters - (_ICON // _LETTER if icon != "NONE" else 0)
-    for number, part in enumerate(textwrap.wrap(text, width)):
+    for number, part in enumerate(_Wrapper(width).wrap(text)):
         column.label(text=part, icon=icon if not number or icon == "NONE" else "BLANK1")
 
 

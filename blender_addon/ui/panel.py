@@ -59,10 +59,10 @@ class ResponsePanel:
 
 
 class CRF_PT_image(ResponsePanel, bpy.types.Panel):
-    """The panel in the Image Editor."""
+    """The panel in the Image Editor, in a tab of its own: above it, Blender's panels change with the image."""
 
     bl_space_type = "IMAGE_EDITOR"
-    bl_category = "Image"
+    bl_category = "Response"
 
 
 class CRF_PT_clip(ResponsePanel, bpy.types.Panel):

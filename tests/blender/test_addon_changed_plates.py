@@ -80,15 +80,15 @@ class TestAnotherFile:
         apply(image)
         assert lines_of(image) == []
         expected = curve_of(image).inverse((255 - codes) / 255)
-        assert np.abs(composited(group_node().outputs[0])[..., :3] - expected).max() < 1e-6
+        assert np.abs(composited(group_node().outputs[0])[..., :3] - expected).max() < 1e-5
 
     def test_nodes_read_a_file_that_was_written_anew(self, image, plate_file, codes, composited):
         apply(image)
         linear, curve = group_node().outputs[0], curve_of(image)
-        assert np.abs(composited(linear)[..., :3] - curve.inverse(codes / 255)).max() < 1e-6
+        assert np.abs(composited(linear)[..., :3] - curve.inverse(codes / 255)).max() < 1e-5
         other_file(plate_file.parent, codes, plate_file.name)
         apply(image)
-        assert np.abs(composited(linear)[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-6
+        assert np.abs(composited(linear)[..., :3] - curve.inverse((255 - codes) / 255)).max() < 1e-5
 
     def test_a_file_that_is_gone_is_not_to_be_applied(self, image, lines_of, plate_file):
         apply(image)
@@ -133,7 +133,7 @@ def test_the_nodes_of_a_packed_plate_survive_the_loss_of_the_file(image, plate_f
     expected = composited(group_node().outputs[0])
     plate_file.unlink()
     bpy.ops.wm.open_mainfile(filepath=scene)
-    assert np.abs(composited(group_node().outputs[0]) - expected).max() < 1e-6
+    assert np.abs(composited(group_node().outputs[0]) - expected).max() < 1e-5
     assert expected[..., :3].max() > 0.5
 
 
@@ -213,7 +213,7 @@ class TestTwice:
         assert lines_of(image) == []
         (link,) = by_hand.outputs["Image"].links
         expected = curve_of(image).inverse(codes / 255)
-        assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-6
+        assert np.abs(composited(link.to_node.outputs[0])[..., :3] - expected).max() < 1e-5
 
     def test_two_groups_in_a_row_are_told(self, image, lines_of, tree):
         apply(image)

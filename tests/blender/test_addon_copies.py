@@ -2,9 +2,16 @@
 
 import pytest
 
+from tests.helpers.images import write_image
+
 from .helpers import apply, bpy, plates, reopen, scene_tree
+from .helpers import estimate as run
 
 pytestmark = pytest.mark.usefixtures("estimated")
+
+
+def code_values_of(plate):
+    return next(image for image in bpy.data.images if image.get("camera_response_code_values_of") == plate)
 
 
 class TestOpenedAgain:
@@ -17,7 +24,7 @@ class TestOpenedAgain:
     def test_an_editor_that_shows_the_code_values_has_the_panel_of_the_plate(self, image, in_editor):
         apply(image)
         with in_editor("IMAGE_EDITOR") as space:
-            space.image = bpy.data.images["plate.png code values"]
+            space.image = code_values_of(image)
             assert plates.active_datablock(bpy.context) == image
             assert bpy.ops.crf.compare(is_after=True) == {"FINISHED"}
             assert bpy.ops.crf.compare(is_after=False) == {"FINISHED"}
@@ -26,7 +33,7 @@ class TestOpenedAgain:
     def test_the_code_values_are_no_plate_of_their_own(self, image):
         apply(image)
         with pytest.raises(RuntimeError, match="open the photograph itself"):
-            bpy.ops.crf.estimate_response(image="plate.png code values", apply="ESTIMATE")
+            bpy.ops.crf.estimate_response(image=code_values_of(image).name, apply="ESTIMATE")
 
     @pytest.mark.parametrize("letter", ["n", "Z", "ü", "图"])
     def test_the_plate_is_found_however_long_its_name_is(self, image, plate_file, letter):
@@ -40,14 +47,28 @@ class TestOpenedAgain:
 def test_a_plate_that_was_linked_and_made_local_gets_a_copy_of_its_own(image, tmp_path):
     """The copy of the other file cannot be changed."""
     apply(image)
+    names = [image.name, code_values_of(image).name]
     bpy.ops.wm.save_as_mainfile(filepath=str(tmp_path / "other.blend"))
     bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
     with bpy.data.libraries.load(str(tmp_path / "other.blend"), link=True) as (_, linked):
-        linked.images = ["plate.png", "plate.png code values"]
+        linked.images = names
     for found in linked.images:
         scene_tree().nodes.new("CompositorNodeImage").image = found
     reopen(tmp_path / "shot.blend")
     plate = bpy.data.images["plate.png"].make_local()
     apply(plate)
-    (copy,) = (found for found in bpy.data.images if found.library is None and found.name.endswith("code values"))
+    (copy,) = (found for found in bpy.data.images if found.library is None and "code values" in found.name)
     assert copy["camera_response_code_values_of"] == plate
+
+
+def test_plates_of_one_name_in_two_files_share_no_name_of_copy_or_group(addon, tmp_path, codes):
+    """Where nodes are copied from one file to the other, Blender takes data of one name for the same."""
+    names = []
+    for folder in ("a", "b"):
+        bpy.ops.wm.read_homefile(use_empty=True, use_factory_startup=True)
+        (tmp_path / folder).mkdir()
+        plate = bpy.data.images.load(str(write_image(tmp_path / folder / "IMG_0001.png", codes)))
+        run(plate, "NODES")
+        made = [each for each in bpy.data.node_groups if "Response" in each.name]
+        names += [code_values_of(plate).name, *(each.name for each in made)]
+    assert len(set(names)) == len(names) == 4

@@ -17,7 +17,7 @@ def names():
     return [image.name for image in bpy.data.images]
 
 
-def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes, estimate, in_editor):
+def test_the_linear_plate_is_shown_and_kept_for_the_next_time(image, plate_file, codes, estimate, in_editor):
     before = names()
     expected = estimate(plate_file).curve.inverse(codes / 255)
     with in_editor("IMAGE_EDITOR") as space:
@@ -29,11 +29,16 @@ def test_the_linear_plate_is_shown_and_taken_away_again(image, plate_file, codes
         assert image.colorspace_settings.name == "sRGB"
         image.camera_response_settings.exposure = 1
         show(after=True)  # anew
+        linear = space.image
+        assert not linear.is_dirty  # or Blender would ask to save it
         assert np.abs(pixels_of(space.image)[..., :3] - 2 * expected).max() < 2e-6
         assert len(names()) == len(before) + 1
         show(after=False)
         assert space.image == image
-    assert names() == before
+        linear.pixels[0] = 0.25  # not computed anew
+        show(after=True)
+        assert space.image == linear
+        assert linear.pixels[0] == 0.25
 
 
 def test_of_a_sequence_it_is_the_frame_that_the_editor_shows(addon, codes, tmp_path, in_editor):

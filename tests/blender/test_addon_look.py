@@ -52,12 +52,16 @@ def test_it_undoes_the_linearizing_group(look, composited, plate_file, codes, ch
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - codes / 255).max() < ROUND_TRIP
 
 
-def test_it_undoes_it_at_16_bits(look, composited, tmp_path):
+def test_it_undoes_a_bake_at_16_bits(look, composited, codes, tmp_path):
     """The look is exact; between its entries the LUT is linear and the inverse response is not, by a code or so."""
-    samples = np.random.default_rng(0).integers(0, 65536, (256, 256, 3)).astype(np.uint16)
+    samples = codes.astype(np.uint16) * 256 + np.random.default_rng(0).integers(0, 256, codes.shape, np.uint16)
     image, node = look(write_image(tmp_path / "deep.png", samples))
     curve = curve_of(image)
-    expected = curve.forward(inverse_response_lut(curve).apply(samples / 65535))
+    light = inverse_response_lut(curve).apply(samples / 65535).astype(np.float32)
+    baked = scene_tree().nodes.new("CompositorNodeImage")
+    baked.image = bpy.data.images.load(str(write_image(tmp_path / "light.exr", light)))
+    scene_tree().links.new(baked.outputs[0], node.inputs["Image"])
+    expected = curve.forward(light)
     assert np.abs(composited(node.outputs["Code Values"])[..., :3] - expected).max() < ROUND_TRIP
     assert np.abs(expected - samples / 65535).max() < 2 / 65535
 
@@ -131,7 +135,7 @@ def test_it_follows_a_response_that_is_applied_again(look, composited, plate_fil
 def test_the_file_of_the_plate_need_not_be_there(image, plate_file):
     plate_file.unlink()
     assert bpy.ops.crf.add_look(image=image.name) == {"FINISHED"}
-    assert "Camera Look plate" in bpy.data.node_groups
+    assert any(group.name.startswith("Camera Look plate") for group in bpy.data.node_groups)
 
 
 @pytest.mark.parametrize(

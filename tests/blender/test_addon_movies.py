@@ -134,5 +134,5 @@ def test_of_a_movie_it_is_the_frame_that_the_editor_shows(movie, codes, in_edito
             expected = curve_of(image).inverse(frame_codes(codes, number) / 255)
             assert np.abs(pixels_of(space.image)[..., :3] - expected).max() < 1e-6
             show(after=False)
-    assert list(bpy.data.images) == before
+    assert len(bpy.data.images) == len(before) + 1  # the linear frame; no copy of the movie is left
     assert not image.is_dirty

@@ -5,7 +5,7 @@ import pytest
 
 from tests.helpers.images import write_image
 
-from .helpers import Panel, apply, bpy, drawn_in, estimate, labels, load, operators
+from .helpers import Layout, Panel, apply, bpy, drawn_in, estimate, labels, load, operators
 
 pytestmark = pytest.mark.usefixtures("estimated")
 
@@ -149,3 +149,11 @@ def test_the_interface_offers_what_jobs_and_ocio_know(addon):
     assert settings["device"].enum_items.keys() == ["file", *defaults.DEVICES]
     assert -settings["exposure"].hard_min == settings["exposure"].hard_max == defaults.MAX_EXPOSURE
     assert defaults.CONFIG_NAME == CONFIG_NAME
+
+
+def test_a_long_option_is_broken_behind_a_colon(addon):
+    from blender_addon.ui.estimate_box import draw_text
+
+    layout = Layout()
+    draw_text(layout, "use its filter scale=in_range=limited:out_range=full first", 32)
+    assert labels(layout.drawn) == ["use its filter", "scale=in_range=limited:", "out_range=full first"]

@@ -1,4 +1,4 @@
-"""Plate and Linear: the switch shows the linear plate in the Image Editor, and the plate again."""
+"""Plate and Linear: the switch shows the linear plate in the Image Editor, and the plate again, without a jump."""
 
 from __future__ import annotations
 
@@ -7,18 +7,36 @@ from tests.blender_window.base import WindowTest
 
 
 class TestComparison(WindowTest):
-    def test_linear_and_back(self):
+    def test_linear_and_back_with_a_mouse_at_rest(self):
         artist = self.start()
         name = artist.open(self.plate("plate.jpg"))
         artist.run()
+        artist.call("editors.pan", 37, -21)
         artist.settle()
-        before = artist.picture()
-        artist.press(SHOW_LINEAR)
-        artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")
-        linear = artist.value(SHOWN)
-        artist.settle()
-        self.keep(artist.picture(), "linear")
-        self.assertNotEqual(artist.picture(), before)
-        artist.press(SHOW_PLATE)
-        artist.wait(lambda: artist.value(SHOWN) == name, "the plate is shown again")
-        self.assertNotIn(linear, artist.value("[image.name for image in bpy.data.images]"))
+        view, before = artist.call("editors.view"), artist.picture()
+        for _ in range(2):
+            row = artist.find(SHOW_LINEAR)
+            artist.screen.click(*row)
+            artist.wait(lambda: artist.value(SHOWN) != name, "the linear plate is shown")
+            artist.settle()
+            self.assert_view(artist, view)
+            self.assertEqual(artist.find(SHOW_LINEAR, row=row[1]), row)
+            self.keep(artist.picture(), "linear")
+            self.assertNotEqual(artist.picture(), before)
+            artist.press(SHOW_PLATE)
+            artist.wait(lambda: artist.value(SHOWN) == name, "the plate is shown again")
+            artist.settle()
+            self.assert_view(artist, view)
+        self.assertEqual(artist.value("[image.name for image in bpy.data.images if image.is_dirty]"), [])
+
+    def test_the_second_switch_to_a_plate_of_12_megapixels_takes_a_tenth_of_a_second(self):
+        artist = self.start()
+        artist.open(self.plate("large.jpg"))
+        artist.run()
+        first, _, second, _ = (artist.call("editors.switch", is_after) for is_after in (True, False, True, False))
+        self.assertLess(second, 0.1, f"the first took {first:.2f} s")
+
+    def assert_view(self, artist, view):
+        """Assert that zoom and position are as they were, to a pixel of the screen."""
+        for found, expected in zip(artist.call("editors.view"), view, strict=True):
+            self.assertAlmostEqual(found, expected, delta=1)

@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Show the linear plate instead of the plate in an Image Editor, and go back.
 
-The linear plate is a hidden float image in memory. The plate itself is not touched, and the float image is removed
-before the file is saved, before undo, and when the last editor goes back to the plate.
+The linear plate is a hidden image, whose file is in Blender's folder for this session: pixels in memory alone would
+count as unsaved. It is kept for the next switch until the file is saved or opened, or something is undone.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
+from contextlib import contextmanager
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,8 +26,8 @@ if TYPE_CHECKING:
     from crfnet_core import ResponseCurve
     from crfnet_core.types import Float32Array, Float64Array
 
-#: The name of these images; a leading dot hides them in menus.
-_NAME = ".Camera Response Linear"
+#: The name of these images, which a leading dot hides in menus; the custom property with the key of their pixels.
+_NAME, _KEY = ".Camera Response Linear", "camera_response_key"
 
 #: The largest code value of the look-up table: a multiple of 255, so it is exact on 8 and on 16 bits.
 _LARGEST = 65535
@@ -34,34 +36,58 @@ _LARGEST = 65535
 _ROWS = 16
 
 
-def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str) -> None:
-    """Show the linear plate in an editor that shows the plate.
+def begin(space: bpy.types.SpaceImageEditor, pixels: Float32Array, color_space: str, key: str) -> None:
+    """Show the linear plate in an editor that shows the plate; the `key` finds it again.
 
-    Its pixels, shape (H, W, 4), in a color space, are multiplied by alpha; the bottom row comes first.
+    Its pixels, shape (H, W, 4), in a color space, are multiplied by alpha; the bottom row comes first. Raise AddonError
+    if there is no room for its file.
     """
-    plate = space.image
-    height, width = pixels.shape[:2]
-    linear = bpy.data.images.new(_NAME, width, height, alpha=True, float_buffer=True)
-    linear[COMPARED_PLATE] = plate
-    linear.colorspace_settings.name = color_space  # before the pixels, which this would remove
-    linear.pixels.foreach_set(pixels.ravel())
-    linear.update()
+    plate, path = space.image, Path(bpy.app.tempdir, f"linear_{space.image.session_uid}.exr")
+    buffer = lazy_import.load("OpenImageIO").ImageBuf(np.ascontiguousarray(pixels[::-1]))
+    buffer.specmod().attribute("compression", "none")
+    if not buffer.write(str(path)):
+        raise AddonError(f"{path}: cannot be written: {buffer.geterror()}")
+    linear = _linear_image(plate) or bpy.data.images.load(str(path))
+    linear.name, linear[COMPARED_PLATE], linear[_KEY] = _NAME, plate, key
+    linear.colorspace_settings.name = color_space
+    linear.reload()
     space.image = linear
 
 
-def end(space: bpy.types.SpaceImageEditor) -> None:
-    """Show the plate again in an editor that shows its linear one, which is removed unless another editor shows it.
+def show_again(space: bpy.types.SpaceImageEditor, key: str) -> bool:
+    """Show the linear plate that was made by a key; return whether there is one."""
+    linear = _linear_image(space.image)
+    if linear is None or not key or linear[_KEY] != key:
+        return False
+    space.image = linear
+    return True
 
-    An editor that shows the code values for the compositor shows the plate, too.
-    """
-    linear, plate = space.image, compared_plate(space.image)
-    if linear is None or COMPARED_PLATE not in linear:
-        if plate_itself(linear) != linear:
-            space.image = plate_itself(linear)
+
+def _linear_image(plate: bpy.types.Image) -> bpy.types.Image | None:
+    """Return the linear plate of a plate, of whatever key."""
+    return next((image for image in bpy.data.images if compared_plate(image) == plate), None)
+
+
+def end(space: bpy.types.SpaceImageEditor) -> None:
+    """Show the plate again in an editor that shows its linear one, or its code values for the compositor."""
+    if space.image is not None:
+        space.image = compared_plate(space.image) or plate_itself(space.image)
+
+
+@contextmanager
+def same_view(context: bpy.types.Context) -> Iterator[None]:
+    """Keep zoom and position of an Image Editor while it changes to another image: Blender has them for each image."""
+    space, region = context.space_data, next(each for each in context.area.regions if each.type == "WINDOW")
+    zoom, center = space.zoom_percentage, region.view2d.region_to_view(region.width / 2, region.height / 2)
+    yield
+    if space.image is None or not all(map(math.isfinite, center)):  # it was never drawn
         return
-    space.image = plate
-    if all(other.image != linear for other in _image_editors()):
-        bpy.data.images.remove(linear)
+    scale = zoom / 100  # pixels of the screen, to which the position is rounded: so it does not drift
+    offset = [round((at - 0.5) * side * scale) / scale for at, side in zip(center, space.image.size, strict=True)]
+    with context.temp_override(region=region):
+        bpy.ops.image.view_all()
+        space.zoom_percentage = zoom
+        bpy.ops.image.view_pan(offset=offset)
 
 
 def end_all() -> None:

@@ -49,12 +49,11 @@ class CRF_OT_compare(bpy.types.Operator):
     def execute(self, context: bpy.types.Context) -> set[str]:
         """Show the one or the other."""
         space = context.space_data
-        comparison.end(space)
-        if not self.is_after:
-            return {"FINISHED"}
         try:
-            node_group = lazy_import.load(".scene.node_group")
-            comparison.begin(space, _linear_pixels(space), node_group.linear_rec709())
+            with comparison.same_view(context):
+                comparison.end(space)
+                if self.is_after:
+                    _show_linear(space)
         except expected_errors() as problem:
             return failed(self, problem)
         return {"FINISHED"}
@@ -157,13 +156,23 @@ def _is_image_editor(context: bpy.types.Context) -> bool:
     return context.space_data is not None and context.space_data.type == "IMAGE_EDITOR"
 
 
-def _linear_pixels(space: bpy.types.SpaceImageEditor) -> Float32Array:
-    """Return the linear plate of what an editor shows, by the stored response and the present exposure."""
+def _show_linear(space: bpy.types.SpaceImageEditor) -> None:
+    """Show the linear plate of what an editor shows, by the stored response and the present exposure."""
     settings, curve = space.image.camera_response_settings, stored_estimate.restored(space.image).curve
     gray = settings.gray if settings.anchor == "GRAY" else None
     stops = lazy_import.load("crfnet.pipeline").anchored_exposure(curve, gray=gray, stops=settings.exposure)
+    if comparison.show_again(space, key := _key(space.image, stops)):
+        return
     codes = comparison.code_values(space.image, space.image_user)
-    return comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
+    pixels = comparison.linear_pixels(codes, curve, stops, stored_estimate.matrix(space.image))
+    comparison.begin(space, pixels, lazy_import.load(".scene.node_group").linear_rec709(), key)
+
+
+def _key(plate: bpy.types.Image, stops: float) -> str:
+    """Return a text that differs between linear plates; an empty one for frames, and for pixels without a file."""
+    response = hash(stored_estimate.curve_and_band(plate).tobytes())
+    details = (response, stops, plates.alpha_mode(plate), stored_estimate.primaries(plate))
+    return f"{state} {details}" if (state := plates.file_state(plate)) and plate.source == "FILE" else ""
 
 
 _register_classes, _unregister_classes = bpy.utils.register_classes_factory(

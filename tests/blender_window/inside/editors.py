@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from pathlib import Path
 from typing import Any
 
@@ -79,6 +80,27 @@ def show_all_nodes() -> None:
     tree.nodes.active = next(node for node in tree.nodes if node.type == "GROUP")
     with context("NODE_EDITOR"):
         bpy.ops.node.view_all()
+
+
+def pan(x: float, y: float) -> None:
+    """Move the picture in the Image Editor by pixels of the image."""
+    with context("IMAGE_EDITOR"):
+        bpy.ops.image.view_pan(offset=(x, y))
+
+
+def view() -> list[float]:
+    """Return the zoom of the Image Editor in percent, and where its picture begins and ends, in pixels."""
+    found, place = area("IMAGE_EDITOR").spaces.active, region("IMAGE_EDITOR", "WINDOW").view2d
+    corners = [place.view_to_region(*corner, clip=False) for corner in ((0, 0), (1, 1))]
+    return [found.zoom_percentage, *corners[0], *corners[1]]
+
+
+def switch(is_after: bool) -> float:
+    """Switch between plate and linear plate; return how long that took in seconds."""
+    started = time.perf_counter()
+    with context("IMAGE_EDITOR"):
+        bpy.ops.crf.compare(is_after=is_after)
+    return time.perf_counter() - started
 
 
 def redraw() -> None:

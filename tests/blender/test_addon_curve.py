@@ -1,0 +1,82 @@
+"""The RGB Curves node of the node group: how exact it is, and what it makes of values that are no codes."""
+
+import numpy as np
+import pytest
+
+from tests.helpers.images import write_image
+
+bpy = pytest.importorskip("bpy", reason="needs Blender's bpy module")
+
+#: Codes above 7 of 8 bits, of 10 bits the same brightnesses; and the largest error at each depth, in stops.
+FIRST, STOPS = 8, {255: 1e-3, 1023: 1e-2}
+
+
+@pytest.fixture
+def decoded(addon, tree, composited, tmp_path):
+    """What the node group of a curve makes of brightnesses."""
+    from blender_addon.scene import node_group
+
+    path = write_image(tmp_path / "plate.png", np.zeros((8, 8, 3), np.uint8))
+    plate = bpy.data.images.load(str(path))
+    source = tree.nodes.new("CompositorNodeImage")
+    node = tree.nodes.new("CompositorNodeGroup")
+
+    def run(curve, brightness):
+        node.node_tree = node_group.build_group(plate, "plate", curve, 0)
+        pixels = np.tile(np.asarray(brightness, np.float32)[:, None], (8, 1, 3))
+        if source.image:
+            bpy.data.images.remove(source.image)
+        source.image = bpy.data.images.load(str(write_image(tmp_path / "brightness.exr", pixels)))
+        source.image.colorspace_settings.name = "Non-Color"
+        tree.links.new(source.outputs["Image"], node.inputs["Image"])
+        return composited(node.outputs[0], size=(len(brightness), 8))[0, :, 0]
+
+    return run
+
+
+def cameras():
+    from crfnet_core.library.documents import read_camera
+    from crfnet_core.library.library import SHIPPED
+
+    return [read_camera(path).curve for path in sorted(SHIPPED.glob("*.json"))]
+
+
+def bank():
+    from crfnet_core import ResponseCurve
+    from crfnet_core.posterior.responses import ResponseBank
+
+    samples = ResponseBank.load().brightness
+    chosen = np.random.default_rng(0).choice(len(samples), 200, replace=False)
+    return [ResponseCurve.restored(samples[number]) for number in chosen]
+
+
+@pytest.mark.parametrize(("curves", "largest"), [(cameras, 255), (bank, 255), (cameras, 1023)])
+def test_the_light_of_all_codes_above_7(decoded, curves, largest):
+    brightness = np.arange(-(-FIRST * largest // 255), largest + 1) / largest
+    errors = [np.abs(np.log2(decoded(curve, brightness) / curve.inverse(brightness))).max() for curve in curves()]
+    assert len(errors) > 10
+    assert max(errors) < STOPS[largest]
+
+
+def test_it_clips_as_a_bake_does(decoded):
+    from crfnet_core import ResponseCurve
+
+    assert decoded(ResponseCurve.gamma(), [-0.5, -0.001, 0, 1, 1.001, 1.5]) == pytest.approx(
+        [0, 0, 0, 1, 1, 1], abs=1e-5
+    )
+
+
+def test_a_group_of_an_earlier_version_is_built_anew_and_drops_its_lut_image(estimated, tree, composited):
+    """It looked code values up in an image."""
+    bpy.ops.crf.apply_response(image=estimated.name, apply="NODES")
+    (node,) = (node for node in tree.nodes if node.type == "GROUP")
+    light = composited(node.outputs[0])
+    lut = bpy.data.images.new(".Camera Response plate LUT", 4, 1, float_buffer=True)
+    lut["camera_response_of"] = estimated
+    node.node_tree.nodes.clear()
+    table, end = (node.node_tree.nodes.new(kind) for kind in ("CompositorNodeImage", "NodeGroupOutput"))
+    table.image = lut
+    node.node_tree.links.new(table.outputs["Image"], end.inputs[0])
+    bpy.ops.crf.apply_response(image=estimated.name, apply="NODES")
+    assert np.array_equal(composited(node.outputs[0]), light)
+    assert lut.users == 0
