@@ -64,7 +64,7 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
         raise PhotoError("photograph_source", kind=type(source).__name__)
     name = getattr(source, "name", None)
     path = Path(name) if isinstance(name, str) and name else Path("bytes")
-    return Photo.from_codes(_codes_of_content(content, path), path)
+    return Photo.from_codes(read_content(content, path), path)
 
 
 def read_codes(path: str | os.PathLike[str]) -> CodeValues:
@@ -236,7 +236,7 @@ def _samples(source: Any, header: Any) -> NDArray[Any] | None:
     return values
 
 
-def _codes_of_content(content: bytes | bytearray | memoryview, path: Path) -> CodeValues:
+def read_content(content: bytes | bytearray | memoryview, path: Path) -> CodeValues:
     """Return the integer samples of the content of a file; errors name the path, which need not exist."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, path.name)
