@@ -112,8 +112,9 @@ def _fit(raw: Float32Array, luma: Float32Array, place: Float64Array) -> tuple[Fl
             max_nfev=EVALUATIONS,
         )
         place = found.x
-    at, values = _rising_curve(sampled(place), seen)
-    return place, float(np.corrcoef(seen, np.interp(sampled(place), at, values))[0, 1])
+    explained = np.interp(sampled(place), *_rising_curve(sampled(place), seen))
+    is_even = min(np.ptp(seen), np.ptp(explained)) == 0  # as where the pictures do not overlap
+    return place, 0.0 if is_even else float(np.corrcoef(seen, explained)[0, 1])
 
 
 def _coordinates(place: Float64Array, x: Float64Array, y: Float64Array, shape: tuple[int, ...]) -> Float64Array:

@@ -176,3 +176,8 @@ def test_raw_light_is_a_part_of_the_sensors_range(tmp_path):
     assert not raw.is_saturated[8, 8]
     assert raw.is_saturated[-8, -8]
     assert replace(raw).preview == b""
+
+
+def test_pictures_without_anything_in_common_have_no_correlation(scene):
+    gray = scene.mean(axis=2)[::4, ::4].astype(np.float32)
+    assert register(gray, np.full((100, 200), 90, np.float32)).correlation == 0
