@@ -111,6 +111,8 @@ SENTENCES: Mapping[str, str] = {
     "photograph_is_empty": "{path}: the file is empty; copy it again",
     "photograph_is_folder": "{path}: is a folder; give a photograph in it",
     "photograph_source": "a {kind} is not a path, bytes or a binary file; give one of these",
+    "raw_not_read": "{path}: LibRaw cannot read this {suffix} file ({problem}); convert it to DNG, or copy it again",
+    "rawpy_missing": "{path}: camera raw is read by rawpy, and measured with SciPy: pip install 'crfnet[calibrate]'",
     "sample_type": "{path}: holds {bits}-bit {kind} samples; needs 8 to 16 bits, unsigned: convert it",
     "scene_linear_file": "{path}: {kind} holds scene-linear values, in which no camera response is left to estimate;"
     " give the JPEG, HEIC or TIFF that the camera or the raw developer wrote",
@@ -169,6 +171,7 @@ SENTENCES: Mapping[str, str] = {
     # calibration
     "bad_seconds": "'{text}' is not an exposure time; give seconds such as 1/60 or 0.5",
     "blocks_left_out": "{part:.0%} of the blocks do not fit and were left out: something moved",
+    "dark_unseen": "no code below {low:.0f} is seen: there the curve is like known responses",
     "codes_above_unseen": "no code above {highest:.0f} is seen: there the curve is that of known responses",
     "codes_unseen": "flat parts of the pictures show {part:.0%} of the codes between {first} and {last}; take a scene"
     " with more range, or frames closer together",
@@ -178,6 +181,8 @@ SENTENCES: Mapping[str, str] = {
     " stops apart",
     "exposures_span": "the exposures span {span} stops; a stack needs {least:g} or more, from nearly nothing white to"
     " nearly everything white",
+    "few_cells": "{path}: only {count} flat places are neither clipped nor saturated, {least} are needed; take a scene"
+    " with even surfaces, dark and bright",
     "few_flat_places": "only {count} flat places are seen well in two frames, {least} are needed; take more frames,"
     " closer together, or a scene with even surfaces",
     "few_frames": "a stack needs at least {least} frames of one scene at different exposures, found {count}; take more,"
@@ -193,18 +198,40 @@ SENTENCES: Mapping[str, str] = {
     "frame_twice": "{path}: is given twice; give each frame once",
     "frame_unfit": "{name} does not fit the other frames and was left out",
     "frame_untimed": "{path}: names no exposure time; give the times of all frames",
+    "jpeg_too_small": "{path}: the JPEG has fewer than {least} pixels along its longer side; give the camera's JPEG of"
+    " full size",
+    "jpeg_without_raw": "{path}: there is no raw file of this name; give each JPEG with its raw file",
+    "local_fitted": "the camera brightened places by their surroundings (local tone mapping, exponent {local:+.2f});"
+    " the curve is without that, and plates keep it",
+    "local_tones": "{path}: the camera brightened places by their surroundings (local tone mapping, exponent"
+    " {local:+.2f}), so there is not one curve; switch off automatic tones (D-Lighting, DRO, HDR) and shoot again",
+    "measures_program": "the JPEG was made by {editor}: this is the response of that program, and not of the camera",
+    "no_raw_file": "{path}: there is no raw file here; give raw files with their JPEGs, or a stack of 4 or more frames",
     "no_single_curve": "no single curve explains the frames: they are off by {residual} codes (RMS), at most {most:g}"
     " are usual; each was rendered or edited on its own (automatic tones, local tone mapping, HDR): switch that off,"
     " and give the camera's own files",
+    "pair_cropped": "{path}: shows another part of the scene than {raw} does; give the JPEG as the camera wrote it with"
+    " this raw file, not cropped",
+    "pair_dark": "{path}: no code above {top:.0f} is seen, {least:.0f} is needed; take a brighter exposure",
+    "pair_differs": "{path}: does not show the same as {raw} (correlation {correlation:.2f}); give the JPEG of the same"
+    " shot, as the camera wrote it",
+    "pair_unexplained": "{path}: no single curve and color matrix explain the JPEG ({residual:.1f} codes off,"
+    " {outliers:.0%} of the cells left out); give one that the camera wrote, without effects",
+    "raw_without_jpeg": "{path}: holds no JPEG and none of its name is beside it; give it with its JPEG",
     "rest_span": "without the frames that do not fit the others ({unfit} of {count}), the exposures span {span} stops;"
     " these need {least:g} or more: use a tripod and a still scene, and take frames one or two stops apart",
     "scene_moved": "the frames do not show the same scene: {which} differ from the others even after alignment; the"
     " camera or the scene has moved, so use a tripod and a still scene, or leave these frames out",
     "settings_differ": "{settings} differ between the frames: exposures are time x ISO / f-number^2",
+    "shots_differ": "{first} and {last} are rendered {stops:.2f} stop apart, at most {most:g}; give shots of one"
+    " picture style, without automatic tones",
     "times_count": "{times} times are given for {frames} frames; give one for each, in order",
     "unknown_curve": "the curve that explains the frames is far from every known response (E_est {distance}, at most"
     " {most:g}); the exposure times are probably wrong, so check them, or the files were edited",
     "unlike_cameras": "unlike every camera's own rendering that is known (E_est {distance:.1f}): check the times",
     "white_below_largest": "white is {code:.0f} of 255 codes: the codes above it are white too",
+    "white_bracketed": "the brightest codes are not seen: where white is, is known only to lie between them and"
+    " saturation of the sensor; take a brighter scene too",
+    "white_extrapolated": "where white is was extrapolated from the codes below it",
     "white_unseen": "no frame reaches white: the scale is a guess; add a longer exposure",
 }

@@ -1,9 +1,11 @@
-"""Measure `crfnet calibrate` on stacks of known responses, beside OpenCV: the table of docs/CALIBRATE.md.
+"""Measure `crfnet calibrate` on stacks of known responses, beside OpenCV, or on raw pairs: docs/CALIBRATE.md's tables.
 
 python -m tests.measure_calibration [--linear DIR] [--responses N] [--only NAME]
+python -m tests.measure_calibration --pairs N [--linear DIR] [--bodies DIR] [--only NAME] [--verbose]
 
 Scenes are the studio lights of tests/data/lights, or the linear pictures of another folder. Responses are those that
-the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn.
+the packaged bank holds of cameras, EMoR draws, and the bundled photograph's, in turn; for pairs also the measured
+ones in a folder of CSV files.
 """
 
 from __future__ import annotations
@@ -11,16 +13,19 @@ from __future__ import annotations
 import argparse
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 import numpy as np
+from PIL import Image
 
-from crfnet_core.calibration import calibrate_stack
+from crfnet_core.calibration import calibrate_pairs, calibrate_stack
 from crfnet_core.calibration.curve_model import in_file_codes
 from crfnet_core.errors import CalibrationError
 from crfnet_core.posterior import IN_CAMERA, ResponseBank
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
+from tests.helpers.pairs import drawn_options, make_pair
 from tests.helpers.stacks import StackOptions, emor_response, label_seconds, light_of, make_stack, opencv_response
 
 DATA = Path(__file__).parent / "data"
@@ -39,6 +44,10 @@ KINDS = {
     "white is code 251": StackOptions(white=251 / 255),
     "no frame reaches white": StackOptions(brightest=97, ceiling=0.5),
 }
+
+#: Local tone mapping of simulated pairs, and ways to make two files that are not a pair.
+LOCAL = {f"pairs, local tone mapping {part}": part for part in (0.0, 0.05, 0.15)}
+WRONG = ("another scene", "moved", "cropped", "edited")
 
 
 def responses(count: int) -> list[ResponseCurve]:
@@ -107,15 +116,138 @@ def row(kind: str, found: dict[str, list]) -> str:
     return f"| {kind} | {len(ours)} | " + " | ".join(cells) + " |"
 
 
+def pair_curves(count: int, bodies: Path | None) -> list[ResponseCurve]:
+    """Return `count` responses: measured bodies and the others in turn."""
+    files = sorted(bodies.glob("*.csv")) if bodies else []
+    order = np.random.default_rng(5).permutation(len(files))
+    tables = [np.loadtxt(files[i], delimiter=",", skiprows=1)[:, 1] for i in order[: (count + 1) // 2]]
+    others = iter(responses(count - len(tables)))
+    known = [ResponseCurve.from_samples(table) for table in tables]
+    return [known[i // 2] if i % 2 == 0 and i // 2 < len(known) else next(others) for i in range(count)]
+
+
+def measure_pair(folder: Path, light: np.ndarray, response: ResponseCurve, options) -> dict:
+    """Return the errors of a simulated pair, its standard scores, and what was seen."""
+    paths = make_pair(folder, light, response, options)
+    begin = time.process_time()
+    found = calibrate_pairs(paths)
+    shape, scale = shape_error(response, found.curve), scale_error(response, found.curve)
+    low, high = found.codes_seen
+    return {
+        "shape": shape,
+        "scale": abs(scale),
+        "shape score": shape / found.uncertainty.shape_stops,
+        "scale score": abs(scale) / found.uncertainty.scale_stops,
+        "local": found.local,
+        "seen": low <= 25 and high >= 235,
+        "top": high,
+        "low": low,
+        "residual": found.residual,
+        "basis": found.white_basis,
+        "stated": found.uncertainty.shape_stops,
+        "scale stated": found.uncertainty.scale_stops,
+        "posterior": found.uncertainty.shape["posterior"],
+        "sampling": found.uncertainty.shape["sampling"],
+        "seconds": time.process_time() - begin,
+    }
+
+
+def measure_pairs(kind: str, local: float, count: int, scenes: list[Path], curves, *, verbose: bool) -> None:
+    """Print the row of a kind of pairs."""
+    found, refused = [], []
+    for index in range(count):
+        with tempfile.TemporaryDirectory() as folder:
+            options = drawn_options(index, local=local)
+            try:
+                light = light_of(scenes[index % len(scenes)])
+                found.append(measure_pair(Path(folder), light, curves[index], options))
+            except CalibrationError as problem:
+                refused.append(problem.code)
+            if verbose:
+                print(index, scenes[index % len(scenes)].stem, len(refused), found[-1:], flush=True)
+    shape, scale = (np.array([row[name] for row in found]) for name in ("shape", "scale"))
+    seen = shape[np.array([row["seen"] for row in found], dtype=bool)]
+    scores = np.array([[row["shape score"], row["scale score"]] for row in found])
+    within = [", ".join(f"{part:.0%}" for part in (scores < limit).mean(axis=0)) for limit in (1, 2)]
+    print(
+        f"{kind}: {len(found)} measured. Shape, median, 90 %, largest: {spread(seen)} ({len(seen)} with codes 25 to 235"
+        f" seen), {spread(shape)} (all). Scale: {spread(scale)}. Within 1 and 2 standard deviations (shape, scale):"
+        f" {'; '.join(within)}. Local: {spread(np.array([row['local'] for row in found]))}. CPU seconds:"
+        f" {spread(np.array([row['seconds'] for row in found]))}. Refused {len(refused)}: {dict(Counter(refused))}",
+        flush=True,
+    )
+
+
+def spread(values: np.ndarray) -> str:
+    """Return median, 90 % and largest."""
+    return ", ".join(f"{value:.3f}" for value in np.quantile(values, [0.5, 0.9, 1])) if len(values) else "-"
+
+
+def measure_wrong(count: int, scenes: list[Path], curves) -> None:
+    """Print how many of the files that are not a pair are refused."""
+    accepted, codes = [], []
+    for index in range(count):
+        kind = WRONG[index % len(WRONG)]
+        with tempfile.TemporaryDirectory() as folder:
+            light, options = light_of(scenes[index % len(scenes)]), drawn_options(index)
+            raw, jpeg = make_pair(Path(folder), light, curves[index], options)
+            spoil(kind, Path(folder), jpeg, light_of(scenes[(index + 1) % len(scenes)]), light, curves[index], options)
+            try:
+                calibrate_pairs([raw, jpeg])
+                accepted.append((kind, index))
+            except CalibrationError as problem:
+                codes.append((kind, problem.code))
+    print(f"wrong pairs: {len(codes)} of {count} refused, accepted: {accepted}; {Counter(codes)}", flush=True)
+
+
+def spoil(kind: str, folder: Path, jpeg: Path, other, light, curve: ResponseCurve, options) -> None:
+    """Replace the JPEG of a pair by one that is not of this raw file, or no longer as the camera wrote it."""
+    rng = np.random.default_rng(options.seed)
+    if kind in ("another scene", "moved"):
+        moved = np.roll(light, round(light.shape[1] * rng.uniform(0.03, 0.2)), axis=1)
+        _, wrong = make_pair(folder, other if kind == "another scene" else moved, curve, options, "wrong")
+        wrong.replace(jpeg)
+        return
+    image = Image.open(jpeg).convert("RGB")
+    width, height = image.size
+    if kind == "cropped":
+        part = rng.uniform(0.5, 0.88)
+        image = image.crop((0, 0, round(width * part), round(height * part)))
+        image.save(jpeg, quality=92)
+    elif rng.uniform() < 0.5:  # by a program that leaves its name
+        image.save(jpeg, quality=92, exif=_software_tag("Adobe Photoshop Lightroom Classic 13.0"))
+    else:  # a gradient filter, without a name
+        gain = np.linspace(rng.uniform(0.4, 0.7), 1.2, height)[:, None, None]
+        Image.fromarray(np.clip(np.asarray(image) * gain, 0, 255).astype(np.uint8)).save(jpeg, quality=92)
+
+
+def _software_tag(name: str) -> Image.Exif:
+    """Return EXIF that names a program."""
+    exif = Image.Exif()
+    exif[305] = name
+    return exif
+
+
 def main() -> None:
     """Print the table."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--linear", type=Path, default=DATA / "lights", help="folder of linear pictures, .exr")
     parser.add_argument("--responses", type=int, default=10, help="stacks of each kind (10)")
     parser.add_argument("--only", default="", help="kinds whose name holds this")
+    parser.add_argument("--pairs", type=int, default=0, help="raw pairs of each kind, in the place of stacks")
+    parser.add_argument("--bodies", type=Path, help="folder of measured responses, .csv")
+    parser.add_argument("--verbose", action="store_true", help="a line for every pair")
     options = parser.parse_args()
     scenes = sorted(options.linear.glob("*.exr"))
     scenes = [scenes[i] for i in np.random.default_rng(3).permutation(len(scenes))]
+    if options.pairs:
+        curves = pair_curves(options.pairs, options.bodies)
+        for kind, local in LOCAL.items():
+            if options.only in kind:
+                measure_pairs(kind, local, options.pairs, scenes, curves, verbose=options.verbose)
+        if options.only in "wrong":
+            measure_wrong(options.pairs, scenes, curves)
+        return
     print(
         "| stacks | number | shape, stops | scale, stops | E_est | E_lin | Debevec: shape, E_est"
         " | Robertson: shape, E_est | within 2 standard deviations: shape, scale | CPU s |\n"

@@ -22,14 +22,13 @@ from crfnet_core.calibration.checks import (
 from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
 from crfnet_core.calibration.exposures import ExposureLabel, Exposures, stack_exposures
 from crfnet_core.calibration.frames import Frame, align, read_frames, white_level
+from crfnet_core.calibration.measured import MeasuredResponse
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor, frame_residuals, measure
-from crfnet_core.calibration.uncertainty import Uncertainty, uncertainty_of
-from crfnet_core.errors import CalibrationError, Notice
-from crfnet_core.photograph.metadata import FileMetadata
+from crfnet_core.calibration.uncertainty import uncertainty_of
+from crfnet_core.errors import CalibrationError
 from crfnet_core.photograph.metadata.devices import Device, device_of
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.emor import EmorBasis
-from crfnet_core.response.metrics import estimation_error, linearization_error, scale_error, shape_error
 from crfnet_core.types import Float64Array, Progress
 
 #: By how much the cost of exact powers of two may exceed the cost of the labels as they are.
@@ -54,46 +53,15 @@ class FrameReport:
     is_used: bool  # whether it fits the others
 
 
-@dataclass(frozen=True)
-class Comparison:
-    """Errors of another response by the functions of these names; E_lin is of the best exposed frame."""
+@dataclass(frozen=True, eq=False, kw_only=True)
+class Calibration(MeasuredResponse):
+    """A response measured from an exposure stack."""
 
-    estimation_error: float
-    linearization_error: float
-    shape_error: float
-    scale_error: float
-
-
-@dataclass(frozen=True, eq=False)
-class Calibration:
-    """A measured response, how far it may be off, and its stack."""
-
-    #: The response. Its brightness is a part of the file's largest code, as in `points` and `counts`: where the camera
-    #: clips below that code, the response reaches `white` and jumps to 1.
-    curve: ResponseCurve
-    weights: Float64Array  # (11,): its EMoR weights
-    uncertainty: Uncertainty  # of its shape and of its scale, in stops
-    residual: float  # root mean square of brightness less the model's, in 8-bit codes of the file
     white: float  # code of white as a part of the largest code
     reaches_white: bool  # whether white was seen; otherwise the scale comes from similar known responses
     labels: str  # the reading of the exposure labels: "nominal", or "exact powers of two"
     nearest_known: float  # E_est between it and the nearest packaged response, both in parts of their own white
-    metadata: FileMetadata  # the header of the first frame's file
     frames: tuple[FrameReport, ...]  # in the order of the files
-    #: Shape (N, 4): the samples: log2 of irradiance (white = 0), brightness, brightness less the model's, frame.
-    points: Float64Array
-    counts: Float64Array  # (256,): how often each of 256 steps of brightness occurs in the best exposed frame
-    warnings: tuple[Notice, ...]  # doubts about the measurement
-
-    def compare(self, other: ResponseCurve) -> Comparison:
-        """Return how far another response, such as an estimate, is from this one."""
-        steps = np.arange(256) / 255
-        return Comparison(
-            estimation_error=estimation_error(self.curve, other),
-            linearization_error=linearization_error(steps, self.curve, other, counts=self.counts),
-            shape_error=shape_error(self.curve, other),
-            scale_error=scale_error(self.curve, other),
-        )
 
 
 def calibrate_stack(

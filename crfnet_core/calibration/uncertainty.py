@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from crfnet_core.calibration.blocks import Observations
 from crfnet_core.calibration.curve_model import CurveModel, in_file_codes
+from crfnet_core.calibration.measured import Uncertainty
 from crfnet_core.calibration.measurement import Measurement, fit_and_anchor
 from crfnet_core.calibration.solver import TIME_DEVIATION
 from crfnet_core.response.curve import ResponseCurve
@@ -27,24 +27,6 @@ CHANNEL_PART = 0.5
 
 #: Least samples of a channel for a response of its own.
 LEAST_SAMPLES = 60
-
-
-@dataclass(frozen=True)
-class Uncertainty:
-    """Standard deviations in stops, each with its parts by name."""
-
-    shape: dict[str, float]  # parts of the shape's: see `crfnet_core.response.metrics.shape_error`
-    scale: dict[str, float]  # parts of the scale's: see `crfnet_core.response.metrics.scale_error`
-
-    @property
-    def shape_stops(self) -> float:
-        """The root of the sum of squares of the shape's parts."""
-        return math.hypot(*self.shape.values())
-
-    @property
-    def scale_stops(self) -> float:
-        """The same of the scale's parts."""
-        return math.hypot(*self.scale.values())
 
 
 def uncertainty_of(
@@ -65,7 +47,7 @@ def uncertainty_of(
     channels = [in_file_codes(channel, white) for channel in alone]
     others = [] if other_labels is None else [in_file_codes(other_labels, white)]
     codes = np.minimum(np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255 / white, 1)  # white = 1
-    posterior = _posterior_deviation(measurement, model, codes)
+    posterior = posterior_deviation(measurement.fit.weights, measurement.fit.covariance, model, codes)
     shape = {
         "posterior": posterior[0],
         "sampling": shape_error(halves[0], halves[1]) / 2,
@@ -101,10 +83,12 @@ def _channel_curve(measurement: Measurement, channel: int, model: CurveModel) ->
     return _curve_of(alone, measurement.exposures + measurement.fit.offsets[:, channel], measurement, model)
 
 
-def _posterior_deviation(measurement: Measurement, model: CurveModel, codes: Float64Array) -> tuple[float, float]:
+def posterior_deviation(
+    mean: Float64Array, covariance: Float64Array, model: CurveModel, codes: Float64Array
+) -> tuple[float, float]:
     """Return the standard deviations of shape and scale at some codes over draws from the posterior, in stops."""
     rng = np.random.default_rng(SEED)
-    weights = rng.multivariate_normal(measurement.fit.weights, measurement.fit.covariance, size=DRAWS, method="eigh")
+    weights = rng.multivariate_normal(mean, covariance, size=DRAWS, method="eigh")
     stops = np.stack([model.log_irradiance(drawn, codes) for drawn in weights])
     off = stops - stops.mean(axis=0)
     scales = off.mean(axis=1)

@@ -73,12 +73,19 @@ def read_calibration(path: Path, name: str | None = None) -> Camera:
             curve=ResponseCurve.restored(document["response"]["brightness"]),
             shape_stops=_deviation(document["shape_uncertainty_stops"]),
             scale_stops=_deviation(document["scale_uncertainty_stops"]),
-            source=f"{len(used)} exposures",
+            source=_source(len(used), document),
             settings=CameraSettings(make, model, firmware, iso),
             warnings=_texts(document["warnings"]),
         )
     except _DAMAGES as problem:
         raise CameraError("damaged_calibration", path=path, reason=problem) from None
+
+
+def _source(count: int, document: Mapping[str, Any]) -> str:
+    """Return the files of a calibration in words."""
+    if document.get("method") != "raw pairs":
+        return f"{count} exposures"
+    return f"{count} raw file{'s' * (count > 1)} (white {document['white_basis']})"
 
 
 def _read_object(path: Path, *, kind: str) -> dict[str, Any]:

@@ -17,7 +17,7 @@ called with (done, total); whatever it raises ends the step, which first removes
 """
 
 from ..luts.exposure import anchored_exposure
-from .calibrations import plan_calibration, response_to_compare, write_calibration
+from .calibrations import is_pairs, plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EstimateBatch, LinearBatch
 from .estimates import FileEstimate, estimate_files, photograph_sources, response_lut
@@ -39,6 +39,7 @@ __all__ = [
     "estimate_files",
     "estimated_light",
     "find_photographs",
+    "is_pairs",
     "load_camera_response",
     "load_network",
     "load_prior",

@@ -7,9 +7,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.calibration import Calibration, Comparison
+from crfnet_core.calibration import Comparison, MeasuredResponse
 from crfnet_core.errors import CurveError
 from crfnet_core.files import atomic_write_text, json_text, read_json
+from crfnet_core.photograph.image_io import RAW_SUFFIXES
 from crfnet_core.response.curve import ResponseCurve
 
 from ..configs.files import write_config
@@ -38,13 +39,19 @@ def plan_calibration(
         raise PlateError("not_a_file_name", name=repr(name))
     stem = frames[0] if name is None else Path(f"{name}.stack")
     files = OutputFiles.named(folder, [stem], replace(outputs, has_linear=False, has_forward=False))
-    description = f"The inverse response of a camera, as crfnet measured it from {len(frames)} exposures"
+    source = "raw files and their JPEGs" if is_pairs(frames) else f"{len(frames)} exposures"
+    description = f"The inverse response of a camera, as crfnet measured it from {source}"
     space = replace(PlateColorSpace.from_outputs(files, frames[0]), description=description, file_patterns=())
     return plan_files(files, frames, PlateOptions(overwrite=overwrite), space, outputs.lut_length)
 
 
+def is_pairs(paths: Sequence[Path]) -> bool:
+    """Return whether files are raw files with their JPEGs, or a folder of such, and not an exposure stack."""
+    return any(path.suffix.lower() in RAW_SUFFIXES or path.is_dir() for path in paths)
+
+
 def write_calibration(
-    plan: OutputPlan, calibration: Calibration, comparison: Comparison | None = None
+    plan: OutputPlan, calibration: MeasuredResponse, comparison: Comparison | None = None
 ) -> dict[str, Any]:
     """Write every file of a plan and return the document in its JSON file, with the comparison if there is one.
 
@@ -80,7 +87,7 @@ def response_to_compare(path: Path) -> ResponseCurve:
         raise PlateError("no_response_in_file", path=path) from problem
 
 
-def _write_sheet(path: Path, calibration: Calibration) -> None:
+def _write_sheet(path: Path, calibration: MeasuredResponse) -> None:
     """Draw the sheet; matplotlib, an optional dependency that loads slowly, is imported only now."""
     from ..report.calibration_sheet import draw_calibration
 

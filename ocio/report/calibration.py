@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import singledispatch
 from typing import Any
 
 import numpy as np
 
-from crfnet_core.calibration import Calibration, Comparison, FrameReport
+from crfnet_core.calibration import Calibration, Comparison, FrameReport, MeasuredResponse
 from crfnet_core.photograph.metadata.devices import camera_name
 from crfnet_core.response.metrics import brightness_percent
 from crfnet_core.types import plain_values
@@ -16,8 +17,14 @@ from ..output_files import OutputFiles
 from .documents import file_names, rounded
 
 
-def calibration_lines(calibration: Calibration) -> list[str]:
+@singledispatch
+def calibration_lines(calibration: Any) -> list[str]:
     """Return the measurement and how far to trust it, in plain words: one line each."""
+    raise TypeError(type(calibration))
+
+
+@calibration_lines.register
+def _(calibration: Calibration) -> list[str]:
     shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
     white = "white is reached" if calibration.reaches_white else "no frame reaches white, so the scale is a guess"
     return [
@@ -41,34 +48,56 @@ def comparison_lines(comparison: Comparison) -> list[str]:
     ]
 
 
-def calibration_provenance(calibration: Calibration) -> tuple[str, ...]:
+@singledispatch
+def calibration_provenance(calibration: Any) -> tuple[str, ...]:
     """Return the comment lines of LUT files: the LUT, its frames, and how far to trust it."""
-    shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
+    raise TypeError(type(calibration))
+
+
+@calibration_provenance.register
+def _(calibration: Calibration) -> tuple[str, ...]:
     return (
         "Inverse camera response: encoded brightness in, relative scene-linear irradiance out",
         f"Measured from {_frames_words(calibration)}",
-        f"Standard deviations: shape {shape:.3f} stop, scale {scale:.3f} stop",
+        deviations(calibration),
     )
 
 
-def calibration_document(
-    calibration: Calibration, files: OutputFiles, comparison: Comparison | None = None
-) -> dict[str, Any]:
+def deviations(calibration: MeasuredResponse) -> str:
+    """Return both standard deviations, for the comments of LUT files."""
+    shape, scale = calibration.uncertainty.shape_stops, calibration.uncertainty.scale_stops
+    return f"Standard deviations: shape {shape:.3f} stop, scale {scale:.3f} stop"
+
+
+@singledispatch
+def calibration_document(calibration: Any, files: OutputFiles, comparison: Comparison | None = None) -> dict[str, Any]:
     """Return a measured response, ready for JSON; file names are relative to the folder."""
+    raise TypeError(type(calibration), files, comparison)
+
+
+@calibration_document.register
+def _(calibration: Calibration, files: OutputFiles, comparison: Comparison | None = None) -> dict[str, Any]:
+    own = {
+        "frames": [_frame_document(frame) for frame in calibration.frames],
+        "labels": calibration.labels,
+        "white": rounded(calibration.white),
+        "reaches_white": calibration.reaches_white,
+        "nearest_known_response": rounded(calibration.nearest_known),
+    }
+    return common_document(calibration, files, comparison) | own
+
+
+def common_document(calibration: MeasuredResponse, files: OutputFiles, comparison: Comparison | None) -> dict[str, Any]:
+    """Return the entries of every measured response."""
     metadata, uncertainty = calibration.metadata, calibration.uncertainty
     return {
         "kind": "calibration",
         "camera": {"make": metadata.make, "model": metadata.model, "firmware": metadata.software},
         "size": [metadata.width, metadata.height],
-        "frames": [_frame_document(frame) for frame in calibration.frames],
-        "labels": calibration.labels,
         "shape_uncertainty_stops": rounded(uncertainty.shape_stops),
         "scale_uncertainty_stops": rounded(uncertainty.scale_stops),
         "uncertainty_parts": {"shape": _parts(uncertainty.shape), "scale": _parts(uncertainty.scale)},
         "residual_codes": rounded(calibration.residual),
-        "white": rounded(calibration.white),
-        "reaches_white": calibration.reaches_white,
-        "nearest_known_response": rounded(calibration.nearest_known),
         "warnings": [str(warning) for warning in calibration.warnings],
         "comparison": None if comparison is None else _parts(vars(comparison)),
         "weights": rounded(calibration.weights),

@@ -12,7 +12,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
-from crfnet_core.calibration import Calibration
+from crfnet_core.calibration import Calibration, MeasuredResponse, PairCalibration
 from crfnet_core.posterior import Verdict
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.types import Float64Array
@@ -42,10 +42,14 @@ FRAMES = "viridis"
 #: Largest residual that is drawn, in 8-bit codes.
 LARGEST_RESIDUAL = 8
 
+#: Colors of the channels; causes of residuals -> the column of `PairCalibration.points`.
+CHANNELS = np.array([[0.76, 0.18, 0.16, 0.6], [0.12, 0.52, 0.24, 0.6], [0.1, 0.4, 0.76, 0.6]])
+CAUSES = {"Radius (corner = 1)": 4, "Saturation": 5, "Surroundings (stops)": 6}
+
 _WARNING = VERDICT_INK[Verdict.USABLE]
 
 
-def draw_calibration(path: Path, calibration: Calibration) -> None:
+def draw_calibration(path: Path, calibration: MeasuredResponse) -> None:
     """Write the picture of a calibration as PNG; the same input gives the same bytes.
 
     Raise PlateError if that fails.
@@ -53,13 +57,26 @@ def draw_calibration(path: Path, calibration: Calibration) -> None:
     with sheet_figure(path) as figure:
         _draw_heading(figure, path, calibration)
         _draw_curve(figure.add_axes((0.058, BOTTOM, HEIGHT * SIZE[1] / SIZE[0], HEIGHT)), calibration)
-        colors = _frame_colors(calibration)
         upper, lower = 0.42, HEIGHT - 0.42 - 0.09
-        _draw_points(figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper)), calibration, colors)
-        _draw_residuals(figure.add_axes((0.56, BOTTOM, 0.412, lower)), calibration, colors)
+        points = figure.add_axes((0.56, BOTTOM + HEIGHT - upper, 0.412, upper))
+        if isinstance(calibration, PairCalibration):
+            _draw_points(
+                points,
+                calibration,
+                CHANNELS[calibration.points[:, 7].astype(int)],
+                "Cells of every shot, over irradiance in stops",
+            )
+            points.tick_params(labelbottom=True)
+            for number, (title, column) in enumerate(CAUSES.items()):
+                axes = figure.add_axes((0.56 + number * 0.144, BOTTOM, 0.124, lower))
+                _draw_cause(axes, calibration, column, title, is_first=number == 0)
+        elif isinstance(calibration, Calibration):
+            colors = _frame_colors(calibration)[calibration.points[:, 3].astype(int)]
+            _draw_points(points, calibration, colors, "Points of every frame, dark to bright")
+            _draw_residuals(figure.add_axes((0.56, BOTTOM, 0.412, lower)), calibration, colors)
 
 
-def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
+def _draw_heading(figure: Figure, path: Path, calibration: MeasuredResponse) -> None:
     """Draw the camera, both uncertainties, and the warnings."""
     uncertainty = calibration.uncertainty
     name = path.stem.removesuffix("_sheet")
@@ -68,7 +85,7 @@ def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
         f"shape to {uncertainty.shape_stops:.2f} stop",
         f"scale to {uncertainty.scale_stops:.2f} stop",
         f"residual {calibration.residual:.1f} codes (RMS)",
-        "white reached" if calibration.reaches_white else "white not reached",
+        _white_words(calibration),
     ]
     figure.text(0.058, 0.9, DOT.join(parts), size=11, va="center", color=INK)
     lines = calibration_lines(calibration)
@@ -77,11 +94,23 @@ def _draw_heading(figure: Figure, path: Path, calibration: Calibration) -> None:
     figure.text(0.058, 0.026, warnings, va="center", color=_WARNING)
 
 
-def _draw_curve(axes: Axes, calibration: Calibration) -> None:
-    """Draw the response and gamma 2.2."""
+def _white_words(calibration: MeasuredResponse) -> str:
+    """Return how white is known, and of pairs the codes that were seen."""
+    if isinstance(calibration, PairCalibration):
+        low, high = calibration.codes_seen
+        return f"codes {low:.0f} to {high:.0f} seen{DOT}white: {calibration.white_basis}"
+    return "white reached" if getattr(calibration, "reaches_white", False) else "white not reached"
+
+
+def _draw_curve(axes: Axes, calibration: MeasuredResponse) -> None:
+    """Draw the response and gamma 2.2; of pairs, codes that were not seen are dotted."""
     irradiance = np.linspace(0, 1, SAMPLES)
-    gamma = ResponseCurve.gamma().brightness
-    axes.plot(irradiance, calibration.curve.brightness, color=CURVE, linewidth=2.2, label="measured")
+    gamma, brightness = ResponseCurve.gamma().brightness, calibration.curve.brightness
+    low, high = calibration.codes_seen if isinstance(calibration, PairCalibration) else (0, 255)
+    seen = np.where((brightness >= low / 255) & (brightness <= high / 255), brightness, np.nan)
+    axes.plot(irradiance, seen, color=CURVE, linewidth=2.2, label="measured")
+    if (low, high) != (0, 255):
+        axes.plot(irradiance, brightness, color=CURVE, linewidth=1.4, linestyle=":", label="not seen")
     axes.plot(irradiance, gamma, color=QUIET, linewidth=1.2, dashes=(5, 3), label="gamma 2.2")
     axes.set(xlim=(0, 1), ylim=(0, 1), aspect="equal")
     axes.set(xlabel="Irradiance (scene-linear, white = 1)", ylabel="Brightness")
@@ -89,26 +118,43 @@ def _draw_curve(axes: Axes, calibration: Calibration) -> None:
     plain(axes)
 
 
-def _draw_points(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
-    """Draw every frame's points over their irradiance in stops, and the curve through them."""
-    stops, brightness, _, frame = calibration.points.T
-    axes.scatter(stops, brightness, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
+def _draw_points(axes: Axes, calibration: MeasuredResponse, colors: Float64Array, title: str) -> None:
+    """Draw points over their irradiance in stops, and the curve through them."""
+    stops, brightness = calibration.points.T[:2]
+    axes.scatter(stops, brightness, s=1.5, c=colors, linewidths=0, rasterized=True)
     dense = np.linspace(DARKEST, 0.5, 600)
     axes.plot(dense, calibration.curve.forward(np.exp2(dense)), color=INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(0, 1.02), ylabel="Brightness")
-    axes.set_title("Points of every frame, dark to bright", loc="left", size=9, color=QUIET, pad=5)
+    axes.set_title(title, loc="left", size=9, color=QUIET, pad=5)
     axes.tick_params(labelbottom=False)
     plain(axes)
 
 
 def _draw_residuals(axes: Axes, calibration: Calibration, colors: Float64Array) -> None:
     """Draw the residual of every point."""
-    stops, _, residual, frame = calibration.points.T
+    stops, _, residual, _ = calibration.points.T
     residual = np.clip(255 * residual, -LARGEST_RESIDUAL, LARGEST_RESIDUAL)
-    axes.scatter(stops, residual, s=1.5, c=colors[frame.astype(int)], linewidths=0, rasterized=True)
+    axes.scatter(stops, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
     axes.axhline(0, color=INK, linewidth=1)
     axes.set(xlim=(DARKEST, 0.5), ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL))
     axes.set(xlabel="Irradiance in stops, white = 0", ylabel="Residual (codes)")
+    plain(axes)
+
+
+def _draw_cause(axes: Axes, calibration: PairCalibration, column: int, title: str, *, is_first: bool) -> None:
+    """Draw the residuals over something that the model may not have explained, and their medians in eight parts."""
+    cause, residual = (
+        calibration.points[:, column],
+        np.clip(255 * calibration.points[:, 2], -LARGEST_RESIDUAL, LARGEST_RESIDUAL),
+    )
+    colors = CHANNELS[calibration.points[:, 7].astype(int)]
+    axes.scatter(cause, residual, s=1.5, c=colors, linewidths=0, rasterized=True)
+    parts = np.array_split(cause.argsort(), 8)
+    axes.plot([np.median(cause[part]) for part in parts], [np.median(residual[part]) for part in parts], color=INK)
+    axes.axhline(0, color=INK, linewidth=0.6)
+    axes.set(ylim=(-LARGEST_RESIDUAL, LARGEST_RESIDUAL), xlabel=title)
+    axes.set_ylabel("Residual (codes)" if is_first else "")
+    axes.tick_params(labelleft=is_first)
     plain(axes)
 
 

@@ -13,6 +13,7 @@ from tests.helpers.cameras import photograph
 from tests.helpers.folders import listed
 from tests.helpers.images import write_image
 from tests.helpers.movies import write_movie
+from tests.helpers.pairs import PairOptions, make_pair
 from tests.helpers.stacks import StackOptions, light_of, make_stack
 
 
@@ -40,6 +41,7 @@ def folder(root, plate, true_response, tmp_path):
     light = light_of(root / "tests" / "data" / "lights" / "interior.exr")[::2, ::2]
     camera = {"Make": "SONY", "Model": "ILCE-7M3", "Exif__PhotographicSensitivity": 100}
     make_stack(tmp_path / "stack", light, true_response, StackOptions(frames=6, quality=95), **camera)
+    make_pair(tmp_path, light_of(root / "tests" / "data" / "lights" / "interior.exr"), true_response, PairOptions())
     return tmp_path
 
 

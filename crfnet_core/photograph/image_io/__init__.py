@@ -9,10 +9,10 @@ heif             HEIC and AVIF, which OpenImageIO's wheel cannot read
 problems         the errors of files that cannot be decoded
 """
 
-from crfnet_core.photograph.image_io.file_kinds import PHOTOGRAPH_SUFFIXES
+from crfnet_core.photograph.image_io.file_kinds import PHOTOGRAPH_SUFFIXES, RAW_SUFFIXES
 from crfnet_core.photograph.image_io.header_checks import MAX_PIXELS
 from crfnet_core.photograph.image_io.problems import first_line, oiio_message
-from crfnet_core.photograph.image_io.reading import read_codes, read_metadata, read_photo
+from crfnet_core.photograph.image_io.reading import read_codes, read_content, read_metadata, read_photo
 
-__all__ = ["MAX_PIXELS", "PHOTOGRAPH_SUFFIXES", "first_line", "oiio_message"]
-__all__ += ["read_codes", "read_metadata", "read_photo"]
+__all__ = ["MAX_PIXELS", "PHOTOGRAPH_SUFFIXES", "RAW_SUFFIXES", "first_line", "oiio_message"]
+__all__ += ["read_codes", "read_content", "read_metadata", "read_photo"]

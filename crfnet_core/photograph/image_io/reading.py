@@ -74,7 +74,7 @@ def read_photo(source: str | os.PathLike[str] | bytes | BinaryIO) -> Photo:
     content = _content(source, path) if hasattr(source, "read") else source
     if not isinstance(content, bytes | bytearray | memoryview):
         raise PhotoError("photograph_source", kind=type(source).__name__)
-    return Photo.from_codes(_codes_of_content(bytes(content), path), path)
+    return Photo.from_codes(read_content(bytes(content), path), path)
 
 
 def read_codes(path: str | os.PathLike[str]) -> CodeValues:
@@ -258,7 +258,7 @@ def _content(source: Any, path: Path) -> Any:
         raise PhotoError("cannot_open_photograph", path=path, problem=problem) from problem
 
 
-def _codes_of_content(content: bytes, path: Path) -> CodeValues:
+def read_content(content: bytes, path: Path) -> CodeValues:
     """Return the integer samples of the content of a file; errors name the path, which need not exist."""
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder, "photograph" + (path.suffix if path.suffix.lower() in RAW_SUFFIXES else ""))

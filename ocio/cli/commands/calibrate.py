@@ -1,11 +1,11 @@
-"""`crfnet calibrate`: the response of a camera, measured from an exposure stack."""
+"""`crfnet calibrate`: the response of a camera, measured from an exposure stack, or from raw files and their JPEGs."""
 
 from __future__ import annotations
 
 import argparse
 from pathlib import Path
 
-from crfnet_core.calibration import calibrate_stack, parse_times
+from crfnet_core.calibration import MeasuredResponse, calibrate_pairs, calibrate_stack, parse_times
 
 from ... import pipeline, report
 from ...options import OutputOptions
@@ -20,7 +20,13 @@ def run(arguments: argparse.Namespace) -> None:
     other = pipeline.response_to_compare(arguments.compare) if arguments.compare else None
     seconds = parse_times(arguments.times) if arguments.times else None
     with progress_bar("frames") as progress:
-        calibration = calibrate_stack(frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress)
+        calibration: MeasuredResponse
+        if pipeline.is_pairs(frames):
+            calibration = calibrate_pairs(frames, accept_edited=arguments.accept_edited, progress=progress)
+        else:
+            calibration = calibrate_stack(
+                frames, seconds=seconds, accept_edited=arguments.accept_edited, progress=progress
+            )
     comparison = calibration.compare(other) if other else None
     document = pipeline.write_calibration(plan, calibration, comparison)
     lines = [
@@ -28,7 +34,7 @@ def run(arguments: argparse.Namespace) -> None:
         *(report.comparison_lines(comparison) if comparison else []),
         "",
         f"Written to {arguments.out}:",
-        *report.file_lines(plan.files, sheet="the curve, every frame's points and their residuals"),
+        *report.file_lines(plan.files, sheet="the curve, the points of every file and their residuals"),
         *lost_lines(plan),
     ]
     print_result(document | lost_document(plan), lines, as_json=arguments.json)

@@ -1,6 +1,7 @@
 """`crfnet calibrate`: what it writes and what it says."""
 
 import json
+import sys
 
 import numpy as np
 import pytest
@@ -132,3 +133,49 @@ def test_what_is_there_stays_there(crfnet, stack, tmp_path):
 def test_a_response_from_a_lut_is_gamma(tmp_path):
     write_lut(tmp_path / "g.cube", inverse_response_lut(ResponseCurve.gamma()))
     assert shape_error(ResponseCurve.gamma(), response_to_compare(tmp_path / "g.cube")) < 0.01
+
+
+@pytest.fixture(scope="module")
+def raw_folder(crfnet, root, true_response, tmp_path_factory):
+    """A folder with one raw file and its JPEG, measured: the folder, its output, and what was printed."""
+    pytest.importorskip("rawpy", reason="raw pairs need the calibrate extra")
+    from tests.helpers.pairs import PairOptions, make_pair
+
+    folder = tmp_path_factory.mktemp("raw")
+    make_pair(folder, light_of(root / "tests" / "data" / "lights" / "interior.exr"), true_response, PairOptions())
+    done = crfnet("calibrate", folder, "--out", folder / "out", "--name", "body")
+    assert (done.code, done.err) == (0, "")
+    return folder, done.out
+
+
+def test_a_raw_file_and_its_jpeg_give_the_same_files(raw_folder, true_response):
+    folder, out = raw_folder
+    assert set(listed(folder / "out")) == {name.replace("eos20d", "body") for name in FILES}
+    assert "1 raw file of an unnamed camera, with its JPEG." in out
+    assert "were seen; where white is: " in out
+    lut = read_lut(folder / "out" / "body.spi1d")
+    assert shape_error(true_response, response_of_lut(lut)) < 0.05
+    assert any("Measured from 1 raw file" in comment for comment in lut.comments)
+    assert read_image(folder / "out" / "body_sheet.png").shape[:2] == (1080, 1800)
+
+
+def test_the_document_of_a_raw_file_follows_the_schema_and_becomes_a_camera(raw_folder, root, tmp_path, monkeypatch):
+    import jsonschema
+
+    from crfnet_core.library import read_calibration
+
+    path = raw_folder[0] / "out" / "body.json"
+    document = json.loads(path.read_text(encoding="utf-8"))
+    jsonschema.validate(document, json.loads((root / "docs" / "calibrate.schema.json").read_text(encoding="utf-8")))
+    assert document["method"] == "raw pairs"
+    camera = read_calibration(path, "Body")
+    assert camera.basis.startswith(f"measured from 1 raw file (white {document['white_basis']})")
+    assert camera.curve.brightness.tolist() == document["response"]["brightness"]
+
+
+def test_without_its_packages_a_raw_file_is_refused_in_one_line(raw_folder, crfnet, tmp_path, monkeypatch):
+    monkeypatch.setitem(sys.modules, "rawpy", None)
+    done = crfnet("calibrate", raw_folder[0] / "shot.dng", "--out", tmp_path / "out", "--no-sheet")
+    assert done.code == BAD_INPUT
+    assert "pip install 'crfnet[calibrate]'" in done.err
+    assert done.err.count("\n") == 1

@@ -1,0 +1,214 @@
+"""Measure a camera's response from raw files and their JPEGs: the whole of it on one screen."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from crfnet_core.calibration.curve_model import CurveModel
+from crfnet_core.calibration.measured import PairCalibration, ShotReport, Uncertainty, WhiteBasis
+from crfnet_core.calibration.raw_pairs.cells import WHITE, Cells, find_cells
+from crfnet_core.calibration.raw_pairs.files import Pair, find_pairs, read_pair
+from crfnet_core.calibration.raw_pairs.fit import PairFit, fit_pairs, in_camera_mean
+from crfnet_core.calibration.uncertainty import posterior_deviation
+from crfnet_core.errors import CalibrationError, Notice
+from crfnet_core.response.curve import ResponseCurve
+from crfnet_core.response.emor import EmorBasis
+from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, scale_error, shape_error
+from crfnet_core.types import BoolArray, Float64Array, Progress, show_progress
+
+#: Rounds of cells and fit: codes are averaged in the light of the last response.
+ROUNDS = 2
+
+#: Cells that a measurement needs; cells at white that show where it is.
+LEAST_CELLS, LEAST_WHITE = 300, 10
+
+#: Least code that has to be seen, and the ones from which and up to which the shape counts as seen.
+LEAST_TOP, SEEN_TOP, SEEN_BOTTOM = 150.0, 235.0, 25.0
+
+#: Parts of the cells' codes that lie below and above the codes that were seen.
+SEEN_PARTS = (0.005, 0.998)
+
+#: Exponents of local tone mapping that are refused, and that are worth a notice.
+MOST_LOCAL, NOTABLE_LOCAL = 0.1, 0.03
+
+#: Stops between shots, residual in 8-bit codes, and fraction of outliers from which one curve does not explain them.
+MOST_APART, MOST_RESIDUAL, MOST_OUTLIERS = 0.15, 4.0, 0.35
+
+#: Stops between raw saturation and white within which they are the same, and the deviation of their distance then.
+SAME_WHITE, SAME_WHITE_DEVIATION = 0.12, 0.03
+
+#: The rest in stops where nothing disagrees.
+LEAST_SHAPE, LEAST_SCALE = 0.01, 0.02
+
+#: Standard deviation of white in stops: so that the stated one holds for four of five simulated pairs. A response that
+#: ends flat reaches white slowly, even where white is seen.
+WHITE_DEVIATIONS = {
+    WhiteBasis.SEEN: 0.25,
+    WhiteBasis.RAW_CLIP: 0.2,
+    WhiteBasis.EXTRAPOLATED: 0.4,
+    WhiteBasis.BRACKETED: 0.4,
+}
+
+#: Codes of the notices of white that was not seen.
+UNSEEN_WHITE = {WhiteBasis.EXTRAPOLATED: "white_extrapolated", WhiteBasis.BRACKETED: "white_bracketed"}
+
+
+def measure_pairs(
+    paths: Sequence[Path], *, accept_edited: bool = False, progress: Progress | None = None
+) -> PairCalibration:
+    """Measure the response of the camera that took raw files and made JPEGs of them, in one picture style.
+
+    `paths` are as `find_pairs` takes them. JPEGs that a program made are refused unless `accept_edited`. `progress` is
+    called with (done, total) after every pair that is read.
+
+    Raise PhotoError if a file cannot be read, and CalibrationError if two are not a pair, or no response explains them.
+    """
+    names = find_pairs(paths)
+    pairs = []
+    for number, (path, jpeg) in enumerate(names):
+        pairs.append(read_pair(path, jpeg, accept_edited=accept_edited))
+        show_progress(progress, number + 1, len(names))
+    model = CurveModel.load()
+    cells, fit, basis = _measured(pairs, model)
+    curve = model.response(fit.weights)
+    counted = np.isfinite(fit.residual)
+    low, high = np.quantile(cells.codes[counted], SEEN_PARTS)
+    shots = _shot_reports(pairs, cells, fit)
+    _check_fit(fit, shots)
+    return PairCalibration(
+        curve=curve,
+        weights=EmorBasis.load().project(curve.brightness),
+        uncertainty=_uncertainty(cells, fit, curve, basis, model, _saturation(pairs)),
+        residual=_residual(fit.residual),
+        metadata=pairs[0].metadata,
+        points=_points(cells, fit, counted),
+        counts=np.bincount(pairs[0].codes.ravel(), minlength=256).astype(np.float64),
+        warnings=_notices(pairs, fit, basis, low),
+        white_basis=basis,
+        codes_seen=(float(low), float(high)),
+        matrix=fit.matrix,
+        local=fit.local,
+        corner=fit.corner,
+        shots=shots,
+    )
+
+
+def _measured(pairs: Sequence[Pair], model: CurveModel) -> tuple[Cells, PairFit, WhiteBasis]:
+    """Return the cells of pairs, the response and matrix that explain them, and how white is known."""
+    curve, fit, saturation = in_camera_mean(), None, _saturation(pairs)
+    for _ in range(ROUNDS):
+        inverse = curve.inverse(np.arange(256) / 255).astype(np.float32)
+        cells = Cells.joined([find_cells(pair.raw, pair.codes, pair.place, inverse) for pair in pairs])
+        if (count := int((cells.is_open.all(axis=1) & ~cells.is_saturated).sum())) < LEAST_CELLS:
+            raise CalibrationError("few_cells", path=pairs[0].path, count=count, least=LEAST_CELLS)
+        top = float(np.quantile(cells.codes[cells.is_open], SEEN_PARTS[1]))
+        if top < LEAST_TOP:
+            raise CalibrationError("pair_dark", path=pairs[0].path, top=top, least=LEAST_TOP)
+        fit = fit_pairs(cells, saturation, model, fit)
+        curve = model.response(fit.weights)
+    assert fit is not None
+    basis = _white_basis(cells, fit)
+    if basis == WhiteBasis.RAW_CLIP:
+        fit = fit_pairs(cells, saturation, model, fit, headroom=(0.0, SAME_WHITE_DEVIATION))
+    return cells, fit, basis
+
+
+def _white_basis(cells: Cells, fit: PairFit) -> WhiteBasis:
+    """Return how it is known where white is."""
+    neutral = cells.codes.min(axis=1) > SEEN_TOP - 5
+    is_seen = cells.is_white.any(axis=1) & neutral & ~cells.is_saturated
+    is_clipped = cells.is_saturated & (cells.codes.min(axis=1) >= WHITE - 1)
+    top = cells.codes[np.isfinite(fit.residual)].max(initial=0)
+    if is_seen.sum() >= LEAST_WHITE and top > SEEN_TOP:
+        return WhiteBasis.SEEN
+    if is_clipped.sum() >= LEAST_WHITE and top > SEEN_TOP and fit.headroom < SAME_WHITE:
+        return WhiteBasis.RAW_CLIP
+    return WhiteBasis.EXTRAPOLATED if top > SEEN_TOP else WhiteBasis.BRACKETED
+
+
+def _uncertainty(
+    cells: Cells, fit: PairFit, curve: ResponseCurve, basis: WhiteBasis, model: CurveModel, saturation: float
+) -> Uncertainty:
+    """Return how far a response may be off: the posterior, what halves of the pictures say, and white."""
+    halves = [
+        model.response(fit_pairs(cells.subset(cells.tile == half), saturation, model, fit).weights) for half in (0, 1)
+    ]
+    codes = np.arange(FIRST_SHAPE_CODE, LAST_SHAPE_CODE + 1) / 255
+    shape, scale = posterior_deviation(fit.weights, fit.covariance, model, codes)
+    end = float(-np.log2(curve.inverse(np.array([1 - 3 / 255]))[0]))
+    return Uncertainty(
+        shape={
+            "posterior": shape,
+            "sampling": shape_error(*halves) / 2,
+            "least": LEAST_SHAPE,
+        },
+        scale={
+            "posterior": scale,
+            "sampling": abs(scale_error(*halves)) / 2,
+            "white": WHITE_DEVIATIONS[basis],
+            "end": end / 2,
+            "least": LEAST_SCALE,
+        },
+    )
+
+
+def _check_fit(fit: PairFit, shots: Sequence[ShotReport]) -> None:
+    """Refuse pairs that are mapped locally, or not explained by one response."""
+    path = shots[0].path
+    if abs(fit.local) > MOST_LOCAL:
+        raise CalibrationError("local_tones", path=path, local=fit.local)
+    offsets = [shot.offset for shot in shots]
+    if np.ptp(offsets) > MOST_APART:
+        first, last = shots[int(np.argmin(offsets))].path.name, shots[int(np.argmax(offsets))].path.name
+        raise CalibrationError("shots_differ", first=first, last=last, stops=float(np.ptp(offsets)), most=MOST_APART)
+    residual = _residual(fit.residual)
+    if residual > MOST_RESIDUAL or fit.outliers > MOST_OUTLIERS:
+        raise CalibrationError("pair_unexplained", path=path, residual=residual, outliers=fit.outliers)
+
+
+def _notices(pairs: Sequence[Pair], fit: PairFit, basis: WhiteBasis, low: float) -> tuple[Notice, ...]:
+    """Return the doubts about a measurement that are not a reason to refuse it."""
+    notices = [Notice("measures_program", {"editor": pair.editor}) for pair in pairs if pair.editor]
+    if abs(fit.local) > NOTABLE_LOCAL:
+        notices.append(Notice("local_fitted", {"local": fit.local}))
+    if basis in UNSEEN_WHITE:
+        notices.append(Notice(UNSEEN_WHITE[basis]))
+    if low > SEEN_BOTTOM:
+        notices.append(Notice("dark_unseen", {"low": low}))
+    return tuple(notices)
+
+
+def _shot_reports(pairs: Sequence[Pair], cells: Cells, fit: PairFit) -> tuple[ShotReport, ...]:
+    """Return a report of each pair."""
+    reports = []
+    for number, pair in enumerate(pairs):
+        own = cells.shot == number
+        residual, offset = _residual(fit.residual[own]), float(fit.offsets[number])
+        reports.append(
+            ShotReport(pair.path, pair.jpeg, pair.raw.iso, int(own.sum()), offset, residual, pair.place.correlation)
+        )
+    return tuple(reports)
+
+
+def _points(cells: Cells, fit: PairFit, counted: BoolArray) -> Float64Array:
+    """Return `PairCalibration.points`."""
+    chroma = np.ptp(cells.codes, axis=1) / np.maximum(cells.codes.max(axis=1), 1)
+    per_cell = (cells.shot, cells.radius, chroma, cells.surroundings)
+    columns = [fit.log_light, cells.codes / 255, fit.residual]
+    columns += [np.repeat(column[:, None], 3, axis=1) for column in per_cell]
+    columns.append(np.broadcast_to(np.arange(3), counted.shape))
+    return np.stack([column[counted] for column in columns], axis=1)
+
+
+def _saturation(pairs: Sequence[Pair]) -> float:
+    """Return the balanced raw light at which a white surface saturates the first channel, of most shots."""
+    return float(np.median([pair.raw.balance.min() for pair in pairs]))
+
+
+def _residual(residual: Float64Array) -> float:
+    """Return the root mean square of residuals in 8-bit codes, NaN if there are none."""
+    known = residual[np.isfinite(residual)]
+    return float(255 * np.sqrt(np.mean(known**2))) if len(known) else float("nan")

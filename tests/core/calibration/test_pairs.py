@@ -1,0 +1,183 @@
+"""A response from raw files and their JPEGs: what is measured, what is refused, which files belong together."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+pytest.importorskip("rawpy", reason="raw pairs need the calibrate extra")
+
+from PIL import Image
+
+from crfnet_core.calibration import calibrate_pairs
+from crfnet_core.calibration.raw_pairs.files import find_pairs
+from crfnet_core.calibration.raw_pairs.registration import register
+from crfnet_core.colorimetry import ADOBE_RGB
+from crfnet_core.errors import CalibrationError, PhotoError
+from crfnet_core.photograph.camera_raw import read_raw
+from crfnet_core.response.metrics import shape_error
+from tests.helpers.linear_pictures import CAMERAS, XYZ, chart, write_dng
+from tests.helpers.pairs import PairOptions, make_pair
+from tests.helpers.stacks import light_of
+
+#: Shape errors in stops; the color of the light.
+SHAPE, LIGHT = 0.05, (0.7, 1.0, 1.3)
+
+
+@pytest.fixture(scope="session")
+def scene(root):
+    """The light of a scene with range, in 1024 columns."""
+    return light_of(root / "tests" / "data" / "lights" / "interior.exr")
+
+
+@pytest.fixture
+def pair(tmp_path, scene, true_response):
+    """Write a pair of the bundled photograph's response: pair(local=0.15) -> its paths."""
+
+    def write(name="shot", shown=scene, **options):
+        return make_pair(tmp_path, shown, true_response, PairOptions(**options), name)
+
+    return write
+
+
+@pytest.fixture(scope="module")
+def measured(scene, true_response, tmp_path_factory):
+    """A pair with all that a camera does to a picture, and its measurement."""
+    options = PairOptions(light=LIGHT, crop=0.02, distortion=0.02, vignetting=0.5)
+    tints = np.exp2(np.random.default_rng(0).uniform(-0.7, 0.7, (8, 16, 3))).repeat(64, axis=0).repeat(64, axis=1)
+    colored = scene * tints[: scene.shape[0], : scene.shape[1]]
+    paths = make_pair(tmp_path_factory.mktemp("pair"), colored, true_response, options)
+    return calibrate_pairs(paths)
+
+
+def refused(paths, **options):
+    """Return the code of the error that a measurement raises."""
+    with pytest.raises(CalibrationError) as problem:
+        calibrate_pairs(paths, **options)
+    return problem.value.code
+
+
+def test_one_pair_gives_the_shape_of_the_response(measured, true_response):
+    assert shape_error(true_response, measured.curve) < SHAPE
+    assert shape_error(true_response, measured.curve) < 2 * measured.uncertainty.shape_stops
+
+
+def test_vignetting_correction_is_found_and_no_local_tones(measured):
+    assert measured.corner == pytest.approx(0.5, abs=0.1)
+    assert abs(measured.local) < 0.03
+
+
+def test_the_matrix_leads_from_the_sensors_colors_to_the_jpegs(measured):
+    """Rows are relative to their sums, because the scale is the exposure's."""
+    to_camera = CAMERAS["one"] @ XYZ * LIGHT
+    true = np.linalg.inv(to_camera / to_camera.sum(axis=1, keepdims=True))
+    found = measured.matrix / measured.matrix.sum(axis=1, keepdims=True)
+    np.testing.assert_allclose(found, true, atol=0.2)
+
+
+def test_adobe_rgb_gives_the_same_response(pair, true_response):
+    assert shape_error(true_response, calibrate_pairs(pair(primaries=ADOBE_RGB)).curve) < SHAPE
+
+
+def test_several_shots_are_measured_together(pair, true_response):
+    found = calibrate_pairs([*pair("first"), *pair("second", light=(1.4, 1, 0.7), brightest=98, seed=1)])
+    assert [shot.path.name for shot in found.shots] == ["first.dng", "second.dng"]
+    assert found.shots[0].offset == 0
+    assert abs(found.shots[1].offset) < 0.1
+    assert shape_error(true_response, found.curve) < SHAPE
+
+
+def test_weak_local_tone_mapping_is_fitted_and_said(pair, true_response):
+    found = calibrate_pairs(pair(local=0.06))
+    assert found.local == pytest.approx(-0.06, abs=0.025)
+    assert "local_fitted" in [warning.code for warning in found.warnings]
+    assert shape_error(true_response, found.curve) < SHAPE
+
+
+def test_strong_local_tone_mapping_is_refused(pair):
+    assert refused(pair(local=0.15)) == "local_tones"
+
+
+def test_the_jpeg_of_another_shot_is_refused(pair, root):
+    raw, _ = pair("first")
+    _, other = pair("second", shown=light_of(root / "tests" / "data" / "lights" / "city.exr"))
+    assert refused([raw, other]) in ("pair_differs", "pair_cropped")
+
+
+def test_a_cropped_jpeg_is_refused(pair):
+    raw, jpeg = pair()
+    image = Image.open(jpeg)
+    image.crop((0, 0, round(0.8 * image.width), round(0.8 * image.height))).save(jpeg, quality=92)
+    assert refused([raw, jpeg]) in ("pair_differs", "pair_cropped")
+
+
+def test_a_jpeg_that_a_program_saved_is_measured_only_if_asked(pair):
+    raw, jpeg = pair()
+    exif = Image.Exif()
+    exif[305] = "Adobe Photoshop Lightroom Classic 13.0"
+    Image.open(jpeg).save(jpeg, quality=92, exif=exif)
+    assert refused([raw, jpeg]) == "frame_edited"
+    warnings = calibrate_pairs([raw, jpeg], accept_edited=True).warnings
+    assert "measures_program" in [warning.code for warning in warnings]
+
+
+def test_a_dark_picture_is_refused(pair, scene):
+    assert refused(pair(shown=np.append(scene, np.full_like(scene[:9], 60 * scene.max()), axis=0))) == "pair_dark"
+
+
+def test_a_raw_file_without_a_jpeg_is_refused(tmp_path, scene):
+    assert refused([write_dng(tmp_path / "alone.dng", scene)]) == "raw_without_jpeg"
+
+
+def test_a_raw_file_that_libraw_cannot_read_is_refused_by_its_kind(tmp_path):
+    path = tmp_path / "broken.gpr"
+    path.write_bytes(bytes(1000))
+    with pytest.raises(PhotoError) as problem:
+        read_raw(path)
+    assert (problem.value.code, problem.value.facts["suffix"]) == ("raw_not_read", ".gpr")
+
+
+def test_pairs_are_found_by_name(tmp_path):
+    names = ["a.NEF", "a.jpg", "b.nef", "B.JPG", "c.nef", "notes.txt", "d.jpg"]
+    for name in names:
+        (tmp_path / name).touch()
+    found = [(raw.name, jpeg and jpeg.name) for raw, jpeg in find_pairs([tmp_path])]
+    assert found == [("a.NEF", "a.jpg"), ("b.nef", "B.JPG"), ("c.nef", None)]
+    assert find_pairs([tmp_path / "a.NEF"]) == ((tmp_path / "a.NEF", tmp_path / "a.jpg"),)
+    assert find_pairs([tmp_path / "a.NEF", tmp_path / "d.jpg"]) == ((tmp_path / "a.NEF", tmp_path / "d.jpg"),)
+    for paths, code in (
+        ([tmp_path / "a.NEF", tmp_path / "b.nef", tmp_path / "d.jpg"], "jpeg_without_raw"),
+        ([tmp_path / "d.jpg"], "no_raw_file"),
+    ):
+        with pytest.raises(CalibrationError) as problem:
+            find_pairs(paths)
+        assert problem.value.code == code
+
+
+@pytest.mark.parametrize(("mirrored", "quarters"), [(False, 0), (False, 1), (True, 0), (True, 3), (False, 2)])
+def test_turned_and_mirrored_pictures_are_laid_on_each_other(scene, mirrored, quarters):
+    gray = scene.mean(axis=2)[::2, :900:2]
+    gray = np.minimum(gray / np.percentile(gray, 98), 1)
+    codes = (255 * gray**0.45).astype(np.float32)
+    turned = np.rot90(codes[:, ::-1] if mirrored else codes, quarters)
+    found = register(gray, np.ascontiguousarray(turned))
+    assert (found.mirrored, found.quarters) == (mirrored, quarters)
+    assert found.correlation > 0.99
+    np.testing.assert_allclose(found.place[:5], 0, atol=2e-3)
+
+
+def test_raw_light_is_a_part_of_the_sensors_range(tmp_path):
+    gray = np.full((80, 3), 0.25)
+    gray[40:] = 1.0
+    raw = read_raw(write_dng(tmp_path / "chart.dng", chart(gray), light=(0.5, 1, 1)))
+    balanced = raw.light * raw.balance
+    np.testing.assert_allclose(balanced[8, 8] / balanced[8, 8, 1], 1, atol=1e-3)
+    assert raw.light[-8, -8].max() == pytest.approx(1, abs=1e-3)
+    assert not raw.is_saturated[8, 8]
+    assert raw.is_saturated[-8, -8]
+    assert replace(raw).preview == b""
+
+
+def test_pictures_without_anything_in_common_have_no_correlation(scene):
+    gray = scene.mean(axis=2)[::4, ::4].astype(np.float32)
+    assert register(gray, np.full((100, 200), 90, np.float32)).correlation == 0

@@ -1,0 +1,126 @@
+"""Raw files of known cameras with the JPEGs that they make: a mosaic of linear light, and the same light rendered."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+from numpy.typing import NDArray
+from PIL import Image
+from scipy.ndimage import gaussian_filter, map_coordinates
+
+from crfnet_core.colorimetry import ADOBE_RGB, REC709, Primaries, conversion_matrix
+from crfnet_core.response.curve import ResponseCurve
+from tests.helpers.linear_pictures import CAMERAS, XYZ, write_dng
+
+
+@dataclass(frozen=True, kw_only=True)
+class PairOptions:
+    """How a pair is taken.
+
+    Parameters
+    ----------
+    camera, light : str, sequence of float
+        The colors of the sensor, and of the light.
+    primaries : Primaries
+        Of the JPEG.
+    brightest : float
+        Percentile of the scene that saturates the sensor.
+    headroom : float
+        Stops by which the JPEG's white is below saturation.
+    crop, distortion : float
+        Part of the raw picture's width that the JPEG leaves out, and of its distance that a correction moves a corner.
+    vignetting : float
+        Stops that the lens takes from the corners, and the JPEG gives back.
+    local, reach : float
+        Exponent of the surroundings' light in local tone mapping, and their width as a part of the picture's.
+    saturation : float
+        Factor on the colors.
+    shot_noise, read_noise : float
+        Variance of the noise at saturation, and standard deviation of what does not depend on light.
+    quality : int
+        Of the JPEG, which is 4:2:2.
+    """
+
+    camera: str = "one"
+    light: tuple[float, float, float] = (1.0, 1.0, 1.0)
+    primaries: Primaries = REC709
+    brightest: float = 99.5
+    headroom: float = 0.3
+    crop: float = 0.01
+    distortion: float = 0.0
+    vignetting: float = 0.0
+    local: float = 0.0
+    reach: float = 1 / 20
+    saturation: float = 1.0
+    shot_noise: float = 1e-4
+    read_noise: float = 3e-4
+    quality: int = 88
+    seed: int = 0
+
+
+def make_pair(folder: Path, light: NDArray[np.float32], response: ResponseCurve, options: PairOptions, name="shot"):
+    """Write NAME.dng and NAME.jpg of linear light (H, W, 3) and return both paths."""
+    rng = np.random.default_rng(options.seed)
+    light = light / np.percentile(light.max(axis=2), options.brightest)
+    seen = light * np.exp2(-options.vignetting * radii(light) ** 2)[..., None]
+    noise = rng.standard_normal(light.shape) * np.sqrt(options.shot_noise * seen + options.read_noise**2)
+    raw = write_dng(folder / f"{name}.dng", seen + noise, camera=options.camera, light=options.light)
+    codes = np.rint(255 * rendered(sensed(seen, options), response, options)).astype(np.uint8)
+    jpeg = folder / f"{name}.jpg"
+    Image.fromarray(codes).save(jpeg, quality=options.quality, subsampling=1)
+    return raw, jpeg
+
+
+def sensed(seen: NDArray[np.float32], options: PairOptions) -> NDArray[np.float64]:
+    """Return the light as the sensor clips it, back in linear Rec.709."""
+    to_camera = CAMERAS[options.camera] @ XYZ * options.light
+    to_camera /= to_camera.sum(axis=1).max()
+    return np.clip(seen @ to_camera.T, 0, 1) @ np.linalg.inv(to_camera).T
+
+
+def rendered(light: NDArray[np.float64], response: ResponseCurve, options: PairOptions) -> NDArray[np.float64]:
+    """Return the brightness of the JPEG: cropped, corrected, in its primaries, mapped locally, with the response."""
+    height, width = light.shape[:2]
+    light = light * np.exp2(options.vignetting * radii(light) ** 2)[..., None]
+    surroundings = np.log2(gaussian_filter(np.maximum(light @ XYZ[1], 1e-4), options.reach * width))
+    light = light * np.exp2(-options.local * (surroundings - np.median(surroundings)))[..., None]
+    light = light @ conversion_matrix(REC709, options.primaries).T
+    gray = light.mean(axis=2, keepdims=True)
+    light = np.maximum(gray + options.saturation * (light - gray), 0) * 2.0**options.headroom
+    new_height, new_width = (round(side * (1 - options.crop)) for side in (height, width))
+    y, x = np.mgrid[:new_height, :new_width]
+    y, x = y - (new_height - 1) / 2, x - (new_width - 1) / 2
+    radial = 1 + options.distortion * (np.hypot(x, y) / np.hypot(width / 2, height / 2)) ** 2
+    at = np.stack([y * radial + (height - 1) / 2, x * radial + (width - 1) / 2])
+    moved = np.stack([map_coordinates(light[..., c], at, order=1, mode="nearest") for c in range(3)], axis=-1)
+    brightness = response.forward(np.clip(moved, 0, 1))
+    return np.clip(brightness + 0.5 * (brightness - gaussian_filter(brightness, (0.8, 0.8, 0))), 0, 1)
+
+
+def radii(light: NDArray[np.float32]) -> NDArray[np.float64]:
+    """Return each pixel's distance from the center, 1 at a corner."""
+    height, width = light.shape[:2]
+    y, x = np.mgrid[:height, :width]
+    return np.hypot(x - (width - 1) / 2, y - (height - 1) / 2) / np.hypot(width / 2, height / 2)
+
+
+def drawn_options(seed: int, **fixed) -> PairOptions:
+    """Return options drawn at random, but for fixed ones."""
+    rng = np.random.default_rng(seed)
+    drawn = {
+        "camera": str(rng.choice(["one", "two"])),
+        "light": tuple(np.exp2(rng.uniform(-0.6, 0.6, 3) * (1, 0, 1)).tolist()),
+        "primaries": ADOBE_RGB if rng.uniform() < 0.2 else REC709,
+        "brightest": float(rng.choice([95, 98, 99.5, 99.9])),
+        "headroom": float(rng.choice([0.0, rng.uniform(0, 0.6)])),
+        "crop": float(rng.uniform(0, 0.03)),
+        "distortion": float(rng.choice([0, rng.uniform(-0.03, 0.03)])),
+        "vignetting": float(rng.choice([0, rng.uniform(0, 0.7)])),
+        "reach": float(np.exp(rng.uniform(np.log(1 / 40), np.log(1 / 10)))),
+        "saturation": float(rng.uniform(1, 1.25)),
+        "shot_noise": float(10 ** rng.uniform(-5, -3.5)),
+        "seed": seed,
+    }
+    return PairOptions(**{**drawn, **fixed})
