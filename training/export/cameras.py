@@ -28,11 +28,11 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Write the library anew."""
     parser = argparse.ArgumentParser(prog="training.export.cameras", description="Write the library of cameras.")
     parser.add_argument("data", type=Path, help="the data folder, with real_bodies")
-    data = parser.parse_args(argv).data
+    cameras = measured_cameras(parser.parse_args(argv).data)
     library = CameraLibrary.shipped()
     for camera in library.cameras():
         library.remove(camera.name)
-    for camera in measured_cameras(data):
+    for camera in cameras:
         print(library.save(camera).name, camera.basis)
     return 0
 

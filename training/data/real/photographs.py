@@ -23,10 +23,6 @@ TRUSTED_GRADES = ("A", "B")
 #: What `use` says in DATA/real_bodies of a photograph that counts; the others are shown apart, with their reason.
 USED, CAUTION = "yes", "caution: "
 
-#: The first rows of DATA/real_bodies/cases.csv: the packaged bank and cameras and all published figures rest on them.
-#: Nothing reads the later ones; raise the number only to publish new figures.
-PUBLISHED_ROWS = 76
-
 #: The kinds of the bodies of DATA/real, whose list has no such column.
 KINDS = {
     "Sony XQ-CT72 (Xperia 1 IV)": "phone",
@@ -91,14 +87,14 @@ class RealPhotograph:
 
 
 def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
-    """Return folder -> photographs in its list's order: all of DATA/real, `published_rows` of DATA/real_bodies.
+    """Return folder -> photographs in its list's order: DATA/real and DATA/real_bodies.
 
     DATA/real_bodies may be absent; its list says which bodies share a fold. In DATA/real each body is its own fold.
     """
     sets = {REAL: [_of_real(data / REAL, row) for row in case_rows(data / REAL)]}
     if (data / REAL_BODIES).is_dir():
         folder = data / REAL_BODIES
-        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in published_rows(folder)]
+        sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
     return sets
 
 
@@ -111,11 +107,6 @@ def case_rows(folder: Path) -> list[dict[str, str]]:
     """Return the rows of a folder's cases.csv."""
     with (folder / "cases.csv").open(newline="", encoding="utf-8") as file:
         return list(csv.DictReader(file))
-
-
-def published_rows(folder: Path) -> list[dict[str, str]]:
-    """Return the rows of DATA/real_bodies/cases.csv that published figures rest on: the first `PUBLISHED_ROWS`."""
-    return case_rows(folder)[:PUBLISHED_ROWS]
 
 
 def _of_real(folder: Path, row: dict[str, str]) -> RealPhotograph:

@@ -21,7 +21,7 @@ from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
 from training.data.real.case_metadata import metadata_of_case
 from training.data.real.file_origin import Editing, editing
-from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, published_rows, read_measured
+from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
 SAME_SETTING = 2.0
@@ -43,6 +43,7 @@ class Stack:
     measured: the file of its response
     settings: what its files say
     error: standard deviation of its E_est
+    frames: number of exposures, or nothing where the list has none
     grade: A or B
     caution: why it is less certain, or nothing
     """
@@ -51,7 +52,7 @@ class Stack:
     settings: CameraSettings
     curve: ResponseCurve
     error: float
-    frames: int
+    frames: str
     grade: str
     caution: str
 
@@ -64,7 +65,7 @@ class Stack:
 def settings_of_bodies(data: Path) -> dict[str, dict[str, list[Stack]]]:
     """Return make and model -> name of each of its settings -> its stacks, the most certain first."""
     folder = data / REAL_BODIES
-    stacks = {row["stack"]: _stack(folder, row) for row in published_rows(folder) if _is_taken(row)}
+    stacks = {row["stack"]: _stack(folder, row) for row in case_rows(folder) if _is_taken(row)}
     bodies: dict[str, list[list[Stack]]] = {}
     for stack in sorted(stacks.values(), key=lambda stack: (stack.settings.camera, stack.error)):
         settings = bodies.setdefault(stack.settings.camera, [])
@@ -90,13 +91,14 @@ def measured_camera(name: str, stacks: Sequence[Stack]) -> Camera:
     total = first.error / float(np.linalg.norm(brightness_per_stop(first.curve)))
     shape = min(SHAPE_STOPS, total)
     best = f", the best of {len(stacks)} stacks" if len(stacks) > 1 else ""
+    frames = f"{first.frames} exposures" if first.frames else "an exposure stack"
     iso = tuple(sorted({iso for stack in stacks for iso in stack.settings.iso}))
     return Camera(
         name=name,
         curve=ResponseCurve(response_of(log_irradiance(first.curve)).round(DECIMALS)),
         shape_stops=round(shape, 3),
         scale_stops=round(float(np.sqrt(total**2 - shape**2)), 3),
-        source=f"{first.frames} exposures (grade {first.grade}{best})",
+        source=f"{frames} (grade {first.grade}{best})",
         settings=CameraSettings(first.settings.make, first.settings.model, first.settings.software, iso),
         warnings=(f"measured with caution: {first.caution}",) if first.caution else (),
     )
@@ -117,7 +119,7 @@ def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
         settings=settings if settings.camera else replace(settings, model=row["body"]),
         curve=read_measured(folder / row["gt"]),
         error=float(row["uncertainty_L2"]),
-        frames=int(row["n_frames"]),
+        frames=row["n_frames"],
         grade=row["grade"],
         caution="" if row["use"] == USED else row["use"].removeprefix(CAUTION),
     )

@@ -9,7 +9,7 @@ from crfnet_core.photograph.metadata import FileMetadata
 from training.data.real import bodies as module
 from training.data.real.bodies import measured_bodies
 from training.data.real.file_origin import Editing
-from training.data.real.photographs import PUBLISHED_ROWS, RealPhotograph, published_rows
+from training.data.real.photographs import RealPhotograph
 
 UNIFORM = np.linspace(0, 1, 1024)
 
@@ -69,8 +69,3 @@ def test_what_a_program_developed_is_no_response_of_the_camera(photographs, tmp_
     photographs["real"].append(photograph(tmp_path / "real", "r5", "Nikon D700", "Nikon D700", raw_file="1.jpg"))
     assert "nikon d700" in keys()
     assert "nikon d800" not in keys()
-
-
-def test_only_the_rows_that_published_figures_rest_on_are_read(tmp_path):
-    (tmp_path / "cases.csv").write_text("id\n" + "".join(f"{n}\n" for n in range(PUBLISHED_ROWS + 12)))
-    assert [row["id"] for row in published_rows(tmp_path)] == [str(n) for n in range(76)]
