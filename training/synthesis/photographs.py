@@ -13,7 +13,7 @@ from training.data.curves import IRRADIANCE, DrawsResponses
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
-from training.synthesis.camera_draws import WINDOWS, FrameKind, Frames, draw_development, draw_kind
+from training.synthesis.camera_draws import KIND_FRACTIONS, WINDOWS, FrameKind, Frames, draw_development
 from training.synthesis.development import develop, is_gray
 from training.synthesis.resampling import THUMBNAIL_STEP, AffineResampling
 from training.synthesis.unusual import UnusualKind, random_exposure, unusual_windows
@@ -95,7 +95,7 @@ class PhotographSource:
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:
         """Return up to `cameras` photographs of the same windows."""
         fold = int(rng.integers(min(FOLDS, len(self.scenes))))
-        kind = draw_kind(rng)
+        kind = list(KIND_FRACTIONS)[rng.choice(len(KIND_FRACTIONS), p=list(KIND_FRACTIONS.values()))]
         frames = Frames.draw(kind, rng)
         light = self._light(self.scenes[fold::FOLDS], frames, rng)
         develops = kind is not FrameKind.PLAIN
