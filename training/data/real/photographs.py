@@ -11,8 +11,7 @@ import numpy as np
 from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.case_metadata import is_original, metadata_of_case
-from training.data.real.file_origin import Editing, editing, is_scaled
+from training.data.real.file_origin import Editing, editing, is_original, is_scaled, metadata_of_case
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"

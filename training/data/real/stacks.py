@@ -19,8 +19,7 @@ from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real.case_metadata import metadata_of_case
-from training.data.real.file_origin import Editing, editing
+from training.data.real.file_origin import Editing, editing, metadata_of_case
 from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, published_rows, read_measured
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
