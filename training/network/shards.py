@@ -193,11 +193,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--split", default="train", choices=["train", "validation"])
     parser.add_argument("--photographs", type=int, default=50_000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first shard: others are other photographs")
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    shards = range(options.first, options.first + math.ceil(options.photographs / SHARD))
+    shards = range(math.ceil(options.photographs / SHARD))
     numbers = [n for n in shards if not shard_path(options.out, options.split, n).exists()]
     if numbers:
         record_making(options.out, options.split, training_digest(options.data))

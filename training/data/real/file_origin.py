@@ -1,4 +1,4 @@
-"""The original file of a real photograph: its metadata as far as a list has them, and whether it was edited or scaled."""
+"""The original file of a real photograph: its metadata as far as a list has them; whether it was edited or scaled."""
 
 from __future__ import annotations
 
