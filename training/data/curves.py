@@ -51,16 +51,16 @@ def curve_of_inverse(irradiance: Float64Array) -> ResponseCurve:
 
 
 def geometric_median(
-    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9, steps: int = 500
+    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9
 ) -> Float64Array:
     """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
 
-    Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), `steps` of his iteration
-    from the mean. Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not
-    become the median only because it is near.
+    Rows far from all others pull a mean along, and hardly this. Source: 500 steps of Weiszfeld (1937) from the mean.
+    Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not become the
+    median only because it is near.
     """
     median: Float64Array = rows.mean(axis=0)
-    for _ in range(steps):
+    for _ in range(500):
         distances = np.linalg.norm((rows - median)[:, compared], axis=1)
         nearness = 1 / np.maximum(distances, least_distance)
         median = nearness @ rows / nearness.sum()

@@ -24,12 +24,7 @@ Network = TypeVar("Network", bound=nn.Module)
 
 @dataclass(frozen=True)
 class Signature:
-    """Inputs and outputs of a network; see `crfnet_core.network.ModelConfig`.
-
-    input_name: "statistics" or "windows"
-    input_shape: shape of the input of one window
-    output_names: names of the outputs, in their order
-    """
+    """The input, with its shape for one window, and the outputs of a network: `crfnet_core.network.ModelConfig`."""
 
     input_name: str
     input_shape: tuple[int, ...]

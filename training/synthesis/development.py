@@ -26,8 +26,8 @@ ENTRIES = 1 << 16
 #: Irradiance beyond which a light adds no more glare: the few brightest samples would decide it otherwise.
 BRIGHTEST = 4.0
 
-#: Step between the samples of the luminance that local tone mapping is computed from.
-COARSE_STEP = 8
+#: Step between the samples of the luminance that local tone mapping is computed from, and irradiance that it keeps.
+COARSE_STEP, MIDDLE_GRAY = 8, 0.18
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,10 @@ class ToneMapping:
 
     strength: part of the large-scale contrast, in stops, that is taken out
     radius: standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance
-    pivot: irradiance that keeps its value
     """
 
     strength: float
     radius: float = 0.08
-    pivot: float = 0.18
 
     def gain(self, planes: Planes) -> Float32Array:
         """Return the gain, float32 (N, S, S)."""
@@ -49,7 +47,7 @@ class ToneMapping:
             np.float32(weight) * plane[:, ::COARSE_STEP, ::COARSE_STEP]
             for weight, plane in zip(LUMINANCE, planes, strict=True)
         )
-        stops = np.log2(np.maximum(coarse, 1e-4) / self.pivot)
+        stops = np.log2(np.maximum(coarse, 1e-4) / MIDDLE_GRAY)
         radius = self.radius * stops.shape[1]
         gains = np.exp2(-self.strength * gaussian_filter(stops, (0, radius, radius))).astype(np.float32)
         return resized(gains, planes[0].shape[1])
@@ -60,8 +58,8 @@ class Export:
     """A picture made smaller after it was encoded, as for the web; `finish` has the steps on the small picture."""
 
     resample: Image.Resampling
-    finish: Finish = field(default_factory=Finish)
-    jpeg: Jpeg | None = None
+    finish: Finish
+    jpeg: Jpeg
 
 
 @dataclass(frozen=True)
@@ -121,7 +119,7 @@ def develop(
     codes = resized(codes, WINDOW_SIZE, export.resample)
     if export.finish != Finish():
         codes = rounded(export.finish.applied(split(codes)))
-    return codes if export.jpeg is None else export.jpeg.compressed(codes)
+    return export.jpeg.compressed(codes)
 
 
 def looked_up(plane: Float32Array, curve: Float64Array) -> Float32Array:

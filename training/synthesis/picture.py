@@ -28,8 +28,7 @@ class Jpeg:
     """A JPEG compression.
 
     scale: factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98
-    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie, as in
-        cameras
+    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie
     subsampling: 0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0)
     """
 

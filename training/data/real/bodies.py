@@ -12,12 +12,7 @@ from training.data.real.photographs import RealPhotograph, real_photographs
 
 @dataclass(frozen=True)
 class Body:
-    """A camera body.
-
-    key: what distinguishes bodies
-    kind: "phone", "compact", "camera" (with interchangeable lenses) or "unknown"
-    responses: one of each exposure stack
-    """
+    """A camera body, of a kind as in `RealPhotograph`, and a response of each exposure stack."""
 
     key: str
     kind: str

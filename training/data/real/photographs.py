@@ -49,8 +49,6 @@ class RealPhotograph:
     grade: how well the response was measured: A, B or C
     caution: why the photograph does not count in the means; empty where it counts
     is_in_mean: whether its response is part of the mean of the other bodies
-    editing: whether an editor saved the file
-    is_scaled: whether it was made smaller after the camera
     fold: bodies of one fold are left out of a mean together
     photograph, measured: the files of the photograph and of its response
     metadata: of the original file, where `photograph` is not the original and has lost it

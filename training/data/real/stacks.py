@@ -39,14 +39,11 @@ UNKNOWN_BODY = "unknown"
 class Stack:
     """A measured exposure stack.
 
-    measured: the file of its response
-    settings: what its files say
+    settings: the camera and its settings, as the files state them
     error: standard deviation of its E_est
-    grade: A or B
     caution: why it is less certain, or nothing
     """
 
-    measured: Path
     settings: CameraSettings
     curve: ResponseCurve
     error: float
@@ -112,7 +109,6 @@ def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
     """Return the stack of a row."""
     settings = CameraSettings.from_metadata(metadata_of_case(row))
     return Stack(
-        measured=folder / row["gt"],
         settings=settings if settings.camera else replace(settings, model=row["body"]),
         curve=read_measured(folder / row["gt"]),
         error=float(row["uncertainty_L2"]),
