@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import scipy.io
@@ -19,6 +19,9 @@ from crfnet_core.types import Float64Array
 DORF_FILE, EMOR_FILE, BASE_CURVES_FILE = "dorf/201_CRF_data.mat", "dorf/emor.txt", "camera_curves/base_curves.csv"
 
 IRRADIANCE = np.linspace(0, 1, SAMPLES)
+
+#: Returns a random response, shape (1024,), from 0 to 1.
+DrawResponse = Callable[[np.random.Generator], Float64Array]
 
 #: Range of the headroom s that a camera leaves between its brightest JPEG value and the clipping of its sensor.
 HEADROOM = (0.4, 1.1)
@@ -65,13 +68,6 @@ def geometric_median(
         nearness = 1 / np.maximum(distances, least_distance)
         median = nearness @ rows / nearness.sum()
     return median
-
-
-class DrawsResponses(Protocol):
-    """A source of random responses."""
-
-    def draw(self, rng: np.random.Generator) -> Float64Array:
-        """Return one response, shape (1024,), from 0 to 1."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from crfnet_core.posterior import Family
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses, curve_of_inverse
+from training.data.curves import IRRADIANCE, CurveSource, curve_of_inverse
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -122,14 +122,3 @@ class ResponseFamilies:
             drawn = [self.in_camera(kinds[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
             return edited(np.stack(drawn), rng)
         return self.in_camera(family, count, rng)
-
-
-@dataclass(frozen=True)
-class EditedResponses:
-    """Draws the responses of another source as an editor leaves them."""
-
-    source: DrawsResponses
-
-    def draw(self, rng: np.random.Generator) -> Float64Array:
-        """Return one edited response, shape (1024,)."""
-        return edited(self.source.draw(rng)[None], rng)[0]

@@ -20,8 +20,8 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import UNUSUAL, Family
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.statistics import window_statistics
-from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
-from training.data.families import EditedResponses
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawResponse, read_base_curves, read_dorf
+from training.data.families import edited
 from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
@@ -112,12 +112,12 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
     dorf = read_dorf(data / DORF_FILE)
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
     bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
-    in_camera = CurveSource(dorf, bases, camera_fraction=1)
-    sets: dict[CurveSet, DrawsResponses] = {
-        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
-        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
+    in_camera = CurveSource(dorf, bases, camera_fraction=1).draw
+    sets: dict[CurveSet, DrawResponse] = {
+        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0).draw,
+        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0).draw,
         CurveSet.IN_CAMERA: in_camera,
-        CurveSet.EDITED: EditedResponses(in_camera),
+        CurveSet.EDITED: lambda rng: edited(in_camera(rng)[None], rng)[0],
         **dict.fromkeys((CurveSet.LINEAR, CurveSet.LOG, CurveSet.UNEXPLAINED), in_camera),
     }
     held_out = float(is_held_out.mean())

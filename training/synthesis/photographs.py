@@ -9,7 +9,7 @@ import numpy as np
 
 from crfnet_core.statistics.windows import WINDOW_SIZE, filled_bins, filled_codes
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
-from training.data.curves import IRRADIANCE, DrawsResponses
+from training.data.curves import IRRADIANCE, DrawResponse
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
@@ -84,7 +84,7 @@ class PhotographSource:
     """
 
     scenes: list[Scene]
-    curve_sets: tuple[DrawsResponses, ...]
+    curve_sets: tuple[DrawResponse, ...]
     fractions: tuple[float, ...]
     luminance: Float32Array
     unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
@@ -109,7 +109,7 @@ class PhotographSource:
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
         """Return a response, shape (1024,), and the number of its set."""
         chosen = int(rng.choice(len(self.fractions), p=self.fractions))
-        return self.curve_sets[chosen].draw(rng), chosen
+        return self.curve_sets[chosen](rng), chosen
 
     def _light(self, scenes: list[Scene], frames: Frames, rng: np.random.Generator) -> Float32Array:
         """Return the linear light of frames, (count, side, side, 3), of one, two or three of the scenes."""

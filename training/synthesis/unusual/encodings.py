@@ -83,7 +83,8 @@ def messenger(irradiance: Float32Array, rng: np.random.Generator) -> Float32Arra
     smaller than a window is continued by its mirror image to the size of a window.
     """
     times, curve = int(rng.choice(SCALED_BY)), drawn_camera_curve(rng)
-    sent = np.stack([reduced(encoded_codes(enlarged(light, ENLARGED), curve), times) for light in irradiance])
+    pictures = (Image.fromarray(encoded_codes(enlarged(light, ENLARGED), curve)) for light in irradiance)
+    sent = np.stack([np.asarray(picture.reduce(times)) for picture in pictures])
     lacking = [(0, max(0, WINDOW_SIZE - side)) for side in sent.shape[1:3]]
     sent = np.pad(sent, [(0, 0), *lacking, (0, 0)], mode="symmetric")
     for quality in rng.integers(*MESSENGER_QUALITY, size=2, endpoint=True):
@@ -95,11 +96,6 @@ def encoded_codes(irradiance: Float32Array, curve: Float64Array) -> Uint8Array:
     """Return the 8-bit codes of irradiance under a response, by nearest entry: quicker than `apply_response`."""
     table = codes_of(np.interp(np.linspace(0, 1, TABLE), IRRADIANCE, curve).astype(np.float32))
     return table[(np.clip(irradiance, 0, 1) * np.float32(TABLE - 1) + np.float32(0.5)).astype(np.uint16)]
-
-
-def reduced(codes: Uint8Array, times: int) -> Uint8Array:
-    """Return a picture (H, W, 3) averaged down: the mean code of times x times samples, rounded."""
-    return np.asarray(Image.fromarray(codes).reduce(times))
 
 
 def camera_rendering(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:

@@ -114,14 +114,10 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
     return simulate_capture(recipe.rendering(irradiance, rng), IRRADIANCE, after, rng)
 
 
-def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, exposure: float | None = None) -> Photo:
-    """Return a whole frame of a kind, as the estimator reads it from a file.
-
-    `exposure` is the irradiance per unit of light; by default it is the `random_exposure`.
-    """
+def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> Photo:
+    """Return a whole frame of a kind at a `random_exposure`, as the estimator reads it from a file."""
     light = sensor_light(scene, rng)
-    exposure = random_exposure(light, rng) if exposure is None else exposure
-    codes = unusual_windows(kind, light[None], exposure, rng)[0]
+    codes = unusual_windows(kind, light[None], random_exposure(light, rng), rng)[0]
     is_gray = bool((codes == codes[..., :1]).all())
     pixels = np.divide(codes, np.float32(255), dtype=np.float32)
     return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(f"{kind}, {scene.name}"))
