@@ -78,11 +78,6 @@ def _s_curve(brightness: Float64Array, contrast: float, pivot: float) -> Float64
     return np.where(brightness < pivot, low, high)
 
 
-def nearly_linear(count: int, rng: np.random.Generator) -> Float64Array:
-    """Return powers of irradiance near 1, shape (count, 1024)."""
-    return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
-
-
 def log_like(count: int, rng: np.random.Generator) -> Float64Array:
     """Return curves log(1 + a E) / log(1 + a) bent by a small power, shape (count, 1024)."""
     factor = _log_uniform(LOG_FACTORS, count, rng)
@@ -112,7 +107,7 @@ class ResponseFamilies:
         if family is Family.FILM:
             return np.stack([self.film.draw(rng) for _ in range(count)])
         if family is Family.LINEAR:
-            return nearly_linear(count, rng)
+            return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
         if family is Family.LOG:
             return log_like(count, rng)
         if family is Family.DEVELOPED:

@@ -157,10 +157,7 @@ def shard_path(folder: Path, split: str, number: int) -> Path:
 
 
 def shard_files(folder: Path, split: str) -> list[Path]:
-    """Return the shard files of a split, sorted.
-
-    Raise FileNotFoundError if there are none.
-    """
+    """Return the shard files of a split, sorted; FileNotFoundError if there are none."""
     files = sorted(folder.glob(f"{split}_*.npz"))
     if not files:
         raise FileNotFoundError(
