@@ -51,10 +51,7 @@ def record_run(folder: Path, *, recipe: Record, seed: int, data: Record, start: 
 
 
 def read_run(folder: Path) -> Record:
-    """Return the record of a run, or say that there is none.
-
-    Raise SystemExit if the folder holds no run.json.
-    """
+    """Return the record of a run; SystemExit if the folder holds no run.json."""
     path = folder / RUN_FILE
     if not path.exists():
         raise SystemExit(f"{folder}: holds no {RUN_FILE}; give the folder of a training run")
@@ -70,10 +67,9 @@ def training_commit(record: Record) -> str:
 def data_record(folder: Path, files: Iterable[Path]) -> Record:
     """Return the number and the digest of the files that a run reads, and how they were made as far as it is known."""
     chosen = sorted(files)
-    made = {
-        path.stem.removeprefix("made_"): json.loads(path.read_text()) for path in sorted(folder.glob("made_*.json"))
-    }
-    return {"files": len(chosen), "sha256": files_digest(chosen), "made": made}
+    made = {p.stem.removeprefix("made_"): json.loads(p.read_text()) for p in sorted(folder.glob("made_*.json"))}
+    names = "".join(f"{file_sha256(path)}  {path.name}\n" for path in chosen)
+    return {"files": len(chosen), "sha256": hashlib.sha256(names.encode()).hexdigest(), "made": made}
 
 
 def record_making(folder: Path, name: str, source_sha256: str) -> None:
@@ -92,14 +88,6 @@ def code_record() -> Record:
         "dirty": None if changes is None else bool(changes),
         "versions": {"python": platform.python_version(), "torch": version("torch"), "numpy": version("numpy")},
     }
-
-
-def files_digest(files: Iterable[Path]) -> str:
-    """Return the SHA-256 over the names and the SHA-256 of files, in the order given."""
-    digest = hashlib.sha256()
-    for path in files:
-        digest.update(f"{file_sha256(path)}  {path.name}\n".encode())
-    return digest.hexdigest()
 
 
 def write_json(path: Path, entries: Record | list[Record]) -> None:

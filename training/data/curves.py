@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import csv
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Protocol
 
 import numpy as np
 import scipy.io
@@ -19,6 +19,9 @@ from crfnet_core.types import Float64Array
 DORF_FILE, EMOR_FILE, BASE_CURVES_FILE = "dorf/201_CRF_data.mat", "dorf/emor.txt", "camera_curves/base_curves.csv"
 
 IRRADIANCE = np.linspace(0, 1, SAMPLES)
+
+#: Returns a random response, shape (1024,), from 0 to 1.
+DrawResponse = Callable[[np.random.Generator], Float64Array]
 
 #: Range of the headroom s that a camera leaves between its brightest JPEG value and the clipping of its sensor.
 HEADROOM = (0.4, 1.1)
@@ -51,27 +54,20 @@ def curve_of_inverse(irradiance: Float64Array) -> ResponseCurve:
 
 
 def geometric_median(
-    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9, steps: int = 500
+    rows: Float64Array, *, compared: slice = slice(None), least_distance: float = 1e-9
 ) -> Float64Array:
     """Return the row, shape (M,), with the least sum of distances to `rows`, shape (N, M).
 
-    Rows far from all others pull a mean along, and hardly this. Source: Weiszfeld (1937), `steps` of his iteration
-    from the mean. Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not
-    become the median only because it is near.
+    Rows far from all others pull a mean along, and hardly this. Source: 500 steps of Weiszfeld (1937) from the mean.
+    Distances are L2 over the columns `compared`, and at least `least_distance`, so that a row does not become the
+    median only because it is near.
     """
     median: Float64Array = rows.mean(axis=0)
-    for _ in range(steps):
+    for _ in range(500):
         distances = np.linalg.norm((rows - median)[:, compared], axis=1)
         nearness = 1 / np.maximum(distances, least_distance)
         median = nearness @ rows / nearness.sum()
     return median
-
-
-class DrawsResponses(Protocol):
-    """A source of random responses."""
-
-    def draw(self, rng: np.random.Generator) -> Float64Array:
-        """Return one response, shape (1024,), from 0 to 1."""
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from crfnet_core.posterior import Family
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.metrics import LAST_SHAPE_CODE
 from crfnet_core.types import Float64Array
-from training.data.curves import IRRADIANCE, CurveSource, DrawsResponses, curve_of_inverse
+from training.data.curves import IRRADIANCE, CurveSource, curve_of_inverse
 
 #: Mean and standard deviation of the logarithm of how much an editor changes, relative to the figures in `_edited`.
 EDIT_AMOUNT = (-1.0, 0.8)
@@ -78,11 +78,6 @@ def _s_curve(brightness: Float64Array, contrast: float, pivot: float) -> Float64
     return np.where(brightness < pivot, low, high)
 
 
-def nearly_linear(count: int, rng: np.random.Generator) -> Float64Array:
-    """Return powers of irradiance near 1, shape (count, 1024)."""
-    return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
-
-
 def log_like(count: int, rng: np.random.Generator) -> Float64Array:
     """Return curves log(1 + a E) / log(1 + a) bent by a small power, shape (count, 1024)."""
     factor = _log_uniform(LOG_FACTORS, count, rng)
@@ -112,7 +107,7 @@ class ResponseFamilies:
         if family is Family.FILM:
             return np.stack([self.film.draw(rng) for _ in range(count)])
         if family is Family.LINEAR:
-            return nearly_linear(count, rng)
+            return IRRADIANCE ** _log_uniform(LINEAR_POWERS, count, rng)
         if family is Family.LOG:
             return log_like(count, rng)
         if family is Family.DEVELOPED:
@@ -122,14 +117,3 @@ class ResponseFamilies:
             drawn = [self.in_camera(kinds[int(rng.integers(3))], 1, rng)[0] for _ in range(count)]
             return edited(np.stack(drawn), rng)
         return self.in_camera(family, count, rng)
-
-
-@dataclass(frozen=True)
-class EditedResponses:
-    """Draws the responses of another source as an editor leaves them."""
-
-    source: DrawsResponses
-
-    def draw(self, rng: np.random.Generator) -> Float64Array:
-        """Return one edited response, shape (1024,)."""
-        return edited(self.source.draw(rng)[None], rng)[0]

@@ -10,9 +10,7 @@ import argparse
 import csv
 import io
 import sys
-from collections import Counter
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
 from pathlib import Path
 
 import numpy as np
@@ -20,74 +18,44 @@ import OpenImageIO as oiio
 from numpy.typing import NDArray
 
 from crfnet_core.errors import CRFNetError, PhotoError
-from crfnet_core.files import atomic_write, atomic_write_text, check_target
+from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.photograph.image_io import first_line
-from training.data.linear_files import LEAST_SIDE, linear_scene
+from training.data.linear_files import linear_scene
 from training.data.scenes import IMPORTED
 
 #: Kind -> its name in the manifest.
 KINDS = {"photograph": "photograph", "panorama": "panorama band"}
 
-
-@dataclass(frozen=True)
-class ManifestRow:
-    """A row of the folder's manifest.csv; the columns have this order."""
-
-    file: str
-    kind: str
-    width: int
-    height: int
-    source: str
-    licence: str
-    notes: str
+#: The columns of the manifest.csv of a folder of scenes.
+COLUMNS = ("file", "kind", "width", "height", "source", "licence", "notes")
 
 
-COLUMNS = tuple(field.name for field in fields(ManifestRow))
-
-
-def import_scene(
-    path: str | Path,
-    folder: str | Path,
-    *,
-    kind: str = "photograph",
-    scale: int | None = None,
-    licence: str = "not stated",
-    overwrite: bool = False,
-) -> ManifestRow:
+def import_scene(path: Path, folder: Path, *, kind: str = "photograph", licence: str = "not stated") -> dict[str, str]:
     """Write the scene in `path` to `folder` as OpenEXR, add it to the folder's manifest.csv and return its row.
 
-    `linear_scene` explains the kinds of files, panoramas and `scale`. The folder and its manifest.csv are made if
-    absent; `overwrite` replaces a scene of the same name. Raise CRFNetError, and write nothing, if the file is absent,
-    damaged, not scene-linear, too small or black, or if its name is taken.
+    The folder is made if absent. Raise CRFNetError or OSError, and write nothing, if the name is taken, or if the file
+    is absent, damaged, not scene-linear, too small or black: see `linear_scene`.
     """
-    path, folder = Path(path), Path(folder)
-    target = folder / f"{path.stem}.exr"
-    rows = read_manifest(folder)
-    if not overwrite and (target.exists() or any(row["file"] == target.name for row in rows)):
-        raise PhotoError(f"{path}: {target} is there already; rename the file or ask to overwrite it")
-    if target.exists() and path.exists() and target.samefile(path):
-        raise PhotoError(f"{path}: is a file of the folder {folder} itself; give files from elsewhere")
-    pixels, notes = linear_scene(path, is_panorama=kind == "panorama", scale=scale)
+    target, rows = folder / f"{path.stem}.exr", read_manifest(folder)
+    if target.exists() or any(row["file"] == target.name for row in rows):
+        raise PhotoError(f"{path}: {target} is there already; rename the file, or take out the other and its row")
+    pixels, notes = linear_scene(path, is_panorama=kind == "panorama")
     height, width, _ = pixels.shape
-    row = ManifestRow(target.name, KINDS[kind], width, height, f"{IMPORTED} {path.name}", licence, "; ".join(notes))
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-    except OSError as problem:
-        raise PhotoError(f"{folder}: cannot be made ({problem.strerror}); choose another folder") from problem
-    check_target(folder / "manifest.csv", overwrite=True, error=PhotoError)
-    write_scene(target, pixels, overwrite=overwrite)
-    others = [other for other in rows if other["file"] != target.name]
-    write_manifest(folder, [*others, {name: str(value) for name, value in asdict(row).items()}])
+    values = (target.name, KINDS[kind], str(width), str(height), f"{IMPORTED} {path.name}", licence, "; ".join(notes))
+    row = dict(zip(COLUMNS, values, strict=True))
+    folder.mkdir(parents=True, exist_ok=True)
+    write_scene(target, pixels)
+    write_manifest(folder, [*rows, row])
     return row
 
 
-def write_scene(path: Path, pixels: NDArray[np.float16], *, overwrite: bool = False) -> None:
+def write_scene(path: Path, pixels: NDArray[np.float16]) -> None:
     """Write a scene, float16 (H, W, 3), as OpenEXR, whole or not at all; PhotoError if it cannot be written."""
     height, width, channels = pixels.shape
     header = oiio.ImageSpec(width, height, channels, oiio.HALF)
     header.attribute("DateTime", "")  # else OpenImageIO writes the time of day
     header.attribute("compression", "zip")
-    with atomic_write(path, overwrite=overwrite, error=PhotoError) as temporary:
+    with atomic_write(path, error=PhotoError) as temporary:
         image = oiio.ImageBuf(header)
         image.set_pixels(image.roi, np.ascontiguousarray(pixels))
         if image.has_error or not image.write(str(temporary)):
@@ -117,34 +85,21 @@ def write_manifest(folder: Path, rows: Sequence[dict[str, str]]) -> None:
     atomic_write_text(folder / "manifest.csv", text.getvalue(), overwrite=True, error=PhotoError)
 
 
-def _parser() -> argparse.ArgumentParser:
-    """Return the parser of the command."""
-    parser = argparse.ArgumentParser(
-        prog="python -m training.data.import_scenes", description=(__doc__ or "").split("\n", 1)[0]
-    )
-    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="camera raw, OpenEXR or Radiance HDR")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the scenes, such as DATA/linear")
-    parser.add_argument("--scale", type=int, help=f"whole factor (default: shorter side at least {LEAST_SIDE})")
-    parser.add_argument("--kind", choices=KINDS, default="photograph", help="panoramas are equirectangular, 2:1")
-    parser.add_argument("--licence", default="not stated", help="licence for the manifest")
-    parser.add_argument("--overwrite", action="store_true", help="replace scenes of the same name")
-    return parser
-
-
 def main(arguments: Sequence[str] | None = None) -> int:
     """Import every file that is usable and return 0; if some are not, say why on stderr and return 2."""
-    options = _parser().parse_args(arguments)
-    settings = {"kind": options.kind, "scale": options.scale, "licence": options.licence}
-    names = Counter(path.stem for path in options.files)
-    failed = 0
+    parser = argparse.ArgumentParser(description=(__doc__ or "").split("\n", 1)[0])
+    parser.add_argument("files", nargs="+", type=Path, metavar="FILE", help="camera raw, OpenEXR or Radiance HDR")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the scenes, such as DATA/linear")
+    parser.add_argument("--kind", choices=KINDS, default="photograph", help="panoramas are equirectangular, 2:1")
+    parser.add_argument("--licence", default="not stated", help="licence for the manifest")
+    options = parser.parse_args(arguments)
+    failed = False
     for path in options.files:
         try:
-            if names[path.stem] > 1:
-                raise PhotoError(f"{path}: {names[path.stem]} of these files would become {path.stem}.exr; rename them")
-            row = import_scene(path, options.out, overwrite=options.overwrite, **settings)
-            print(f"{options.out / row.file}: {row.kind}, {row.width} x {row.height}, {row.notes}")
-        except CRFNetError as problem:
-            failed += 1
+            row = import_scene(path, options.out, kind=options.kind, licence=options.licence)
+            print(f"{options.out / row['file']}: {row['kind']}, {row['width']} x {row['height']}, {row['notes']}")
+        except (CRFNetError, OSError) as problem:
+            failed = True
             print(f"import_scenes: error: {problem}", file=sys.stderr)
     return 2 if failed else 0
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from pathlib import Path
 from typing import Any
 
@@ -38,24 +37,28 @@ DEVELOPMENT: dict[str, Any] = {
 }
 
 
-def linear_scene(
-    path: Path, *, is_panorama: bool = False, scale: int | None = None
-) -> tuple[NDArray[np.float16], list[str]]:
+def linear_scene(path: Path, *, is_panorama: bool = False) -> tuple[NDArray[np.float16], list[str]]:
     """Return the scene as it will be written, float16 (H, W, 3) in [0, 65000], and notes on what was done to it.
 
-    In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. Other files are multiplied by
-    the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`.
-
-    The file is camera raw, known by its suffix, OpenEXR or Radiance HDR. Of a panorama, which is equirectangular and
-    twice as wide as high, the middle `BAND` of the rows is kept. Each scale x scale samples become one, their mean, by
-    default with the `automatic_scale`. Raise PhotoError if the file is absent, damaged, not scene-linear, too small or
-    black, or has other sides than a panorama.
+    In camera raw, 0 is black and 1 the sensor's white, where every channel is clipped. OpenEXR and Radiance HDR are
+    multiplied by the power of two that brings the median luminance nearest to `MEDIAN_LUMINANCE`. Of a panorama, which
+    is equirectangular and twice as wide as high, the middle `BAND` of the rows is kept. Each n x n samples become one,
+    their mean, for the largest n that leaves the shorter side `LEAST_SIDE`. Raise PhotoError or OSError if the file is
+    absent, damaged, not scene-linear, too small or black, or has other sides than a panorama.
     """
+    with path.open("rb") as file:
+        head = file.read(16)
     is_raw = path.suffix.lower() in RAW_SUFFIXES
+    if not is_raw and not any(head.startswith(signatures) for signatures in LINEAR_SIGNATURES.values()):
+        raise PhotoError(
+            f"{path}: is not scene-linear; give camera raw, OpenEXR or Radiance HDR, not a picture developed from it"
+        )
     samples = read_raw(path) if is_raw else read_hdr(path)
     band = panorama_band(samples, path) if is_panorama else samples
-    scale = automatic_scale(*band.shape[:2]) if scale is None else scale
-    _check_scale(path, band.shape, scale)
+    side = min(band.shape[:2])
+    if side < WINDOW_SIZE:
+        raise PhotoError(f"{path}: {side} rows or columns are too few; windows need {WINDOW_SIZE}")
+    scale = max(1, side // LEAST_SIDE)
     notes = [f"area-averaged {scale}x{scale} from {samples.shape[1]}x{samples.shape[0]}"] if scale > 1 else []
     if not is_raw:
         fitted, (factor, *more) = _fitted(band, scale, path)
@@ -70,10 +73,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
 
     The white balance is the camera's, the demosaicing AHD. Rows and columns are as stored, whatever the orientation.
     Negative values, which are colors outside the primaries, become 0.
-
-    Raise PhotoError if the file is absent, or LibRaw does not know it or finds it damaged.
     """
-    _check_file(path)
     try:
         with rawpy.imread(str(path)) as raw:
             check_size(path, raw.sizes.width, raw.sizes.height)
@@ -84,18 +84,7 @@ def read_raw(path: Path) -> NDArray[np.uint16]:
 
 
 def read_hdr(path: Path) -> NDArray[np.float32]:
-    """Return the samples of an OpenEXR or Radiance HDR file, float32 (H, W, 3), as stored.
-
-    Raise PhotoError if the file is absent, damaged, not of floats, without RGB or gray, or not scene-linear, as JPEG,
-    PNG or TIFF.
-    """
-    _check_file(path)
-    with path.open("rb") as file:
-        head = file.read(16)
-    if not any(head.startswith(signatures) for signatures in LINEAR_SIGNATURES.values()):
-        raise PhotoError(
-            f"{path}: is not scene-linear; give camera raw, OpenEXR or Radiance HDR, not a picture developed from it"
-        )
+    """Return the samples of an OpenEXR or Radiance HDR file, float32 (H, W, 3), as stored."""
     source = oiio.ImageInput.open(str(path))
     problem = oiio.geterror()
     if source is None:
@@ -125,19 +114,6 @@ def panorama_band(samples: NDArray[Any], path: Path) -> NDArray[Any]:
     return samples[top : top + rows]
 
 
-def automatic_scale(height: int, width: int) -> int:
-    """Return the largest whole factor, 1 or more, that leaves the shorter side at least `LEAST_SIDE` samples."""
-    return max(1, min(height, width) // LEAST_SIDE)
-
-
-def _check_file(path: Path) -> None:
-    """Refuse a path that is not a file or cannot be opened."""
-    if not path.is_file():
-        raise PhotoError(f"{path}: does not exist; check the name")
-    if not os.access(path, os.R_OK):
-        raise PhotoError(f"{path}: cannot be opened; check its permissions")
-
-
 def _check_header(path: Path, header: Any) -> None:
     """Refuse an OpenEXR or HDR file that is not a flat scene-linear picture of floats."""
     check_size(path, header.width, header.height)
@@ -148,15 +124,6 @@ def _check_header(path: Path, header: Any) -> None:
         raise PhotoError(f"{path}: needs channels R, G and B, or a gray one; found {', '.join(header.channelnames)}")
     if space and space != "unknown" and not space.startswith("lin_"):
         raise PhotoError(f"{path}: calls itself {space}, which is not scene-linear; give the linear file")
-
-
-def _check_scale(path: Path, shape: tuple[int, ...], scale: int) -> None:
-    """Refuse a scale below 1, and one that leaves no room for a window."""
-    side = min(shape[:2])
-    if scale < 1:
-        raise PhotoError(f"{path}: the scale must be 1 or more, not {scale}")
-    if side // scale < WINDOW_SIZE:
-        raise PhotoError(f"{path}: {side} rows or columns at scale {scale} are too few; windows need {WINDOW_SIZE}")
 
 
 def _fitted(samples: NDArray[Any], scale: int, path: Path) -> tuple[NDArray[np.float16], list[str]]:

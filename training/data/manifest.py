@@ -13,7 +13,7 @@ import hashlib
 import io
 import sys
 from collections.abc import Iterable, Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, fields, replace
 from pathlib import Path
 
 from crfnet_core.errors import CRFNetError
@@ -30,14 +30,6 @@ CRFNET2017_FILE = Path(__file__).with_name("manifest_crfnet2017.csv")
 #: Comes with DoRF; nothing reads it.
 UNUSED = "dorf/invemor.txt"
 
-#: How files are used that belong to no split of the scenes.
-MEASURED_ONLY, SPLIT_BY_GROUP, TRAINED_ON, COMPARED_ONLY = (
-    "measured only",
-    "by groups of curves: splits.json",
-    "train",
-    "compared only",
-)
-
 #: The tables that come with the data, and what each decides of the files that it names.
 TABLES = {
     "linear/manifest.csv": "decides the split",
@@ -45,8 +37,8 @@ TABLES = {
     "real_bodies/cases.csv": "decides grade, fold and use",
 }
 
-#: What is written for a file whose source states no licence.
-NO_LICENCE = "no licence stated"
+#: How real photographs are used, and the license of a file whose source states none.
+MEASURED_ONLY, NO_LICENCE = "measured only", "no licence stated"
 
 _CAVE = "Columbia CAVE, https://www.cs.columbia.edu/CAVE/software/softlib/dorf.php (Grossberg & Nayar, PAMI 2004)"
 _DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.c), https://github.com/darktable-org"
@@ -54,12 +46,9 @@ _DARKTABLE = "figures of the base-curve presets of darktable (src/iop/basecurve.
 
 @dataclass(frozen=True, order=True)
 class ManifestRow:
-    """One file.
+    """One file: its path in the data folder, where it comes from, and the license as the source states it.
 
-    file: path in the data folder, with slashes
     kind: "scene", "real photograph", "measured response" (of a real photograph), "responses" or "table"
-    source: repository and path, package, or owner
-    licence: as the source states it
     split: "train", "validation" or "test" of a scene; what a table decides; otherwise how the file is used
     """
 
@@ -68,7 +57,7 @@ class ManifestRow:
     source: str
     licence: str
     split: str
-    sha256: str
+    sha256: str = ""
 
 
 COLUMNS = tuple(field.name for field in fields(ManifestRow))
@@ -79,15 +68,13 @@ def manifest_rows(data: Path) -> list[ManifestRow]:
 
     Raise CRFNetError if a file that the folder's own tables name is absent.
     """
-    listed = [*_scenes(data / "linear"), *_real(data / "real"), *_real_bodies(data / "real_bodies")]
-    unhashed = [*_curves(), *_tables(data), *listed]
-    return sorted(_hashed(data, row) for row in set(unhashed))
+    unhashed = {*_curves(), *_tables(data), *_scenes(data), *_real(data)}
+    return sorted(_hashed(data, row) for row in unhashed)
 
 
 def training_digest(data: Path) -> str:
     """Return the SHA-256 over the manifest rows of the scenes and curves in the folder `data`."""
-    unhashed = [*_curves(), *_scenes(data / "linear")]
-    chosen = [row for row in unhashed if row.kind == "scene" or row.file in (DORF_FILE, BASE_CURVES_FILE)]
+    chosen = [*(row for row in _curves() if row.file != EMOR_FILE), *_scenes(data)]
     return hashlib.sha256(manifest_text(sorted(_hashed(data, row) for row in chosen)).encode()).hexdigest()
 
 
@@ -113,10 +100,9 @@ def differences(data: Path, listed: Sequence[ManifestRow]) -> list[str]:
     """
     lines = []
     for row in listed:
-        path = data / row.file
-        if not path.is_file():
+        if not (data / row.file).is_file():
             lines.append(f"absent: {row.file}")
-        elif file_sha256(path) != row.sha256:
+        elif file_sha256(data / row.file) != row.sha256:
             lines.append(f"altered: {row.file}")
     folders = {(data / row.file).parent for row in listed}
     known = {row.file for row in listed} | {UNUSED}
@@ -130,16 +116,16 @@ def _hashed(data: Path, row: ManifestRow) -> ManifestRow:
     path = data / row.file
     if not path.is_file():
         raise CRFNetError(f"{path}: is absent; restore it, or take its line out of the table beside it")
-    return ManifestRow(**{**asdict(row), "sha256": file_sha256(path)})
+    return replace(row, sha256=file_sha256(path))
 
 
 def _curves() -> list[ManifestRow]:
     """Return the rows, not hashed, of the files of responses."""
-    licence = "GPL-3.0-or-later (darktable)"
+    measured, use = f"{_CAVE}: 201 measured responses", "by groups of curves: splits.json"
     return [
-        ManifestRow(DORF_FILE, "responses", f"{_CAVE}: 201 measured responses", NO_LICENCE, SPLIT_BY_GROUP, ""),
-        ManifestRow(EMOR_FILE, "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, COMPARED_ONLY, ""),
-        ManifestRow(BASE_CURVES_FILE, "responses", _DARKTABLE, licence, TRAINED_ON, ""),
+        ManifestRow(DORF_FILE, "responses", measured, NO_LICENCE, use),
+        ManifestRow(EMOR_FILE, "responses", f"{_CAVE}: EMoR basis", NO_LICENCE, "compared only"),
+        ManifestRow(BASE_CURVES_FILE, "responses", _DARKTABLE, "GPL-3.0-or-later (darktable)", "train"),
     ]
 
 
@@ -147,52 +133,39 @@ def _tables(data: Path) -> list[ManifestRow]:
     """Return the rows, not hashed, of the tables that the data folder holds."""
     source = "written for this data: it names the files, their sources and their licences"
     present = [(file, use) for file, use in TABLES.items() if (data / file).is_file()]
-    return [ManifestRow(file, "table", source, "facts", use, "") for file, use in present]
+    return [ManifestRow(file, "table", source, "facts", use) for file, use in present]
 
 
-def _scenes(folder: Path) -> list[ManifestRow]:
-    """Return the rows, not hashed, of the scenes in the folder's own manifest.csv."""
-    splits = {name: split for split, scenes in split_scenes(folder).items() for name, _ in scenes}
+def _scenes(data: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the scenes in linear/manifest.csv."""
+    splits = {name: split for split, scenes in split_scenes(data / "linear").items() for name, _ in scenes}
     return [
-        ManifestRow(
-            f"{folder.name}/{entry['file']}", "scene", entry["source"], entry["licence"], splits[entry["file"]], ""
-        )
-        for entry in _table(folder / "manifest.csv")
+        ManifestRow(f"linear/{row['file']}", "scene", row["source"], row["licence"], splits[row["file"]])
+        for row in _table(data / "linear" / "manifest.csv")
     ]
 
 
-def _real(folder: Path) -> list[ManifestRow]:
-    """Return the rows, not hashed, of the 16 real photographs and their measured responses."""
+def _real(data: Path) -> list[ManifestRow]:
+    """Return the rows, not hashed, of real photographs, their crops and their measured responses."""
     rows = []
-    for case in _table(folder / "cases.csv"):
-        source, licence = f"{case['source_repo']}:{case['source_input']}", _licence(case["licence"])
-        photograph = f"{folder.name}/{case['input_file']}"
-        rows.append(ManifestRow(photograph, "real photograph", source, licence, MEASURED_ONLY, ""))
-        rows.append(_response(f"{folder.name}/gt/{case['id']}.csv", case["source_repo"], MEASURED_ONLY))
-    return rows
-
-
-def _real_bodies(folder: Path) -> list[ManifestRow]:
-    """Return the rows, not hashed, of the real photographs by fold, their crops and their measured responses."""
-    rows = []
-    for case in _table(folder / "cases.csv"):
-        source, licence = f"{case['source_repo']}:{case['source_dir']}", _licence(case["licence"])
+    for case in _table(data / "real" / "cases.csv"):
+        files = [f"real/{case['input_file']}"]
+        rows += _case(case, files, f"real/gt/{case['id']}.csv", case["source_input"], MEASURED_ONLY)
+    for case in _table(data / "real_bodies" / "cases.csv"):
+        files = [f"real_bodies/{name}" for name in (case["file"], case["crop"]) if name]
         use = f"{MEASURED_ONLY}, fold {case['fold']}"
-        for name in filter(None, (case["file"], case["crop"])):
-            rows.append(ManifestRow(f"{folder.name}/{name}", "real photograph", source, licence, use, ""))
-        rows.append(_response(f"{folder.name}/{case['gt']}", case["source_repo"], use))
+        rows += _case(case, files, f"real_bodies/{case['gt']}", case["source_dir"], use)
     return rows
 
 
-def _response(file: str, repository: str, use: str) -> ManifestRow:
-    """Return the row, not hashed, of a response that was measured from an exposure stack."""
-    source = f"measured from an exposure stack of {repository}"
-    return ManifestRow(file, "measured response", source, "measured figures", use, "")
-
-
-def _licence(stated: str) -> str:
-    """Return the licence that a table of photographs states."""
-    return NO_LICENCE if stated.startswith("none") else stated
+def _case(case: dict[str, str], files: list[str], response: str, source: str, use: str) -> list[ManifestRow]:
+    """Return the rows, not hashed, of the files of a real photograph and of its measured response."""
+    repository, licence = case["source_repo"], NO_LICENCE if case["licence"].startswith("none") else case["licence"]
+    measured = f"measured from an exposure stack of {repository}"
+    return [
+        *(ManifestRow(file, "real photograph", f"{repository}:{source}", licence, use) for file in files),
+        ManifestRow(response, "measured response", measured, "measured figures", use),
+    ]
 
 
 def _table(path: Path) -> list[dict[str, str]]:

@@ -16,9 +16,10 @@ from crfnet_core.types import Float64Array
 from training.data.curves import DORF_FILE, CurveSource, read_dorf
 from training.data.families import ResponseFamilies
 from training.data.in_camera import InCameraResponses
-from training.data.real.bodies import measured_bodies
-from training.data.real.photographs import RealPhotograph
+from training.data.real.photographs import RealPhotograph, measured_bodies
 from training.data.splits import held_out_curves
+
+SEED = 2017
 
 #: Responses of each family. Of film the curves of DoRF themselves come first.
 COUNTS = {
@@ -33,9 +34,7 @@ COUNTS = {
 }
 
 
-def make_bank(
-    data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False, seed: int = 2017
-) -> ResponseBank:
+def make_bank(data: Path, *, without: RealPhotograph | None = None, without_held_out: bool = False) -> ResponseBank:
     """Return the bank of the folder `data`, which holds dorf, real and real_bodies.
 
     `without` leaves out the bodies of a photograph's fold, as `measured_bodies` does, and `without_held_out` the curves
@@ -50,7 +49,7 @@ def make_bank(
     rows: list[Float64Array] = []
     for number, (family, count) in enumerate(COUNTS.items()):
         known = dorf if family is Family.FILM else dorf[:0]
-        rows += [known, families.draw(family, count - len(known), np.random.default_rng([seed, number]))]
+        rows += [known, families.draw(family, count - len(known), np.random.default_rng([SEED, number]))]
     members = [family for family, count in COUNTS.items() for _ in range(count)]
     return ResponseBank(np.concatenate(rows).astype(np.float32), tuple(members))
 

@@ -77,10 +77,7 @@ def split_scenes(folder: Path, *, with_imported: bool = True) -> dict[str, list[
 
 
 def read_scenes(folder: Path, split: str) -> list[Scene]:
-    """Return the scenes of a split, from the EXR files of `folder`.
-
-    Raise CRFNetError if the split has no scene.
-    """
+    """Return the scenes of a split, from the EXR files of `folder`; CRFNetError if it has none."""
     scenes = split_scenes(folder)[split]
     if not scenes:
         raise CRFNetError(f"{folder}: too few scenes, none is left for the split {split}; add to the published ones")

@@ -39,7 +39,7 @@ def curve_groups(dorf: Float64Array) -> IndexArray:
     return np.argsort(np.argsort(first))[groups]
 
 
-def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray:
+def held_out_curves(dorf: Float64Array) -> IndexArray:
     """Return the sorted indices of the curves that P2 holds out: whole groups, a fifth of the curves.
 
     The groups come in random order, and each is held out if it still fits into `HELD_OUT_FRACTION` of the curves.
@@ -47,7 +47,7 @@ def held_out_curves(dorf: Float64Array, *, seed: int = SPLIT_SEED) -> IndexArray
     groups = curve_groups(dorf)
     sizes, room = np.bincount(groups), round(HELD_OUT_FRACTION * len(dorf))
     chosen = []
-    for group in np.random.default_rng(seed).permutation(len(sizes)):
+    for group in np.random.default_rng(SPLIT_SEED).permutation(len(sizes)):
         if sizes[group] <= room:
             chosen.append(group)
             room -= sizes[group]

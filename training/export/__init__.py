@@ -3,6 +3,6 @@
 model_folder  the command that writes the folder
 onnx_graph    the graph, its matrices in half precision
 golden        predictions of PyTorch that onnxruntime must repeat
-uncertainty   the fit of the uncertainty model
+cameras       the command that writes the library of measured cameras
 model_card    the command that adds measured figures and writes the card
 """

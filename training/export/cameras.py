@@ -7,8 +7,6 @@ body has an entry for each setting, by the most certain stack.
 from __future__ import annotations
 
 import argparse
-import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 from crfnet_core.library import Camera, CameraLibrary
@@ -24,18 +22,17 @@ def measured_cameras(data: Path) -> list[Camera]:
     ]
 
 
-def main(argv: Sequence[str] | None = None) -> int:
+def main() -> None:
     """Write the library anew."""
-    parser = argparse.ArgumentParser(prog="training.export.cameras", description="Write the library of cameras.")
+    parser = argparse.ArgumentParser(description="Write the library of cameras.")
     parser.add_argument("data", type=Path, help="the data folder, with real_bodies")
-    cameras = measured_cameras(parser.parse_args(argv).data)
+    cameras = measured_cameras(parser.parse_args().data)
     library = CameraLibrary.shipped()
     for camera in library.cameras():
         library.remove(camera.name)
     for camera in cameras:
         print(library.save(camera).name, camera.basis)
-    return 0
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    main()

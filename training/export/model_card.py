@@ -26,38 +26,32 @@ ALL_CURVES = (
     "All 201 DoRF curves\nare in training. So P0 below is the accuracy on new photographs of known responses, and"
     " the real photographs give\nthe accuracy on new cameras."
 )
-
 HELD_OUT_CURVES = (
     "{count} of the 201 DoRF curves, and all mixtures with them, are left out: P2 below is measured on these."
 )
-
-#: The sentence on P2, if the report holds it.
-P2 = " P2: the same of responses held out of training."
 
 
 def introduction(folder: Path, config: ModelConfig) -> str:
     """Return the text before the figures."""
     held_out = len(config.training.get("held_out_curves", ()))
-    return (
-        (TEMPLATES / f"{config.input_name}.md")
-        .read_text()
-        .format(
-            **asdict(config),
-            size=(folder / "model.onnx").stat().st_size / 1e6,
-            statistics=LENGTH,
-            scenes=VALIDATION_SCENES,
-            curves=HELD_OUT_CURVES.format(count=held_out) if held_out else ALL_CURVES,
-        )
+    template = (TEMPLATES / f"{config.input_name}.md").read_text()
+    return template.format(
+        **asdict(config),
+        size=(folder / "model.onnx").stat().st_size / 1e6,
+        statistics=LENGTH,
+        scenes=VALIDATION_SCENES,
+        curves=HELD_OUT_CURVES.format(count=held_out) if held_out else ALL_CURVES,
     )
 
 
 def card_text(folder: Path, config: ModelConfig, report: Report) -> str:
     """Return the text of the model card."""
+    on_p2 = " P2: the same of responses held out of training." if report.table("P2") else ""
     parts = [
         introduction(folder, config),
         "## Accuracy\n",
         "P0: known responses, each at one of five exposures (s_crf x 0.6 to 1.4), on held-out scenes, 8 bits."
-        f"{P2 if report.table('P2') else ''} P4: real photographs with measured responses, means over bodies, with a"
+        f"{on_p2} P4: real photographs with measured responses, means over bodies, with a"
         " prior that has not seen the bodies of the photograph's fold; its numbers (Eq. 24 of docs/METHOD.md) were"
         " chosen on them. E_lin is x 1e-2, shape is the shape error in stops. To compare: the paper's network has an"
         f" E_est of {paper.OVERALL.estimation:.2f} on P0, on photographs of its own.\n",

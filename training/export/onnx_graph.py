@@ -26,12 +26,9 @@ Network = TypeVar("Network", bound=nn.Module)
 
 @dataclass(frozen=True)
 class Signature:
-    """Inputs and outputs of a network; see `crfnet_core.network.ModelConfig`.
+    """The input, with its shape for one window, and the outputs of a network: `crfnet_core.network.ModelConfig`.
 
-    input_name: "statistics" or "windows"
-    input_shape: shape of the input of one window
-    output_names: names of the outputs, in their order
-    weights: number of EMoR weights that its evidence is about
+    `weights` is the number of EMoR weights that its evidence is about.
     """
 
     input_name: str

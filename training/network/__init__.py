@@ -3,7 +3,6 @@
 shards               statistics of simulated photographs on disk
 start                where a run begins: a checkpoint, a model folder, or random weights
 features             statistics as the input of the network
-conjugate_gradients  the linear solver inside the graph
 model                the network
 loss                 how probable the evidence makes the true response, and how far the mean answer is from it
 moving_average       the average of the weights, which a run yields

@@ -18,7 +18,7 @@ from torch import Tensor
 
 from crfnet_core.files import atomic_write
 from training.network.model import NetworkConfig, PhotographNet
-from training.network.start import start_from, start_record
+from training.network.start import read_weights, start_record
 from training.network.train import CHECKPOINT
 from training.provenance import RUN_FILE, Record, read_run, write_json
 
@@ -33,63 +33,44 @@ def average(runs: Sequence[Path], shares: Sequence[float], out: Path) -> Path:
     if len(shares) != len(runs) or min(shares) <= 0:
         raise SystemExit("give each run a share above 0")
     records = [read_run(run) for run in runs]
-    if not _are_related(runs, records):
+    sources = [run / CHECKPOINT if (run / CHECKPOINT).exists() else run for run in runs]
+    if not _are_related(sources, records):
         raise SystemExit(
             "these runs cannot be averaged: their networks differ in size or in the weights they began from"
         )
-    networks = [_weights(run, record) for run, record in zip(runs, records, strict=True)]
+    net = PhotographNet(NetworkConfig(**records[0]["recipe"]["network"]))
+    networks = [net.state_dict() | read_weights(net, source) for source in sources]
     parts = [share / sum(shares) for share in shares]
     out.mkdir(parents=True, exist_ok=True)
     with atomic_write(out / CHECKPOINT, overwrite=True) as temporary:
         torch.save({"net": weighted_mean(networks, parts)}, temporary)
     largest = records[parts.index(max(parts))]
-    write_json(out / RUN_FILE, largest | {"average": [_part(*one) for one in zip(runs, records, parts, strict=True)]})
+    averaged = [_part(*one) for one in zip(sources, records, parts, strict=True)]
+    write_json(out / RUN_FILE, largest | {"average": averaged})
     return out / CHECKPOINT
 
 
 def weighted_mean(networks: Sequence[dict[str, Tensor]], parts: Sequence[float]) -> dict[str, Tensor]:
     """Return the weighted mean of the states of networks; whole numbers (counts of batches) come from the first."""
-    return {
-        name: sum(
-            (part * network[name] for part, network in zip(parts, networks, strict=True)), torch.zeros_like(first)
-        )
-        if first.is_floating_point()
-        else first
-        for name, first in networks[0].items()
-    }
+    mean = dict(networks[0])
+    for name, first in networks[0].items():
+        if first.is_floating_point():
+            mean[name] = sum(part * network[name] for part, network in zip(parts, networks, strict=True))
+    return mean
 
 
-def _are_related(runs: Sequence[Path], records: Sequence[Record]) -> bool:
+def _are_related(sources: Sequence[Path], records: Sequence[Record]) -> bool:
     """Return whether all networks have one size, and began from the same weights or from one of the others."""
     sizes = {json.dumps(record["recipe"]["network"], sort_keys=True) for record in records}
-    starts = {record["start"] for record in records} - {start_record(_source(run)) for run in runs}
+    starts = {record["start"] for record in records} - {start_record(source) for source in sources}
     return len(sizes) == 1 and len(starts) == 1
 
 
-def _source(folder: Path) -> Path:
-    """Return what another run is given to start from this one: the folder of a model, or the checkpoint of a run."""
-    return folder if _is_model(folder) else folder / CHECKPOINT
-
-
-def _is_model(folder: Path) -> bool:
-    """Return whether a folder holds an exported model, not a run."""
-    return not (folder / CHECKPOINT).exists()
-
-
-def _weights(folder: Path, record: Record) -> dict[str, Tensor]:
-    """Return the weights of a run, or of a model folder."""
-    if not _is_model(folder):
-        return dict(torch.load(folder / CHECKPOINT, weights_only=True)["net"])
-    net = PhotographNet(NetworkConfig(**record["recipe"]["network"]))
-    start_from(net, folder)
-    return dict(net.state_dict())
-
-
-def _part(run: Path, record: Record, part: float) -> Record:
-    """Return what is recorded of one of the runs."""
+def _part(source: Path, record: Record, part: float) -> Record:
+    """Return the record of one of the runs."""
     return {
         "share": round(part, 6),
-        "checkpoint": start_record(_source(run)),
+        "checkpoint": start_record(source),
         "commit": record["commit"],
         "recipe": record["recipe"],
         "data": {key: record["data"][key] for key in ("files", "sha256")},

@@ -14,7 +14,6 @@ from crfnet_core.statistics import COUNTS_OF, SHAPES, unpack
 from crfnet_core.statistics.channel_equations import EQUATION_LEVELS, EQUATION_STRIDES
 from crfnet_core.statistics.edges import GRID
 from crfnet_core.statistics.gradients import LEVELS, STRIDES
-from training.network.conjugate_gradients import conjugate_gradients
 
 #: Weights of the smoothness penalty (squared second differences of the curvature), relative to the mean diagonal of
 #: the normal equations. The system is solved once with each; both solutions are features.
@@ -35,6 +34,9 @@ SAMPLE_PSEUDO_COUNT, CANDIDATE_PSEUDO_COUNT = 4.0, 50.0
 
 #: The same for the curvature: evidence, in squared codes, that it is 0 at a level.
 CURVATURE_PSEUDO_EVIDENCE = 3.0
+
+#: A system of equations counts as solved when the squared residual has fallen to this fraction of the first one.
+CONVERGED = 1e-10
 
 #: Unit of the curvature k = g'' / g' as a feature, and the largest absolute value of it in this unit.
 CURVATURE_UNIT, CURVATURE_LIMIT = 10, 3
@@ -113,3 +115,30 @@ def _second_differences() -> Tensor:
     """Return D' D, shape (EQUATION_LEVELS, EQUATION_LEVELS), for the second differences D of neighboring levels."""
     differences = torch.diff(torch.eye(EQUATION_LEVELS), n=2, dim=0)
     return differences.T @ differences
+
+
+def conjugate_gradients(matrix: Tensor, right: Tensor, *, steps: int) -> Tensor:
+    """Return x of A x = r, shape (..., L), for symmetric positive definite A (..., L, L) and r (..., L).
+
+    Conjugate gradients are made of products alone, which every ONNX runtime has. The residuals are preconditioned with
+    the diagonal. The number of steps is fixed, because a graph has no loop that ends by itself; a system that is solved
+    before changes no more.
+    """
+    inverse_diagonal = 1 / torch.diagonal(matrix, dim1=-2, dim2=-1)
+    x, residual = torch.zeros_like(right), right
+    direction = inverse_diagonal * residual
+    size = first = (residual * direction).sum(-1, keepdim=True)
+    for _ in range(steps):
+        is_unsolved = size > CONVERGED * first
+        product = (matrix @ direction[..., None]).squeeze(-1)
+        length = _safe_ratio(size, (direction * product).sum(-1, keepdim=True), is_unsolved)
+        x, residual = x + length * direction, residual - length * product
+        preconditioned = inverse_diagonal * residual
+        before, size = size, (residual * preconditioned).sum(-1, keepdim=True)
+        direction = preconditioned + _safe_ratio(size, before, is_unsolved) * direction
+    return x
+
+
+def _safe_ratio(part: Tensor, whole: Tensor, chosen: Tensor) -> Tensor:
+    """Return part / whole where chosen, else 0; adding a tiny number would not do: graph optimizers drop these."""
+    return torch.where(chosen, part, 0) / torch.where(chosen, whole, 1)

@@ -75,14 +75,9 @@ def log_likelihoods(evidence: EvidenceTensors, weights: Tensor, families: Tensor
     `Evidence.log_likelihoods` computes the same.
     """
     location, factor, log_odds = evidence
-    squares = _squares(weights[..., :EVIDENCE_WEIGHTS], location, factor)
+    turned = weights[..., :EVIDENCE_WEIGHTS] @ factor  # (N, M, 5)
+    squares = ((turned - (location[:, None] @ factor)) ** 2).sum(-1)
     exponent = (DEGREES_OF_FREEDOM + EVIDENCE_WEIGHTS) / 2
     likelihoods = -exponent * torch.log1p(squares / DEGREES_OF_FREEDOM) * (families == ORDINARY)
     odds = torch.cat([torch.zeros_like(log_odds[:, :1]), log_odds], dim=1)  # (N, 4)
     return likelihoods + torch.gather(odds, 1, families.expand(len(odds), -1))
-
-
-def _squares(weights: Tensor, location: Tensor, factor: Tensor) -> Tensor:
-    """Return the squared distances (N, M) of weights (1 or N, M, 5) from locations (N, 5), measured by the factors."""
-    turned = weights @ factor  # (N, M, 5)
-    return ((turned - (location[:, None] @ factor)) ** 2).sum(-1)

@@ -9,13 +9,7 @@ from torch import Tensor, nn
 
 from crfnet_core.posterior import UNUSUAL
 from crfnet_core.posterior.evidence import EVIDENCE_WEIGHTS
-from training.network.features import (
-    CANDIDATE_FEATURES,
-    EDGE_FEATURES,
-    EQUATION_FEATURES,
-    LEVEL_FEATURES,
-    Features,
-)
+from training.network.features import CANDIDATE_FEATURES, EDGE_FEATURES, EQUATION_FEATURES, LEVEL_FEATURES, Features
 
 #: Standard deviations to which normalized features are clipped: a photograph may be unlike all training photographs.
 LARGEST_FEATURE = 6
@@ -45,11 +39,7 @@ class NetworkConfig:
 
 
 class KindLayer(nn.Module):
-    """One kind of features to a vector: normalization, kind dropout in training, and a dense layer.
-
-    features: how many there are
-    config: the sizes of the network
-    """
+    """One kind of features to a vector: normalization, kind dropout in training, and a dense layer."""
 
     def __init__(self, features: int, config: NetworkConfig) -> None:
         super().__init__()

@@ -20,8 +20,8 @@ from crfnet_core.files import atomic_write
 from crfnet_core.posterior import UNUSUAL, Family
 from crfnet_core.response.emor import EmorBasis
 from crfnet_core.statistics import window_statistics
-from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawsResponses, read_base_curves, read_dorf
-from training.data.families import EditedResponses
+from training.data.curves import BASE_CURVES_FILE, DORF_FILE, CurveSource, DrawResponse, read_base_curves, read_dorf
+from training.data.families import edited
 from training.data.manifest import training_digest
 from training.data.scenes import read_scenes
 from training.data.splits import held_out_curves
@@ -112,12 +112,12 @@ def photograph_source(data: Path, split: str) -> PhotographSource:
     dorf = read_dorf(data / DORF_FILE)
     is_held_out = np.isin(np.arange(len(dorf)), held_out_curves(dorf))
     bases = tuple(read_base_curves(data / BASE_CURVES_FILE).values())
-    in_camera = CurveSource(dorf, bases, camera_fraction=1)
-    sets: dict[CurveSet, DrawsResponses] = {
-        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0),
-        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0),
+    in_camera = CurveSource(dorf, bases, camera_fraction=1).draw
+    sets: dict[CurveSet, DrawResponse] = {
+        CurveSet.DORF: CurveSource(dorf[~is_held_out], (), camera_fraction=0).draw,
+        CurveSet.HELD_OUT: CurveSource(dorf[is_held_out], (), camera_fraction=0).draw,
         CurveSet.IN_CAMERA: in_camera,
-        CurveSet.EDITED: EditedResponses(in_camera),
+        CurveSet.EDITED: lambda rng: edited(in_camera(rng)[None], rng)[0],
         **dict.fromkeys((CurveSet.LINEAR, CurveSet.LOG, CurveSet.UNEXPLAINED), in_camera),
     }
     held_out = float(is_held_out.mean())
@@ -157,10 +157,7 @@ def shard_path(folder: Path, split: str, number: int) -> Path:
 
 
 def shard_files(folder: Path, split: str) -> list[Path]:
-    """Return the shard files of a split, sorted.
-
-    Raise FileNotFoundError if there are none.
-    """
+    """Return the shard files of a split, sorted; FileNotFoundError if there are none."""
     files = sorted(folder.glob(f"{split}_*.npz"))
     if not files:
         raise FileNotFoundError(
@@ -193,11 +190,10 @@ def main() -> None:
     parser.add_argument("--out", type=Path, required=True, help="folder of the shards")
     parser.add_argument("--split", default="train", choices=["train", "validation"])
     parser.add_argument("--photographs", type=int, default=50_000)
-    parser.add_argument("--first", type=int, default=0, help="number of the first shard: others are other photographs")
     parser.add_argument("--workers", type=int, default=2)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    shards = range(options.first, options.first + math.ceil(options.photographs / SHARD))
+    shards = range(math.ceil(options.photographs / SHARD))
     numbers = [n for n in shards if not shard_path(options.out, options.split, n).exists()]
     if numbers:
         record_making(options.out, options.split, training_digest(options.data))

@@ -20,14 +20,17 @@ HALF_SUFFIX = "_half"
 
 
 def start_from(net: PhotographNet, source: Path) -> None:
-    """Copy the weights of a checkpoint or of a model folder into the network, in place.
+    """Copy the weights of a checkpoint or of a model folder into the network, in place, as far as it has them."""
+    net.load_state_dict(read_weights(net, source), strict=False)
 
-    Weights that a checkpoint lacks stay as they are. The matrices of a model folder were rounded to half precision.
-    Raise SystemExit if a model folder holds another network.
+
+def read_weights(net: PhotographNet, source: Path) -> dict[str, Tensor]:
+    """Return the weights of a checkpoint, or of a model folder, whose matrices were rounded to half precision.
+
+    Raise SystemExit if a model folder holds another network than one like `net`.
     """
     file = _weights_file(source)
-    state = torch.load(file, weights_only=True)["net"] if file == source else _packaged_state(net, file)
-    net.load_state_dict(state, strict=False)
+    return dict(torch.load(file, weights_only=True)["net"]) if file == source else _packaged_state(net, file)
 
 
 def start_record(source: Path | None) -> str:
@@ -39,14 +42,6 @@ def start_record(source: Path | None) -> str:
     return f"{name}, SHA-256 {file_sha256(file)}"
 
 
-def graph_tensors(graph: Path) -> dict[str, Tensor]:
-    """Return name -> constant of an exported graph, in single precision."""
-    return {
-        tensor.name.removesuffix(HALF_SUFFIX): torch.from_numpy(numpy_helper.to_array(tensor).astype("float32"))
-        for tensor in onnx.load(graph).graph.initializer
-    }
-
-
 def _weights_file(source: Path) -> Path:
     """Return the file that holds the weights."""
     return source / "model.onnx" if source.is_dir() else source
@@ -54,7 +49,10 @@ def _weights_file(source: Path) -> Path:
 
 def _packaged_state(net: PhotographNet, graph: Path) -> dict[str, Tensor]:
     """Return the parameters in a graph; the export transposed some, and their shapes stand for the lost names."""
-    tensors = graph_tensors(graph)
+    tensors = {
+        tensor.name.removesuffix(HALF_SUFFIX): torch.from_numpy(numpy_helper.to_array(tensor).astype("float32"))
+        for tensor in onnx.load(graph).graph.initializer
+    }
     state = {}
     for name, parameter in net.named_parameters():
         shape = tuple(parameter.shape)

@@ -37,17 +37,13 @@ COMPETITORS = 2048
 class TrainingConfig:
     """The recipe: AdamW under one cycle of the learning rate, and a moving average of the weights.
 
-    The average (Polyak & Juditsky, 1992) is what a run yields. It takes the place of most of the decrease of the
-    learning rate: the weights go on moving, and their mean does better on new scenes (training/EXPERIMENTS.md).
+    A run yields the average, which takes the place of most of the decrease of the learning rate: the weights go on
+    moving, and their mean does better on new scenes (training/EXPERIMENTS.md).
 
-    epochs, batch: passes over the photographs, and photographs of a step
-    learning_rate, weight_decay: the highest learning rate of the cycle, and the decay of AdamW
     last_rate: the learning rate at the end of the cycle, as a part of the highest; above 0
-    averaged_steps: steps that the moving average of the weights reaches back, exponentially; 1 for no average
-    all_windows: fraction of the training photographs seen with all their windows; of the others, some are left out at
-        random
-    without_held_out: whether to leave out the photographs whose response is, or is mixed from, a curve that P2 holds
-        out
+    averaged_steps: steps that the average reaches back, exponentially; 1 for no average
+    all_windows: fraction of the photographs seen with all their windows; of the others, some are left out at random
+    without_held_out: whether to leave out photographs whose response is, or is mixed from, a curve that P2 holds out
     mixed: whether to compute in bfloat16 where that is safe; slow on processors that emulate it
     seed: of the initial weights and of the order of the photographs
     """
@@ -99,10 +95,10 @@ class TrainingState:
 def train(shards: Path, run: Path, config: TrainingConfig, network: NetworkConfig, *, init: Path | None = None) -> Path:
     """Train until the last epoch, resuming what `run` holds, and return the path of the last checkpoint.
 
-    The folder `shards` comes from `training.network.shards`. The folder `run` gets run.json, last.pt, and log.csv with
-    the epoch, the training loss, and of the validation photographs the loss and the distance between the posterior's
-    mean and the truth, in units of E_est. The run starts from the weights of `init`, a checkpoint or a model folder, as
-    far as it has them. Raise SystemExit if `run` holds a run of another recipe or on other shards.
+    The folder `run` gets run.json, last.pt, and log.csv with the epoch, the training loss, and of the validation
+    photographs the loss and the distance between the posterior's mean and the truth, in units of E_est. The run starts
+    from the weights of `init`, a checkpoint or a model folder, as far as it has them. Raise SystemExit if `run` holds a
+    run of another recipe or on other shards.
     """
     photographs, held_out = _split(shards, config)
     files = [path for split in ("train", "validation") for path in shard_files(shards, split)]
@@ -201,34 +197,21 @@ def _random_windows(shape: torch.Size, all_windows: float) -> Tensor:
 
 def main() -> None:
     """Train as the options say."""
-    defaults, sizes = TrainingConfig(), NetworkConfig()
+    defaults = TrainingConfig()
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--shards", type=Path, required=True, help="folder written by training.network.shards")
     parser.add_argument("--run", type=Path, required=True, help="folder of the checkpoints and the log")
     parser.add_argument("--epochs", type=int, default=defaults.epochs)
     parser.add_argument("--learning-rate", type=float, default=defaults.learning_rate)
-    parser.add_argument("--weight-decay", type=float, default=defaults.weight_decay)
-    parser.add_argument(
-        "--last-rate", type=float, default=defaults.last_rate, help="learning rate at the end, as a part of the highest"
-    )
-    parser.add_argument(
-        "--averaged-steps",
-        type=float,
-        default=defaults.averaged_steps,
-        help="steps that the average of the weights reaches back; 1 for none",
-    )
     parser.add_argument("--without-held-out", action="store_true", help="leave out the curves that P2 measures on")
-    parser.add_argument("--dropout", type=float, default=sizes.dropout)
-    parser.add_argument("--width", type=int, default=sizes.width)
     parser.add_argument(
         "--float32", dest="mixed", action="store_false", help="no bfloat16: faster on processors without AVX-512"
     )
     parser.add_argument("--init", type=Path, help="a checkpoint or a model folder to start from")
     parser.add_argument("--seed", type=int, default=defaults.seed)
     options = vars(parser.parse_args())
-    network = NetworkConfig(dropout=options.pop("dropout"), width=options.pop("width"))
     shards, run, init = (options.pop(name) for name in ("shards", "run", "init"))
-    last = train(shards, run, TrainingConfig(**options), network, init=init)
+    last = train(shards, run, TrainingConfig(**options), NetworkConfig(), init=init)
     print((last.parent / "log.csv").read_text(), end="")
 
 

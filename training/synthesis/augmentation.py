@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
-from PIL import Image
-from scipy.ndimage import gaussian_filter, uniform_filter1d
+from scipy.ndimage import gaussian_filter
 
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
 from training.data.scenes import LUMINANCE
+from training.synthesis.picture import box_blurred, resized
 
 #: Fractions of photographs: without color, under an illumination gradient, with another large-scale contrast, and
 #: with a power law on the irradiance.
@@ -38,10 +38,9 @@ def relight(
 ) -> Float32Array:
     """Return windows (N, S, S, 3), float32, some under a smooth illumination gradient, some with other contrast.
 
-    The scenes are few, and another distribution of light makes other photographs of them. A power law on the
-    irradiance changes how light mixes at edges, which is what the network measures, so the power stays near 1. A
-    change of the contrast at large scale leaves edges as they are, so it may be large: a fraction `contrasted` of the
-    windows has one, and the logarithm of the factor on the contrast is `contrast` on average.
+    A power law on the irradiance changes how light mixes at edges, which the network measures, so the power stays near
+    1. A change of the contrast at large scale leaves edges as they are, so it may be large: a fraction `contrasted` of
+    the windows has one, and the logarithm of the factor on the contrast is `contrast` on average.
     """
     if rng.random() < GRADIENT:
         light = light * illumination_gradient(len(light), rng, side=light.shape[1])
@@ -66,16 +65,14 @@ def contrast_gain(light: Float32Array, rng: np.random.Generator, *, mean: float 
     log_luminance = np.log(np.maximum(light[:, ::4, ::4] @ LUMINANCE, 1e-6))  # (N, C, C)
     radius = rng.uniform(2, 10) * light.shape[1] / WINDOW_SIZE
     coarse = gaussian_filter(log_luminance, (0, radius, radius))
-    side = light.shape[1:3]
-    images = (Image.fromarray(one).resize(side, Image.Resampling.BILINEAR) for one in coarse - coarse.mean())
-    smooth = np.stack([np.asarray(image) for image in images])
+    smooth = resized(coarse - coarse.mean(), light.shape[1])
     return np.exp(np.float32(np.exp(rng.normal(mean, 0.35)) - 1) * smooth)[..., None]
 
 
 def defocused(light: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return windows (N, S, S, 3) with parts out of focus, as photographs have them; panoramas are sharp everywhere."""
-    radius = int(rng.integers(1, 6) * light.shape[1] / WINDOW_SIZE)
-    soft = np.stack([_soft(window, radius) for window in light])
+    size = 2 * int(rng.integers(1, 6) * light.shape[1] / WINDOW_SIZE) + 1
+    soft = np.stack([box_blurred(box_blurred(light[..., channel], size), size) for channel in range(3)], axis=-1)
     stops = np.log2(illumination_gradient(len(light), rng, side=light.shape[1]))
     share = np.clip(0.5 + 4 * stops + np.float32(rng.uniform(-1, 1)), 0, 1)
     return light + share * (soft - light)
@@ -91,15 +88,10 @@ def untextured(light: Float32Array, rng: np.random.Generator, *, reach: tuple[fl
     size = 2 * int(rng.uniform(*reach) * light.shape[1] / WINDOW_SIZE) + 1
     variance = np.float32(np.exp(rng.uniform(*np.log(TEXTURE))) ** 2)
     logarithm = np.log(np.maximum(light @ LUMINANCE, 1e-6))  # (N, S, S)
-    mean = _box_blurred(logarithm, size)
-    local = np.maximum(_box_blurred(logarithm**2, size) - mean**2, 0)
+    mean = box_blurred(logarithm, size)
+    local = np.maximum(box_blurred(logarithm**2, size) - mean**2, 0)
     gain = np.exp(variance / (variance + local) * (mean - logarithm))
     return light * gain[..., None]
-
-
-def _box_blurred(planes: Float32Array, size: int) -> Float32Array:
-    """Return the means of size x size samples of planes (N, S, S)."""
-    return uniform_filter1d(uniform_filter1d(planes, size, axis=1), size, axis=2)
 
 
 def composited(light: Float32Array, other: Float32Array, rng: np.random.Generator) -> Float32Array:
@@ -115,11 +107,3 @@ def composited(light: Float32Array, other: Float32Array, rng: np.random.Generato
     beyond = np.cos(angle) * position[:, None] + np.sin(angle) * position[None, :] - distance
     coverage = np.clip(beyond + 0.5, 0, 1)[..., None].astype(np.float32)
     return light * (1 - coverage) + other * exposure * coverage
-
-
-def _soft(window: Float32Array, radius: int) -> Float32Array:
-    """Return one window, (S, S, 3), under two boxes of 2 radius + 1 samples along each side."""
-    planes = [np.ascontiguousarray(window[..., channel]) for channel in range(3)]
-    for axis in (0, 1, 0, 1):
-        planes = [uniform_filter1d(plane, 2 * radius + 1, axis=axis) for plane in planes]
-    return np.stack(planes, axis=-1)

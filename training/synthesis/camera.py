@@ -10,6 +10,7 @@ from __future__ import annotations
 import io
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from PIL import Image
@@ -25,21 +26,16 @@ TARGET_BRIGHTNESS = 0.45
 #: Factors on the automatic exposure of a test photograph (CRF-net paper, Table 2).
 EXPOSURE_FACTORS = (0.6, 0.8, 1.0, 1.2, 1.4)
 
-#: Rows captured at a time where no step looks at neighboring samples: the largest photographs then fit into memory.
-ROWS_AT_A_TIME = 512
-
 
 @dataclass(frozen=True)
 class Capture:
     """The steps from exposed light to the file, apart from the response; zeros and None leave a step out.
 
-    shot_noise: variance of the sensor's noise at irradiance 1, where the sensor clips; it is proportional to the
-        irradiance
-    read_noise: standard deviation of the sensor's noise that does not depend on the irradiance
+    shot_noise: variance of the noise at irradiance 1, where the sensor clips; it is proportional to the irradiance
+    read_noise: standard deviation of the noise that does not depend on the irradiance
     blur: standard deviation, in samples, of the Gaussian that blurs the irradiance
     sharpening: weight of the unsharp mask that is added to the brightness
     grain: standard deviation of the Gaussian noise that is added to the brightness, in [0, 1]
-    jpeg_quality: quality of the JPEG compression, 1 to 95 or more; None for none
     subsampled: whether JPEG keeps the chroma at half resolution (4:2:0) rather than at full (4:4:4)
     """
 
@@ -63,13 +59,6 @@ class Capture:
             jpeg_quality=int(rng.integers(45, 99)) if rng.random() < 0.75 else None,
             subsampled=bool(rng.random() < 0.65),
         )
-
-    @property
-    def splits_into_rows(self) -> bool:
-        """Whether rows captured one after the other equal the whole: no neighbors, and one noise at most."""
-        uses_neighbors = self.blur or self.sharpening or self.jpeg_quality is not None
-        noises = bool(self.shot_noise or self.read_noise) + bool(self.grain)
-        return not uses_neighbors and noises < 2
 
 
 def automatic_exposure(curve: Float64Array, luminance: Float32Array) -> float:
@@ -127,15 +116,11 @@ def render_photo(
 ) -> Photo:
     """Return the photograph of the light of `sensor_light`, as the estimator reads it from a file.
 
-    `curve`, (1024,), is the response of the camera, and `exposure` the irradiance per unit of light; irradiance above 1
-    clips. By default no other step of `capture` follows the response than 8-bit rounding. `is_gray` states that all
-    channels of the light are equal.
+    `curve`, (1024,), is the response, and `exposure` the irradiance per unit of light; irradiance above 1 clips. By
+    default only the response and 8-bit rounding follow. `is_gray` states that all channels of the light are equal.
     """
-    capture = capture or Capture()
-    rows = ROWS_AT_A_TIME if capture.splits_into_rows else len(light)
-    scale = np.float32(exposure)
-    parts = [simulate_capture(light[y : y + rows] * scale, curve, capture, rng) for y in range(0, len(light), rows)]
-    pixels = np.divide(np.concatenate(parts), np.float32(255), dtype=np.float32)
+    codes = simulate_capture(light * np.float32(exposure), curve, capture or Capture(), rng)
+    pixels = np.divide(codes, np.float32(255), dtype=np.float32)
     return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(name))
 
 
@@ -156,7 +141,9 @@ def simulate_capture(
     if capture.grain:
         brightness = brightness + capture.grain * rng.standard_normal(brightness.shape, dtype=np.float32)
     codes = np.rint(np.clip(brightness, 0, 1) * 255).astype(np.uint8)
-    return codes if capture.jpeg_quality is None else jpeg_compressed(codes, capture.jpeg_quality, capture.subsampled)
+    if capture.jpeg_quality is None:
+        return codes
+    return jpeg_compressed(codes, quality=capture.jpeg_quality, subsampling=2 if capture.subsampled else 0)
 
 
 def apply_response(irradiance: Float32Array, curve: Float64Array) -> Float32Array:
@@ -167,13 +154,13 @@ def apply_response(irradiance: Float32Array, curve: Float64Array) -> Float32Arra
     return table[below] + (position - below) * (table[below + 1] - table[below])
 
 
-def jpeg_compressed(codes: Uint8Array, quality: int, subsampled: bool) -> Uint8Array:
-    """Return photographs after JPEG compression, uint8 (..., H, W, 3)."""
+def jpeg_compressed(codes: Uint8Array, **options: Any) -> Uint8Array:
+    """Return photographs, uint8 (..., H, W, 3), after JPEG compression with Pillow's options."""
     if codes.ndim > 3:
-        return np.stack([jpeg_compressed(photograph, quality, subsampled) for photograph in codes])
+        return np.stack([jpeg_compressed(photograph, **options) for photograph in codes])
     file = io.BytesIO()
-    Image.fromarray(codes).save(file, "JPEG", quality=quality, subsampling=2 if subsampled else 0)
-    return np.asarray(Image.open(file).convert("RGB"))
+    Image.fromarray(codes).save(file, "JPEG", **options)
+    return np.asarray(Image.open(file))
 
 
 def blurred(pixels: Float32Array, sigma: float) -> Float32Array:

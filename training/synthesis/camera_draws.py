@@ -34,12 +34,6 @@ class FrameKind(StrEnum):
 KIND_FRACTIONS = {FrameKind.PLAIN: 0.7, FrameKind.NATIVE: 0.14, FrameKind.SAMPLED: 0.04, FrameKind.SCALED: 0.12}
 
 
-def draw_kind(rng: np.random.Generator) -> FrameKind:
-    """Return a random kind of frame."""
-    kinds = list(KIND_FRACTIONS)
-    return kinds[rng.choice(len(kinds), p=list(KIND_FRACTIONS.values()))]
-
-
 @dataclass(frozen=True)
 class Frames:
     """The frames that the windows of a photograph come from: how many, and the samples along each of their sides."""
@@ -69,7 +63,7 @@ def draw_development(kind: FrameKind, rng: np.random.Generator) -> Development:
         lens_blur=rng.uniform(*LENS_BLUR[kind]) if rng.random() < BLURRED[kind] else 0.0,
         glare=rng.uniform(0, 0.05),
         sensor=_sensor(rng, noise=1.5 if kind is FrameKind.SAMPLED else 1),
-        tone_mapping=_tone_mapping(rng) if rng.random() < 0.2 else None,
+        tone_mapping=ToneMapping(rng.uniform(0.05, 0.35), rng.uniform(0.03, 0.15)) if rng.random() < 0.2 else None,
         keeps_hue=bool(rng.random() < 0.3),
         finish=_finish(rng),
         jpeg=_jpeg(rng),
@@ -91,11 +85,6 @@ def _sensor(rng: np.random.Generator, *, noise: float) -> Sensor:
         saturation=float(np.exp(rng.normal(-0.15, 0.3))),
         demosaicing=rng.choice((Demosaicing.BILINEAR, Demosaicing.GRADIENT_CORRECTED), p=(0.25, 0.75)),
     )
-
-
-def _tone_mapping(rng: np.random.Generator) -> ToneMapping:
-    """Return a local tone mapping."""
-    return ToneMapping(strength=rng.uniform(0.05, 0.35), radius=rng.uniform(0.03, 0.15))
 
 
 def _finish(rng: np.random.Generator) -> Finish:

@@ -17,7 +17,6 @@ import numpy as np
 import OpenImageIO as oiio
 
 from crfnet_core.errors import PhotoError
-from crfnet_core.files import atomic_write, atomic_write_text
 from crfnet_core.response.curve import SAMPLES, ResponseCurve
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.types import Float64Array, Uint8Array
@@ -49,10 +48,7 @@ def camera_response(irradiance: Float64Array, roll_off: float = ROLL_OFF, contra
 
 
 def read_scene(studio_light: str | Path) -> Float64Array:
-    """Return the linear scene, float64 (H, W, 3), any scale.
-
-    Raise PhotoError if the file cannot be read.
-    """
+    """Return the linear scene, float64 (H, W, 3), any scale; PhotoError if the file cannot be read."""
     image = oiio.ImageBuf(str(studio_light))
     if image.has_error or not image.initialized:
         raise PhotoError(f"{studio_light}: cannot be read; give the forest.exr of Blender's studio lights")
@@ -68,37 +64,27 @@ def photograph(scene: Float64Array) -> Uint8Array:
 
 
 def write_photograph(path: Path, pixels: Uint8Array) -> None:
-    """Write the JPEG, without chroma subsampling and without metadata that names the software.
-
-    Raise PhotoError if the file cannot be written.
-    """
+    """Write the JPEG, without chroma subsampling and without metadata that names the software."""
     height, width, channels = pixels.shape
     spec = oiio.ImageSpec(width, height, channels, oiio.UINT8)
     spec["Compression"] = f"jpeg:{JPEG_QUALITY}"
     spec["jpeg:subsampling"] = "4:4:4"
-    with atomic_write(path, overwrite=True, error=PhotoError) as temporary:
-        image = oiio.ImageBuf(spec)
-        image.set_pixels(image.roi, pixels)
-        if not image.write(str(temporary)):
-            raise PhotoError(f"{path}: {image.geterror()}")
-
-
-def write_response(path: Path, curve: ResponseCurve) -> None:
-    """Write irradiance and brightness as CSV, one row per sample."""
-    rows = zip(np.linspace(0, 1, SAMPLES), curve.brightness, strict=True)
-    lines = ["irradiance,brightness", *(f"{e:.9g},{b:.9g}" for e, b in rows), ""]
-    atomic_write_text(path, "\n".join(lines), overwrite=True, error=PhotoError)
+    image = oiio.ImageBuf(spec)
+    image.set_pixels(image.roi, pixels)
+    if not image.write(str(path)):
+        raise PhotoError(f"{path}: {image.geterror()}")
 
 
 def main() -> None:
-    """Write plate.jpg and plate_response.csv."""
+    """Write plate.jpg and plate_response.csv, with a row of irradiance and brightness for each sample."""
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("studio_light", type=Path, help="forest.exr of Blender's studio lights")
-    parser.add_argument("--out", type=Path, default=Path("tests/data"), help="folder to write to (tests/data)")
-    options = parser.parse_args()
-    write_photograph(options.out / "plate.jpg", photograph(read_scene(options.studio_light)))
-    curve = ResponseCurve.from_samples(camera_response(np.linspace(0, 1, SAMPLES)))
-    write_response(options.out / "plate_response.csv", curve)
+    folder = Path("tests/data")
+    write_photograph(folder / "plate.jpg", photograph(read_scene(parser.parse_args().studio_light)))
+    irradiance = np.linspace(0, 1, SAMPLES)
+    samples = np.stack([irradiance, ResponseCurve.from_samples(camera_response(irradiance)).brightness], axis=1)
+    header = "irradiance,brightness"
+    np.savetxt(folder / "plate_response.csv", samples, fmt="%.9g", delimiter=",", header=header, comments="")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
 from training.data.scenes import LUMINANCE
-from training.synthesis.picture import Finish, Jpeg, gaussian, rounded, scaled, split
+from training.synthesis.picture import Finish, Jpeg, gaussian, resized, rounded, split
 from training.synthesis.sensor import Planes, Sensor
 
 #: Entries of the tables that the response is looked up in, which are fine enough not to leave gaps between codes.
@@ -26,8 +26,8 @@ ENTRIES = 1 << 16
 #: Irradiance beyond which a light adds no more glare: the few brightest samples would decide it otherwise.
 BRIGHTEST = 4.0
 
-#: Step between the samples of the luminance that local tone mapping is computed from.
-COARSE_STEP = 8
+#: Step between the samples of the luminance that local tone mapping is computed from, and irradiance that it keeps.
+COARSE_STEP, MIDDLE_GRAY = 8, 0.18
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,10 @@ class ToneMapping:
 
     strength: part of the large-scale contrast, in stops, that is taken out
     radius: standard deviation, as a fraction of the frame's side, of the Gaussian over the logarithm of the luminance
-    pivot: irradiance that keeps its value
     """
 
     strength: float
     radius: float = 0.08
-    pivot: float = 0.18
 
     def gain(self, planes: Planes) -> Float32Array:
         """Return the gain, float32 (N, S, S)."""
@@ -49,24 +47,19 @@ class ToneMapping:
             np.float32(weight) * plane[:, ::COARSE_STEP, ::COARSE_STEP]
             for weight, plane in zip(LUMINANCE, planes, strict=True)
         )
-        stops = np.log2(np.maximum(coarse, 1e-4) / self.pivot)
+        stops = np.log2(np.maximum(coarse, 1e-4) / MIDDLE_GRAY)
         radius = self.radius * stops.shape[1]
         gains = np.exp2(-self.strength * gaussian_filter(stops, (0, radius, radius))).astype(np.float32)
-        side = planes[0].shape[1]
-        large = [np.asarray(Image.fromarray(one).resize((side, side), Image.Resampling.BILINEAR)) for one in gains]
-        return np.stack(large)
+        return resized(gains, planes[0].shape[1])
 
 
 @dataclass(frozen=True)
 class Export:
-    """A picture made smaller after it was encoded, as for the web.
-
-    finish: the steps on the small picture
-    """
+    """A picture made smaller after it was encoded, as for the web; `finish` has the steps on the small picture."""
 
     resample: Image.Resampling
-    finish: Finish = field(default_factory=Finish)
-    jpeg: Jpeg | None = None
+    finish: Finish
+    jpeg: Jpeg
 
 
 @dataclass(frozen=True)
@@ -75,14 +68,10 @@ class Development:
 
     lens_blur: standard deviation, in samples of the frame, of the Gaussian that blurs the irradiance
     glare: part of the frame's mean irradiance that the lens spreads over all of it
-    sensor: noise, clipping, mosaic, colors
-    keeps_hue: whether the response applies to the largest and the smallest channel only, and the middle one keeps its
-        place between them in linear light
-    finish: the steps on the encoded picture
-    jpeg: the compression of the whole frame
-    export: scaling to the size of a window afterwards; without it the frame is point-sampled where it is larger
-    scatter: point sampling: samples of the frame by which each sample is displaced at most, at random. It stands for
-        texture that the scenes do not resolve.
+    keeps_hue: whether the response applies to the largest and the smallest channel only: see `hue_kept`
+    export: scaling to the size of a window; without it the frame is point-sampled where it is larger
+    scatter: samples of the frame by which point sampling displaces each sample at most, at random: it stands for
+        texture that the scenes do not resolve
     """
 
     lens_blur: float = 0.0
@@ -104,11 +93,11 @@ def develop(
     *,
     windows: int | None = None,
 ) -> Uint8Array:
-    """Return the windows of a photograph, uint8 (windows, 227, 227, 3).
+    """Return the windows of a photograph, uint8 (windows, 227, 227, 3), from the response, (1024,).
 
     `irradiance`, float32 (N, S, S, 3), is the exposed light of frames of S >= 227 samples along each side; above 1 it
-    clips. Where all channels are equal the photograph is gray, too: its noise has no color. `curve`, (1024,), is the
-    response. `windows` is a multiple of N, and N by default: a frame that is point-sampled may give several.
+    clips. Where all channels are equal the noise has no color. `windows` is a multiple of N, and N by default: a frame
+    that is point-sampled may give several.
     """
     planes = [np.ascontiguousarray(irradiance[..., channel]) for channel in range(3)]
     if development.lens_blur:
@@ -127,10 +116,10 @@ def develop(
     if development.export is None:
         return point_sampled(codes, (windows or len(codes)) // len(codes), development.scatter, rng)
     export = development.export
-    codes = scaled(codes, WINDOW_SIZE, export.resample)
+    codes = resized(codes, WINDOW_SIZE, export.resample)
     if export.finish != Finish():
         codes = rounded(export.finish.applied(split(codes)))
-    return codes if export.jpeg is None else export.jpeg.compressed(codes)
+    return export.jpeg.compressed(codes)
 
 
 def looked_up(plane: Float32Array, curve: Float64Array) -> Float32Array:
@@ -162,16 +151,14 @@ def point_sampled(codes: Uint8Array, each: int, scatter: int, rng: np.random.Gen
     step = side // WINDOW_SIZE
     starts = [((i + i // step) % step, i % step) for i in range(each)]
     first = np.arange(WINDOW_SIZE) * step
+    if not scatter:
+        return np.concatenate([codes[:, y::step, x::step][:, :WINDOW_SIZE, :WINDOW_SIZE] for y, x in starts])
     parts = []
     for y, x in starts:
-        if scatter:
-            rows, columns = rng.integers(scatter + 1, size=(2, count, WINDOW_SIZE, WINDOW_SIZE))
-            rows += (first + y)[:, None]
-            columns += first + x
-            rows, columns = np.minimum(rows, side - 1), np.minimum(columns, side - 1)
-            parts.append(codes[np.arange(count)[:, None, None], rows, columns])
-        else:
-            parts.append(codes[:, y::step, x::step][:, :WINDOW_SIZE, :WINDOW_SIZE])
+        rows, columns = rng.integers(scatter + 1, size=(2, count, WINDOW_SIZE, WINDOW_SIZE))
+        rows = np.minimum(rows + (first + y)[:, None], side - 1)
+        columns = np.minimum(columns + first + x, side - 1)
+        parts.append(codes[np.arange(count)[:, None, None], rows, columns])
     return np.concatenate(parts)
 
 

@@ -9,17 +9,17 @@ import numpy as np
 
 from crfnet_core.statistics.windows import WINDOW_SIZE, filled_bins, filled_codes
 from crfnet_core.types import Float32Array, Float64Array, IndexArray, Uint8Array
-from training.data.curves import IRRADIANCE, DrawsResponses
+from training.data.curves import IRRADIANCE, DrawResponse
 from training.data.scenes import Scene, dithered
 from training.synthesis.augmentation import composited, defocused, recolor, relight, untextured
 from training.synthesis.camera import Capture, automatic_exposure, simulate_capture
-from training.synthesis.camera_draws import WINDOWS, FrameKind, Frames, draw_development, draw_kind
+from training.synthesis.camera_draws import KIND_FRACTIONS, WINDOWS, FrameKind, Frames, draw_development
 from training.synthesis.development import develop, is_gray
 from training.synthesis.resampling import THUMBNAIL_STEP, AffineResampling
 from training.synthesis.unusual import UnusualKind, random_exposure, unusual_windows
 
-#: How many windows are drawn for each that is taken, by the codes that they fill.
-TRIED = 2
+#: Cameras that take the same windows of a scene, and windows drawn for each that is taken, by the codes that they fill.
+CAMERAS, TRIED = 3, 2
 
 #: Codes, of 256, that the best window of a training photograph fills at least.
 LEAST_FILLED = 120
@@ -64,8 +64,7 @@ class TrainingPhotograph:
     """Windows of one photograph and the truth about it.
 
     windows, uint8 (4, 227, 227, 3): code values
-    curve, (1024,): the response
-    curve_set: which of the source's `curve_sets` the response is from
+    curve, (1024,): the response, of this number in the source's `curve_sets`
     """
 
     windows: Uint8Array
@@ -81,21 +80,19 @@ class PhotographSource:
     curve_sets: responses, in sets of which a training run may leave some out
     fractions: fraction of the photographs with each set; their sum is 1
     luminance, (N,): see `training.synthesis.camera.automatic_exposure`
-    cameras: cameras that take the same windows of a scene
     unusual: number of a set -> kinds of pictures that no response explains, in place of photographs with its responses
     """
 
     scenes: list[Scene]
-    curve_sets: tuple[DrawsResponses, ...]
+    curve_sets: tuple[DrawResponse, ...]
     fractions: tuple[float, ...]
     luminance: Float32Array
-    cameras: int = 3
     unusual: Mapping[int, tuple[UnusualKind, ...]] = field(default_factory=dict)
 
     def draw(self, rng: np.random.Generator) -> list[TrainingPhotograph]:
-        """Return up to `cameras` photographs of the same windows."""
+        """Return up to `CAMERAS` photographs of the same windows."""
         fold = int(rng.integers(min(FOLDS, len(self.scenes))))
-        kind = draw_kind(rng)
+        kind = list(KIND_FRACTIONS)[rng.choice(len(KIND_FRACTIONS), p=list(KIND_FRACTIONS.values()))]
         frames = Frames.draw(kind, rng)
         light = self._light(self.scenes[fold::FOLDS], frames, rng)
         develops = kind is not FrameKind.PLAIN
@@ -106,13 +103,13 @@ class PhotographSource:
         contrasted, contrast = CONTRASTS[develops]
         light = recolor(light, rng, cast=CASTS[develops])
         light = relight(light, rng, contrasted=contrasted, contrast=contrast)
-        drawn = (self._photograph(light, kind, rng) for _ in range(self.cameras))
+        drawn = (self._photograph(light, kind, rng) for _ in range(CAMERAS))
         return [photo for photo in drawn if photo.curve_set in self.unusual or _fills_codes(photo)]
 
     def draw_curve(self, rng: np.random.Generator) -> tuple[Float64Array, int]:
         """Return a response, shape (1024,), and the number of its set."""
         chosen = int(rng.choice(len(self.fractions), p=self.fractions))
-        return self.curve_sets[chosen].draw(rng), chosen
+        return self.curve_sets[chosen](rng), chosen
 
     def _light(self, scenes: list[Scene], frames: Frames, rng: np.random.Generator) -> Float32Array:
         """Return the linear light of frames, (count, side, side, 3), of one, two or three of the scenes."""

@@ -5,7 +5,6 @@ Pictures are three planes, red, green and blue, each float32 (N, S, S) in [0, 1]
 
 from __future__ import annotations
 
-import io
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,13 +13,13 @@ from scipy.ndimage import gaussian_filter1d, uniform_filter1d
 
 from crfnet_core.photograph.metadata.jpeg import ANNEX_K_CHROMA, ANNEX_K_LUMA
 from crfnet_core.types import Float32Array, Uint8Array
+from training.synthesis.camera import jpeg_compressed
 from training.synthesis.sensor import Planes
 
 #: Weights of red, green and blue in the luma of JPEG (ITU-R BT.601).
 LUMA = (0.299, 0.587, 0.114)
 
-
-#: The tables of quantisation of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
+#: The tables of quantization of the JPEG standard (ITU-T T.81, Annex K) for luma and chroma, row by row.
 STANDARD_TABLES = tuple(np.array(table, np.float64) for table in (ANNEX_K_LUMA, ANNEX_K_CHROMA))
 
 
@@ -29,8 +28,7 @@ class Jpeg:
     """A JPEG compression.
 
     scale: factor on the standard's tables: 1 is quality 50 of the IJG's encoder, 0.2 quality 90, 0.04 quality 98
-    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie, as in
-        cameras
+    flatness: in [0, 1]: 0 for the standard's tables; the more, the nearer the steps of all frequencies lie
     subsampling: 0 for chroma at full resolution (4:4:4), 1 at half along rows (4:2:2), 2 at half along both (4:2:0)
     """
 
@@ -46,13 +44,7 @@ class Jpeg:
 
     def compressed(self, codes: Uint8Array) -> Uint8Array:
         """Return frames, uint8 (N, H, W, 3), as they come back from the file."""
-        tables = self.tables
-        pictures = []
-        for frame in codes:
-            file = io.BytesIO()
-            Image.fromarray(frame).save(file, "JPEG", qtables=tables, subsampling=self.subsampling)
-            pictures.append(np.asarray(Image.open(file)))
-        return np.stack(pictures)
+        return jpeg_compressed(codes, qtables=self.tables, subsampling=self.subsampling)
 
 
 @dataclass(frozen=True)
@@ -71,7 +63,7 @@ class Sharpening:
     threshold: float = 0.0
 
     def added(self, luma: Float32Array) -> Float32Array:
-        """Return what the mask adds to luma, float32 (N, S, S)."""
+        """Return the values that the mask adds to luma, float32 (N, S, S)."""
         detail = luma - gaussian(luma, self.radius)
         if self.threshold:
             detail -= np.clip(detail, -self.threshold, self.threshold)
@@ -147,6 +139,6 @@ def split(codes: Uint8Array) -> Planes:
     return [codes[..., channel] * np.float32(1 / 255) for channel in range(3)]
 
 
-def scaled(codes: Uint8Array, side: int, resample: Image.Resampling) -> Uint8Array:
-    """Return frames scaled to side x side samples, of the encoded values, uint8 (N, side, side, 3)."""
-    return np.stack([np.asarray(Image.fromarray(frame).resize((side, side), resample)) for frame in codes])
+def resized(frames: np.ndarray, side: int, resample: Image.Resampling = Image.Resampling.BILINEAR) -> np.ndarray:
+    """Return frames, uint8 (N, H, W, 3) or float32 (N, H, W), scaled to side x side samples."""
+    return np.stack([np.asarray(Image.fromarray(frame).resize((side, side), resample)) for frame in frames])

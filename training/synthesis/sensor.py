@@ -35,13 +35,11 @@ class Sensor:
 
     shot_noise: variance of the noise at irradiance 1 in a channel of gain 1; it is proportional to the irradiance
     read_noise: standard deviation of the noise that does not depend on the irradiance, in a channel of gain 1
-    gains: white balance: factors on the sensor's red, green and blue. They multiply the noise.
-    white: irradiance at which a channel of gain 1 clips; 1 is where the response ends
+    gains: white balance: factors on the sensor's red, green and blue, which multiply the noise, too
+    white: irradiance at which a channel of gain 1 clips; the response ends at 1
     clips_apart: whether each channel clips where the sensor does, at its gain times `white`, rather than all at `white`
-    crosstalk: part of each of the sensor's channels, in [0, 1), that is the mean of all three; the matrix takes it out
-        again
-    saturation: factor of the matrix on the distance of a color from its luminance. Above 1 it makes saturated colors
-        negative, and these are clipped.
+    crosstalk: part of each channel, in [0, 1), that is the mean of all three; the matrix takes it out again
+    saturation: factor on the distance of a color from its luminance; above 1, saturated colors become negative and clip
     demosaicing: how the mosaic is filled; None for a sensor that measures all colors everywhere
     """
 

@@ -1,7 +1,7 @@
 from crfnet_core.photograph.metadata import file_origin
 from crfnet_core.photograph.metadata.jpeg import read_jpeg_header
 from tests.helpers.crafted_files import jpeg
-from training.data.real.case_metadata import metadata_of_case
+from training.data.real.file_origin import metadata_of_case
 
 ROW = {
     "exif_make": "NIKON CORPORATION",

@@ -22,22 +22,14 @@ def test_training_reads_the_new_folder(tmp_path, out):
     assert sorted(named) == [("a.exr", False), ("b.exr", False), ("c.exr", False)]
 
 
-def test_a_name_is_only_replaced_when_asked(tmp_path, out, capsys):
+def test_a_name_that_is_taken_is_refused(tmp_path, out, capsys):
     first = write_dng(tmp_path / "same.dng", chart(ramp(1.0)))
     assert main([str(first), "--out", str(out)]) == 0
     other = write_float(tmp_path / "same.exr", np.full((230, 240, 3), 0.5))
     assert main([str(other), "--out", str(out)]) == 2
-    assert "same.exr is there already; rename the file or ask to overwrite it" in capsys.readouterr().err
-    assert manifest(out)[0]["source"] == "imported: same.dng"
-    assert main([str(other), "--out", str(out), "--overwrite"]) == 0
-    assert [(row["source"], row["width"]) for row in manifest(out)] == [("imported: same.exr", "240")]
-    assert read_image(out / "same.exr").shape == (230, 240, 3)
-
-
-def test_a_file_of_the_folder_itself_is_refused(tmp_path, out):
-    import_scene(write_dng(tmp_path / "ramp.dng", chart(ramp(1.0))), out)
-    with pytest.raises(PhotoError, match="is a file of the folder"):
-        import_scene(out / "ramp.exr", out, overwrite=True)
+    assert "same.exr is there already; rename the file" in capsys.readouterr().err
+    assert [row["source"] for row in manifest(out)] == ["imported: same.dng"]
+    assert read_image(out / "same.exr").shape == (256, 320, 3)
 
 
 def test_another_manifest_is_refused(tmp_path, out):
@@ -79,10 +71,10 @@ def bad_files(folder):
         "renamed.cr2": "LibRaw cannot develop it (Unsupported file format or not RAW file)",
         "codes.exr": "is deep, a volume, or not of half or float samples",
         "depth.exr": "needs channels R, G and B, or a gray one; found X, Z",
-        "small.hdr": "226 rows or columns at scale 1 are too few; windows need 227",
+        "small.hdr": "226 rows or columns are too few; windows need 227",
         "black.exr": "is black",
         "endless.exr": "is black",
-        "absent.nef": "does not exist",
+        "absent.nef": "No such file",
     }
 
 
@@ -93,17 +85,11 @@ def test_bad_files_are_one_line_each_and_stop_no_others(tmp_path, out, capsys):
     lines = capsys.readouterr().err.splitlines()
     assert len(lines) == len(said)
     for line, (name, text) in zip(lines, said.items(), strict=True):
-        assert line.startswith(f"import_scenes: error: {tmp_path / name}: ")
+        assert line.startswith("import_scenes: error: ")
+        assert str(tmp_path / name) in line
         assert text in line
     assert sorted(path.name for path in out.iterdir()) == ["good.exr", "manifest.csv"]
     assert [row["file"] for row in manifest(out)] == ["good.exr"]
-
-
-@pytest.mark.parametrize("scale", [0, -1, 2])
-def test_a_scale_must_leave_room_for_a_window(tmp_path, scale):
-    path = write_dng(tmp_path / "ramp.dng", chart(ramp(1.0)))
-    with pytest.raises(PhotoError, match=r"must be 1 or more|256 rows or columns at scale 2 are too few"):
-        linear_scene(path, scale=scale)
 
 
 def test_an_exr_that_calls_itself_encoded_is_refused(tmp_path):

@@ -31,7 +31,6 @@ def test_whole_groups_are_held_out():
     rest = np.setdiff1d(np.arange(60), chosen)
     assert len(chosen) == 12
     assert not set(groups[chosen]) & set(groups[rest])
-    assert held_out_curves(curves, seed=1).tolist() != chosen.tolist()
 
 
 def test_the_splits_of_the_repository_are_whole():

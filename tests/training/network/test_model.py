@@ -4,8 +4,14 @@ import pytest
 torch = pytest.importorskip("torch", reason="training needs the train extra")
 
 from crfnet_core.statistics import window_statistics
-from training.network.conjugate_gradients import conjugate_gradients
-from training.network.features import CANDIDATE_FEATURES, EDGE_FEATURES, EQUATION_FEATURES, LEVEL_FEATURES, Features
+from training.network.features import (
+    CANDIDATE_FEATURES,
+    EDGE_FEATURES,
+    EQUATION_FEATURES,
+    LEVEL_FEATURES,
+    Features,
+    conjugate_gradients,
+)
 from training.network.model import (
     LARGEST_RAW,
     WEIGHT_UNITS,

@@ -15,8 +15,8 @@ UNIFORM = np.linspace(0, 1, 1024)
 
 @pytest.fixture
 def source(scene):
-    sets = tuple(CurveSource(UNIFORM[None] ** power, (), camera_fraction=0, plain_fraction=1) for power in (0.3, 0.5))
-    return PhotographSource([scene], sets, (0.25, 0.75), reference_luminance([scene]))
+    sets = [CurveSource(UNIFORM[None] ** power, (), camera_fraction=0, plain_fraction=1) for power in (0.3, 0.5)]
+    return PhotographSource([scene], tuple(each.draw for each in sets), (0.25, 0.75), reference_luminance([scene]))
 
 
 def test_photographs_cover_the_range_and_repeat_with_the_seed(source):

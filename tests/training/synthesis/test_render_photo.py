@@ -5,7 +5,6 @@ pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from training.data.scenes import LUMINANCE, Scene
 from training.synthesis.camera import (
-    ROWS_AT_A_TIME,
     TARGET_BRIGHTNESS,
     Capture,
     apply_response,
@@ -40,15 +39,6 @@ def test_a_clean_photograph_is_the_rounded_response(scene, rng):
     photo = photo_of(scene, rng)
     assert np.abs(255 * photo.pixels - expected).max() <= 1
     assert (photo.bit_depth, photo.is_gray, photo.path.name) == (8, False, "made")
-
-
-@pytest.mark.parametrize("capture", [Capture(), Capture(grain=0.01), Capture(shot_noise=1e-4, read_noise=1e-3)])
-def test_rows_captured_one_after_the_other_equal_the_whole(rng, capture):
-    light = rng.uniform(0, 1, (ROWS_AT_A_TIME + 40, 50, 3)).astype(np.float32)
-    photo = render_photo(light, CURVE, 1.0, np.random.default_rng(1), name="made", capture=capture)
-    whole = simulate_capture(light, CURVE, capture, np.random.default_rng(1))
-    assert capture.splits_into_rows
-    np.testing.assert_array_equal(np.rint(255 * photo.pixels), whole)
 
 
 def test_noise_has_its_variance_in_codes(rng):

@@ -1,8 +1,12 @@
-"""Real photographs of cameras whose responses were measured; no model is trained on their pixels."""
+"""Real photographs of cameras whose responses were measured, and these responses by body.
+
+No model is trained on the pixels. A prior may be made from the responses, out of fold wherever it is measured.
+"""
 
 from __future__ import annotations
 
 import csv
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -11,8 +15,7 @@ import numpy as np
 from crfnet_core.photograph.image_io import read_metadata
 from crfnet_core.photograph.metadata import FileMetadata, file_origin
 from crfnet_core.response.curve import ResponseCurve
-from training.data.real.case_metadata import is_original, metadata_of_case
-from training.data.real.file_origin import Editing, editing, is_scaled
+from training.data.real.file_origin import Editing, editing, is_original, is_scaled, metadata_of_case
 
 #: The two folders of real photographs, which are also their names in the report.
 REAL, REAL_BODIES = "real", "real_bodies"
@@ -46,8 +49,6 @@ class RealPhotograph:
     grade: how well the response was measured: A, B or C
     caution: why the photograph does not count in the means; empty where it counts
     is_in_mean: whether its response is part of the mean of the other bodies
-    editing: whether an editor saved the file
-    is_scaled: whether it was made smaller after the camera
     fold: bodies of one fold are left out of a mean together
     photograph, measured: the files of the photograph and of its response
     metadata: of the original file, where `photograph` is not the original and has lost it
@@ -65,11 +66,6 @@ class RealPhotograph:
     photograph: Path
     measured: Path
     metadata: FileMetadata | None = None
-
-    @property
-    def is_trusted(self) -> bool:
-        """Whether the photograph counts in the means."""
-        return not self.caution
 
     @property
     def body_key(self) -> str:
@@ -96,6 +92,35 @@ def real_photographs(data: Path) -> dict[str, list[RealPhotograph]]:
         folder = data / REAL_BODIES
         sets[REAL_BODIES] = [_of_bodies(folder, row) for row in case_rows(folder)]
     return sets
+
+
+@dataclass(frozen=True)
+class Body:
+    """A camera body, of a kind as in `RealPhotograph`, and a response of each exposure stack."""
+
+    key: str
+    kind: str
+    responses: tuple[ResponseCurve, ...]
+
+
+def measured_bodies(data: Path, *, without: RealPhotograph | None = None) -> list[Body]:
+    """Return the bodies of DATA/real and DATA/real_bodies whose photographs are the cameras' own renderings.
+
+    The fold of the photograph `without` is left out, and every body of the models in this fold, in both folders.
+    """
+    photographs = [photograph for folder in real_photographs(data).values() for photograph in folder]
+    left_out = {model_key(other) for other in photographs if without is not None and _shares_fold(other, without)}
+    kept = [
+        photograph
+        for photograph in photographs
+        if model_key(photograph) not in left_out and not photograph.is_developed
+    ]
+    return [_body(key, kept) for key in sorted({photograph.body_key for photograph in kept})]
+
+
+def model_key(photograph: RealPhotograph) -> str:
+    """Return the camera model without what DATA/real says in brackets: two bodies of one model share it."""
+    return photograph.body_key.partition(" (")[0]
 
 
 def read_measured(path: Path) -> ResponseCurve:
@@ -147,3 +172,15 @@ def _of_bodies(folder: Path, row: dict[str, str]) -> RealPhotograph:
         measured=folder / row["gt"],
         metadata=None if is_original(row) else metadata_of_case(row, _crop(folder, row)),
     )
+
+
+def _shares_fold(photograph: RealPhotograph, other: RealPhotograph) -> bool:
+    """Return whether two photographs are of one folder and one fold."""
+    return photograph.photograph.parents[1] == other.photograph.parents[1] and photograph.fold == other.fold
+
+
+def _body(key: str, photographs: Sequence[RealPhotograph]) -> Body:
+    """Return the body of this key."""
+    of_body = [photograph for photograph in photographs if photograph.body_key == key]
+    measured = {photograph.measured: photograph for photograph in of_body}
+    return Body(key, of_body[0].kind, tuple(photograph.truth() for photograph in measured.values()))

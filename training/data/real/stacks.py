@@ -19,8 +19,7 @@ from crfnet_core.library.answer import brightness_per_stop
 from crfnet_core.response.curve import ResponseCurve
 from crfnet_core.response.metrics import estimation_error
 from training.data.in_camera import log_irradiance, response_of
-from training.data.real.case_metadata import metadata_of_case
-from training.data.real.file_origin import Editing, editing
+from training.data.real.file_origin import Editing, editing, metadata_of_case
 from training.data.real.photographs import CAUTION, REAL_BODIES, TRUSTED_GRADES, USED, case_rows, read_measured
 
 #: Two stacks are of one setting if the E_est between them is at most so many times the one expected of both.
@@ -40,15 +39,12 @@ UNKNOWN_BODY = "unknown"
 class Stack:
     """A measured exposure stack.
 
-    measured: the file of its response
-    settings: what its files say
+    settings: the camera and its settings, as the files state them
     error: standard deviation of its E_est
     frames: number of exposures, or nothing where the list has none
-    grade: A or B
     caution: why it is less certain, or nothing
     """
 
-    measured: Path
     settings: CameraSettings
     curve: ResponseCurve
     error: float
@@ -115,7 +111,6 @@ def _stack(folder: Path, row: Mapping[str, str]) -> Stack:
     """Return the stack of a row."""
     settings = CameraSettings.from_metadata(metadata_of_case(row))
     return Stack(
-        measured=folder / row["gt"],
         settings=settings if settings.camera else replace(settings, model=row["body"]),
         curve=read_measured(folder / row["gt"]),
         error=float(row["uncertainty_L2"]),

@@ -9,6 +9,7 @@ from __future__ import annotations
 import numpy as np
 from PIL import Image
 
+from crfnet_core.photograph.recognition import LOG_CURVES
 from crfnet_core.response.transfer_functions import srgb_encode
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array, Float64Array, Uint8Array
@@ -16,13 +17,26 @@ from training.data.curves import IRRADIANCE
 from training.data.scenes import LUMINANCE
 from training.synthesis.camera import apply_response, enlarged, jpeg_compressed
 from training.synthesis.demo_plate import camera_response
-from training.synthesis.unusual.log_curves import log_curves
 
 #: The sRGB encoding as a response, at 1024 irradiances.
 SRGB = srgb_encode(IRRADIANCE)
 
 #: Range of the roll-off of highlights (1 is none), and of the weight of the S-curve, in the rendering of a camera.
 ROLL_OFF, CONTRAST = (1.0, 3.5), (0.4, 1.0)
+
+#: The log curves that the packaged models have seen, sorted; more would change the pictures that a seed draws.
+TRAINING_CURVES = (
+    "ARRI LogC3",
+    "Apple Log",
+    "Canon Log 3",
+    "DJI D-Log",
+    "Fujifilm F-Log",
+    "Fujifilm F-Log2",
+    "Nikon N-Log",
+    "Panasonic V-Log",
+    "RED Log3G10",
+    "Sony S-Log3",
+)
 
 #: Stops that log footage is exposed above light whose white is 1, and the part of its color that wide primaries
 #: take away.
@@ -44,8 +58,7 @@ TABLE = 2**14
 
 def log_footage(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
     """Return log footage in a maker's curve and wide primaries, as stored or with its legal range stretched."""
-    curves = log_curves()
-    curve = curves[sorted(curves)[rng.integers(len(curves))]]
+    curve = LOG_CURVES[TRAINING_CURVES[rng.integers(len(TRAINING_CURVES))]]
     exposed = irradiance * np.float32(np.exp2(rng.uniform(*LOG_STOPS)))
     encoded = curve(saturated(exposed, 1 - rng.uniform(*WIDE_GAMUT)))
     if rng.random() < STRETCHED:
@@ -70,11 +83,12 @@ def messenger(irradiance: Float32Array, rng: np.random.Generator) -> Float32Arra
     smaller than a window is continued by its mirror image to the size of a window.
     """
     times, curve = int(rng.choice(SCALED_BY)), drawn_camera_curve(rng)
-    sent = np.stack([reduced(encoded_codes(enlarged(light, ENLARGED), curve), times) for light in irradiance])
+    pictures = (Image.fromarray(encoded_codes(enlarged(light, ENLARGED), curve)) for light in irradiance)
+    sent = np.stack([np.asarray(picture.reduce(times)) for picture in pictures])
     lacking = [(0, max(0, WINDOW_SIZE - side)) for side in sent.shape[1:3]]
     sent = np.pad(sent, [(0, 0), *lacking, (0, 0)], mode="symmetric")
     for quality in rng.integers(*MESSENGER_QUALITY, size=2, endpoint=True):
-        sent = jpeg_compressed(sent, int(quality), True)
+        sent = jpeg_compressed(sent, quality=int(quality), subsampling=2)
     return np.divide(sent, np.float32(255), dtype=np.float32)
 
 
@@ -84,27 +98,14 @@ def encoded_codes(irradiance: Float32Array, curve: Float64Array) -> Uint8Array:
     return table[(np.clip(irradiance, 0, 1) * np.float32(TABLE - 1) + np.float32(0.5)).astype(np.uint16)]
 
 
-def reduced(codes: Uint8Array, times: int) -> Uint8Array:
-    """Return a picture (H, W, 3) averaged down: the mean code of times x times samples, rounded."""
-    return np.asarray(Image.fromarray(codes).reduce(times))
-
-
 def camera_rendering(irradiance: Float32Array, rng: np.random.Generator) -> Float32Array:
-    """Return the ordinary picture of a camera, in a response of `camera_curve`: what other programs then change."""
+    """Return the ordinary picture of a camera, which other programs then change."""
     return apply_response(irradiance, drawn_camera_curve(rng))
 
 
 def drawn_camera_curve(rng: np.random.Generator) -> Float64Array:
-    """Return the response of a random ordinary camera, shape (1024,)."""
-    return camera_curve(rng.uniform(*ROLL_OFF), rng.uniform(*CONTRAST))
-
-
-def camera_curve(roll_off: float, contrast: float) -> Float64Array:
-    """Return the response of an ordinary camera, shape (1024,): see `training.synthesis.demo_plate.camera_response`.
-
-    It needs no measured response, so these pictures tell nothing of the test cameras.
-    """
-    return camera_response(IRRADIANCE, roll_off, contrast)
+    """Return the response of a random ordinary camera, shape (1024,), by formula: it shows nothing of test cameras."""
+    return camera_response(IRRADIANCE, rng.uniform(*ROLL_OFF), rng.uniform(*CONTRAST))
 
 
 def saturated(pixels: Float32Array, factor: float) -> Float32Array:

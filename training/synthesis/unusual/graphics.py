@@ -10,7 +10,7 @@ from PIL import Image, ImageDraw, ImageFont
 
 from crfnet_core.statistics.windows import WINDOW_SIZE
 from crfnet_core.types import Float32Array
-from training.synthesis.unusual.encodings import camera_rendering, codes_of, reduced
+from training.synthesis.unusual.encodings import camera_rendering, codes_of
 
 #: Sizes of letters, in pixels.
 LETTER_SIZES = (9, 11, 13, 16, 20)
@@ -70,7 +70,7 @@ def _panel(image: Image.Image, draw: ImageDraw.ImageDraw, is_dark: bool, rng: np
 def _scaled(picture: np.ndarray, rng: np.random.Generator) -> np.ndarray:
     """Return a part of the picture, averaged down after its encoding by 1, 2 or 3."""
     times = int(rng.integers(1, 4))
-    scaled = reduced(picture, times)
+    scaled = np.asarray(Image.fromarray(picture).reduce(times))
     rows, columns = (max(8, int(side * rng.uniform(*INSET_SIDES))) for side in picture.shape[:2])
     return scaled[:rows, :columns]
 

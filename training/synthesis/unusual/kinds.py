@@ -50,73 +50,49 @@ class UnusualKind(StrEnum):
 
 @dataclass(frozen=True)
 class Recipe:
-    """How a kind is made, and why it must be refused.
+    """How a kind is made.
 
-    reason: why an estimate of a response must not be trusted
-    rendering: irradiance to encoded pictures; see `Rendering`
     is_recorded: whether a sensor's blur and noise come before the rendering, and sharpening and grain after it
     is_compressed: whether a share is compressed as JPEG of random quality at the end
     """
 
-    reason: str
     rendering: Rendering
     is_recorded: bool = True
     is_compressed: bool = True
 
 
-RECIPES: dict[UnusualKind, Recipe] = {
-    UnusualKind.LOG_FOOTAGE: Recipe(
-        "its maker publishes the curve: the exact LUT exists, and black and white lie far inside the codes", log_footage
-    ),
-    UnusualKind.NEAR_LINEAR: Recipe(
-        "it is linear already, or a render's data: a camera's response would bend what is straight", near_linear
-    ),
-    UnusualKind.LIMITED_RANGE: Recipe(
-        "codes 16 and 235 stand for black and white: a response from 0 to 1 is wrong until the range is stretched",
-        limited_range,
-    ),
-    UnusualKind.LOCAL_TONE_MAPPING: Recipe(
-        "the same light has another code in another place: no response exists", local_tone_mapping
-    ),
-    UnusualKind.GLOBAL_TONE_MAPPING: Recipe(
-        "the operator maps luminance and keeps or bends color ratios: no curve holds for every channel",
-        global_tone_mapping,
-    ),
-    UnusualKind.SCREENSHOT: Recipe(
-        "most of it was drawn, not photographed, and the rest was scaled after its encoding",
-        screenshot,
-        is_recorded=False,
-    ),
-    UnusualKind.FILMIC: Recipe(
-        "a published view transform of 16.5 stops, which no camera has; its exact inverse exists",
-        filmic,
-        is_recorded=False,
-    ),
-    UnusualKind.AGX: Recipe(
-        "a published view transform that mixes the channels before and after its curve; its exact inverse exists",
-        agx,
-        is_recorded=False,
-    ),
-    UnusualKind.FILM_SCAN: Recipe(
-        "film, base and scanner each have a curve, different in every channel, and the grain is not of a sensor",
-        film_scan,
-    ),
-    UnusualKind.MESSENGER: Recipe(
-        "averaging encoded codes and strong compression have replaced the mixtures of light at edges",
-        messenger,
-        is_compressed=False,
-    ),
-    UnusualKind.ARTISTIC_FILTER: Recipe(
-        "each channel has a curve of its own, and black is not 0: one response for all does not exist", artistic_filter
-    ),
-    UnusualKind.SOLARIZED: Recipe("brightness falls where light grows: it has no response that rises", solarized),
-    UnusualKind.PALETTE: Recipe(
-        "a few dozen colors are left, and dither mixes them: codes no longer measure light",
-        palette,
-        is_compressed=False,
-    ),
-    UnusualKind.LINE_ART: Recipe("no light was recorded at all", line_art, is_recorded=False),
-    UnusualKind.FALSE_COLOR: Recipe("colors are a legend: the channels rise and fall along one scale", false_color),
+#: How each kind is made, and why an estimate of its response must not be trusted.
+RECIPES = {
+    # Its maker publishes the curve: the exact LUT exists, and black and white lie far inside the codes.
+    UnusualKind.LOG_FOOTAGE: Recipe(log_footage),
+    # It is linear already, or a render's data: a camera's response would bend a straight line.
+    UnusualKind.NEAR_LINEAR: Recipe(near_linear),
+    # Codes 16 and 235 stand for black and white: a response from 0 to 1 is wrong until the range is stretched.
+    UnusualKind.LIMITED_RANGE: Recipe(limited_range),
+    # The same light has another code in another place: no response exists.
+    UnusualKind.LOCAL_TONE_MAPPING: Recipe(local_tone_mapping),
+    # The operator maps luminance and keeps or bends color ratios: no curve holds for every channel.
+    UnusualKind.GLOBAL_TONE_MAPPING: Recipe(global_tone_mapping),
+    # Most of it was drawn, not photographed, and the rest was scaled after its encoding.
+    UnusualKind.SCREENSHOT: Recipe(screenshot, is_recorded=False),
+    # Published view transforms, whose exact inverses exist: one of 16.5 stops, which no camera has, and one that mixes
+    # the channels before and after its curve.
+    UnusualKind.FILMIC: Recipe(filmic, is_recorded=False),
+    UnusualKind.AGX: Recipe(agx, is_recorded=False),
+    # Film, base and scanner each have a curve, different in every channel, and the grain is not of a sensor.
+    UnusualKind.FILM_SCAN: Recipe(film_scan),
+    # Averaging encoded codes and strong compression have replaced the mixtures of light at edges.
+    UnusualKind.MESSENGER: Recipe(messenger, is_compressed=False),
+    # Each channel has a curve of its own, and black is not 0: one response for all does not exist.
+    UnusualKind.ARTISTIC_FILTER: Recipe(artistic_filter),
+    # Brightness falls where light grows: no response that rises exists.
+    UnusualKind.SOLARIZED: Recipe(solarized),
+    # A few dozen colors are left, and dither mixes them: codes no longer measure light.
+    UnusualKind.PALETTE: Recipe(palette, is_compressed=False),
+    # No light was recorded at all.
+    UnusualKind.LINE_ART: Recipe(line_art, is_recorded=False),
+    # Colors are a legend: the channels rise and fall along one scale.
+    UnusualKind.FALSE_COLOR: Recipe(false_color),
 }
 
 
@@ -138,14 +114,10 @@ def unusual_windows(kind: UnusualKind, light: Float32Array, exposure: float, rng
     return simulate_capture(recipe.rendering(irradiance, rng), IRRADIANCE, after, rng)
 
 
-def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator, *, exposure: float | None = None) -> Photo:
-    """Return a whole frame of a kind, as the estimator reads it from a file.
-
-    `exposure` is the irradiance per unit of light; by default it is the `random_exposure`.
-    """
+def unusual_photo(kind: UnusualKind, scene: Scene, rng: np.random.Generator) -> Photo:
+    """Return a whole frame of a kind at a `random_exposure`, as the estimator reads it from a file."""
     light = sensor_light(scene, rng)
-    exposure = random_exposure(light, rng) if exposure is None else exposure
-    codes = unusual_windows(kind, light[None], exposure, rng)[0]
+    codes = unusual_windows(kind, light[None], random_exposure(light, rng), rng)[0]
     is_gray = bool((codes == codes[..., :1]).all())
     pixels = np.divide(codes, np.float32(255), dtype=np.float32)
     return Photo(pixels=pixels, bit_depth=8, is_gray=is_gray, path=Path(f"{kind}, {scene.name}"))

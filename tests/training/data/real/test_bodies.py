@@ -6,10 +6,9 @@ import pytest
 pytest.importorskip("scipy.io", reason="training needs the train extra")
 
 from crfnet_core.photograph.metadata import FileMetadata
-from training.data.real import bodies as module
-from training.data.real.bodies import measured_bodies
+from training.data.real import photographs as module
 from training.data.real.file_origin import Editing
-from training.data.real.photographs import RealPhotograph
+from training.data.real.photographs import RealPhotograph, measured_bodies
 
 UNIFORM = np.linspace(0, 1, 1024)
 
