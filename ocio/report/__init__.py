@@ -10,7 +10,7 @@ sheet        the picture of an estimate; calibration_sheet of a measured respons
 
 from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines
 from .cameras import camera_line, camera_summary, offer_lines
-from .documents import estimate_document, lut_document, model_document, plate_document
+from .documents import estimate_document, lut_document, plate_document
 from .facts import PhotoFacts, Phrases, basis, provenance
 from .words import (
     REMEDIES,
@@ -18,7 +18,6 @@ from .words import (
     file_lines,
     light_lines,
     lut_lines,
-    model_lines,
     oiiotool_lines,
     plate_lines,
     result_line,
@@ -44,8 +43,6 @@ __all__ = [
     "light_lines",
     "lut_document",
     "lut_lines",
-    "model_document",
-    "model_lines",
     "offer_lines",
     "oiiotool_lines",
     "plate_document",

@@ -1,8 +1,7 @@
-"""Estimates, plates, LUTs and models as documents: mappings ready for JSON, and their text."""
+"""Estimates, plates and LUTs as documents: mappings ready for JSON."""
 
 from __future__ import annotations
 
-import dataclasses
 from collections.abc import Sequence
 from typing import Any
 
@@ -10,7 +9,6 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.estimate.result import ResponseEstimate
-from crfnet_core.network import ModelConfig
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
 from ..luts.exposure import linear_gray
@@ -72,11 +70,6 @@ def lut_document(response: ResponseFile) -> dict[str, Any]:
         "at_quarters": rounded(quarters[0] if len(quarters) == 1 else quarters),
         "provenance": list(lut.comments),
     }
-
-
-def model_document(config: ModelConfig) -> dict[str, Any]:
-    """Return what a model's configuration says, ready for JSON."""
-    return {"kind": "model", **dataclasses.asdict(config)}
 
 
 def _light_document(light: PlateLight) -> dict[str, Any]:

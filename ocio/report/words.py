@@ -1,4 +1,4 @@
-"""Estimates, plates, LUTs and models in words: the lines that the command and the add-on show."""
+"""Estimates, plates and LUTs in words: the lines that the command and the add-on show."""
 
 from __future__ import annotations
 
@@ -154,20 +154,6 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
     ]
 
 
-def model_lines(document: Mapping[str, Any]) -> list[str]:
-    """Return what a model's configuration says, from its `model_document`."""
-    left_out = ("kind", "name", "accuracy")
-    return [
-        f"{document['name']}: model",
-        *(f"  {key}: {_listed(value)}" for key, value in document.items() if key not in left_out),
-        *(
-            f"  accuracy, {protocol}, {figure}: {value}"
-            for protocol, figures in document["accuracy"].items()
-            for figure, value in figures.items()
-        ),
-    ]
-
-
 def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:
     """Return the advice about an estimate that is not to be trusted; empty for any other."""
     if estimate.recognition:
@@ -214,8 +200,3 @@ def _exposure_line(exposure: Mapping[str, Any]) -> str:
 def _first_and_last(paths: Sequence[Path]) -> str:
     """Return a path, or the number of several paths and the first and the last of them."""
     return str(paths[0]) if len(paths) == 1 else f"{len(paths)} frames, {paths[0]} to {paths[-1].name}"
-
-
-def _listed(value: object) -> str:
-    """Return a value as text, a tuple as its elements with commas between."""
-    return ", ".join(map(str, value)) if isinstance(value, tuple) else str(value)

@@ -8,7 +8,7 @@ import pytest
 from crfnet import report
 from crfnet_core.estimate.estimate import estimate_response
 from crfnet_core.estimate.options import AnalysisOptions
-from crfnet_core.network import ModelConfig, ResponseNetwork
+from crfnet_core.network import ResponseNetwork
 from crfnet_core.photograph.image_io import read_photo
 from crfnet_core.photograph.metadata import Device, FileMetadata, file_origin, with_stated_device
 from crfnet_core.posterior import Family, Verdict
@@ -146,12 +146,3 @@ def test_what_an_earlier_version_did_not_store_is_left_out(stored):
     ]
     assert report.provenance(stored)[-1] == "Verdict: good, expected error 3.9 % of the brightness range (E_est 1.25)"
     assert report.result_line(stored, name="plate.jpg").endswith("(E_est 1.25)")
-
-
-def test_a_model_is_told_by_every_figure(fixed_model):
-    config = ModelConfig.read(fixed_model / "model.json")
-    document = report.model_document(dataclasses.replace(config, accuracy={"P0": {"mean": 1.2, "median": 1.1}}))
-    lines = report.model_lines(document)
-    assert lines[0] == "fixed: model"
-    assert lines[-2:] == ["  accuracy, P0, mean: 1.2", "  accuracy, P0, median: 1.1"]
-    assert "  output_names: locations, factors, log_odds" in lines
