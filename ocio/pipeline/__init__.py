@@ -16,7 +16,7 @@ Nothing here prints. Every step raises a `crfnet_core.CRFNetError` for what the 
 called with (done, total); whatever it raises ends the step, which first removes its unfinished files.
 """
 
-from ..luts.exposure import anchored_exposure
+from ..plates.light import anchored_exposure
 from .calibrations import plan_calibration, response_to_compare, write_calibration
 from .delivery import deliver, deliver_estimate, estimated_light
 from .each import EstimateBatch, LinearBatch

@@ -153,7 +153,7 @@ def estimated_light(estimated: FileEstimate, plates: PlateOptions, *, lut_length
     plate = common_primaries(tags, plates.primaries)
     lut = response_lut(estimated.estimate, length=lut_length)
     comment = f"Primaries: {plate}; the LUT leaves them as they are"
-    return PlateLight.of(estimated.firsts[0].tags, replace(lut, comments=(*lut.comments, comment)), plates)
+    return PlateLight.from_tags(estimated.firsts[0].tags, replace(lut, comments=(*lut.comments, comment)), plates)
 
 
 def with_light(space: PlateColorSpace, stops: float, plate: PlatePrimaries, linear: LinearSpace) -> PlateColorSpace:

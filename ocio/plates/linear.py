@@ -101,7 +101,7 @@ def linearize_plates(
     if options.is_encoded and isinstance(sequence, FrameSequence):
         sequence = replace(sequence, is_encoded=True)
     first = first_frame(sequence)
-    light = PlateLight.of(first.frame.color if first else ColorTags(), lut, options)
+    light = PlateLight.from_tags(first.frame.color if first else ColorTags(), lut, options)
     conversion = _Conversion(light, _scale(light, options), options, first)
     skipped = tuple(target for target in targets if not options.overwrite and target.exists())
     sizes = {targets[first.position]: first.size} if first else {}

@@ -3,18 +3,19 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.library import Camera
 
 from ..defaults import GRAY_BRIGHTNESS, MIDDLE_GRAY
-from ..luts.exposure import linear_gray
 from ..luts.response import ResponseFile
 from ..output_files import OutputFiles
-from ..plates.light import PlateLight
+from ..plates.light import PlateLight, linear_gray
 from ..plates.linear import PlateReport
 from .facts import PhotoFacts
 
@@ -70,6 +71,12 @@ def lut_document(response: ResponseFile) -> dict[str, Any]:
         "at_quarters": rounded(quarters[0] if len(quarters) == 1 else quarters),
         "provenance": list(lut.comments),
     }
+
+
+def camera_summary(camera: Camera) -> dict[str, Any]:
+    """Return a camera in short, ready for JSON."""
+    settings = asdict(camera.settings) | {"iso": list(camera.settings.iso)}
+    return {"name": camera.name, **settings, "basis": camera.basis}
 
 
 def _light_document(light: PlateLight) -> dict[str, Any]:

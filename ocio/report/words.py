@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from crfnet_core.estimate.result import ResponseEstimate
+from crfnet_core.estimate.result import CameraAnswer, ResponseEstimate
+from crfnet_core.library import Camera
 from crfnet_core.posterior import Family, Verdict
 from crfnet_core.response.metrics import FIRST_SHAPE_CODE, LAST_SHAPE_CODE, brightness_percent
 
@@ -152,6 +153,21 @@ def lut_lines(document: Mapping[str, Any]) -> list[str]:
         f"  {document['response']}",
         *(f"  {line}" for line in document["provenance"]),
     ]
+
+
+def offer_lines(offers: Sequence[CameraAnswer]) -> list[str]:
+    """Return one line that offers stored cameras of a photograph's make and model; nothing without any."""
+    if not offers:
+        return []
+    named = " or ".join(f"--camera {shlex.quote(offer.name)} ({offer.basis})" for offer in offers)
+    return [f"A response of this camera is known; to use it, add {named}."]
+
+
+def camera_line(camera: Camera) -> str:
+    """Return a camera in one line, for lists; its make and model where its name does not begin with them."""
+    model = camera.settings.camera
+    is_named = camera.name.casefold().startswith(model.casefold())
+    return f"{camera.name}: {camera.basis if is_named else f'{model}; {camera.basis}'}"
 
 
 def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> str:

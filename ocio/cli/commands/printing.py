@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-import atexit
 import os
 import shlex
-import shutil
-import stat
 import sys
-import tempfile
 import time
 from collections.abc import Iterable, Iterator, Mapping
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from importlib.util import find_spec
-from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from tqdm import tqdm
@@ -33,31 +28,12 @@ NO_MATPLOTLIB = "crfnet: no sheet is drawn, matplotlib is absent: pip install 'c
 
 
 def prepare_matplotlib() -> bool:
-    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do.
-
-    Its list of fonts, which it would write into the home of the user, goes into a folder among the temporary files.
-    """
+    """Make matplotlib draw without a window, and return whether it is there; if not, say on stderr what to do."""
     os.environ["MPLBACKEND"] = "agg"  # a sheet needs no window, and matplotlib fails at a backend that it does not know
     if find_spec("matplotlib") is not None:
-        if "MPLCONFIGDIR" not in os.environ:
-            os.environ["MPLCONFIGDIR"] = _font_folder()
         return True
     print(NO_MATPLOTLIB, file=sys.stderr)  # noqa: T201
     return False
-
-
-def _font_folder() -> str:
-    """Return a folder that only this user may enter; it lasts, because listing the fonts takes long."""
-    user = os.getuid() if hasattr(os, "getuid") else 0
-    folder = Path(tempfile.gettempdir(), f"crfnet-matplotlib-{user}")
-    with suppress(OSError):
-        folder.mkdir(mode=0o700, exist_ok=True)
-        state = folder.lstat()
-        if stat.S_ISDIR(state.st_mode) and (os.name == "nt" or (state.st_uid, state.st_mode & 0o077) == (user, 0)):
-            return str(folder)
-    folder = Path(tempfile.mkdtemp(prefix="crfnet-matplotlib-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return str(folder)
 
 
 def print_lines(lines: Iterable[str]) -> None:
