@@ -37,8 +37,6 @@ def _spi1d_text(lut: AnyLut) -> str:
 def _cube_text(lut: AnyLut) -> str:
     """Return a LUT as the text of a 1D .cube file of three columns, with its comments at the top.
 
-    A domain other than [0, 1] is written as DOMAIN_MIN and DOMAIN_MAX.
-
     Source: Adobe, "Cube LUT Specification 1.0", 2013; OpenColorIO, `FileFormatIridasCube.cpp`.
     """
     low, high = lut.domain
@@ -51,9 +49,7 @@ def _cube_text(lut: AnyLut) -> str:
 def _clf_text(lut: AnyLut) -> str:
     """Return a LUT as the text of a CLF 3.0 file: one LUT1D, after a Range if its domain is not [0, 1].
 
-    The id is a hash of the table and its domain, so equal LUTs have equal ids. OpenColorIO's `GroupTransform.write`
-    keeps only eight digits, so neighboring float32 values may become equal, and its output depends on its version.
-
+    OpenColorIO's `GroupTransform.write` keeps only eight digits, so neighboring float32 values may become equal.
     Source: Academy S-2014-006, "Common LUT Format (CLF)", version 3.0; SMPTE ST 2136-1.
     """
     depth = 'inBitDepth="32f" outBitDepth="32f"'

@@ -62,10 +62,9 @@ def photographs_of(source: PlateSource) -> Iterator[tuple[PlateSource, Photo]]:
 def chosen_photos(frames: MovieFrames, count: int = FRAMES_ANALYZED) -> Iterator[tuple[int, Photo]]:
     """Yield up to `count` frames for an estimate, one at a time, ascending, each with its number.
 
-    They are key frames if there are enough, which are decoded alone and have the best quality. They are cut into
-    `count` parts; of each, the first of the frames at `PLACES` is taken that is not nearly black or white and does not
-    show the same as one before. If no frame of the movie passes, the middle ones are taken as they are. Raise a
-    PlateError if none of these can be decoded.
+    They are key frames if there are enough, which are decoded alone and have the best quality. Of each of `count`
+    parts, the first of the frames at `PLACES` is taken that is not nearly black or white and shows something new. If
+    none passes, the middle ones are taken. Raise a PlateError if none of these can be decoded.
     """
     keys = sorted(set(frames.numbers) & set(frames.movie.key_numbers))
     parts = [part.tolist() for part in np.array_split(keys if len(keys) >= count else frames.numbers, count)]

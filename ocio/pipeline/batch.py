@@ -138,9 +138,8 @@ class Task:
 def plan_tasks(batch: Batch, photographs: Mapping[Path, Path]) -> list[Task]:
     """Return a task for each photograph of `find_photographs`, after checking that it can be done; create nothing.
 
-    Two photographs of one name in one folder get files of different names: `a` and `a_2` for a.jpg and a.png.
-    A photograph keeps its name of an earlier run. Raise PlateError if a photograph or a config of
-    another program would be replaced, there are results of other options, or the folder cannot be used.
+    A photograph keeps its name of an earlier run. Raise PlateError if a photograph or a config of another program would
+    be replaced, there are results of other options, or the folder cannot be used.
     """
     records, digest = batch.records.read(), batch.digest()
     folders = dict.fromkeys(photographs.values()) if batch.has_config else {}

@@ -19,8 +19,7 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
     """Yield an executor; at the end of the block, what has not begun is dropped and what has begun is finished.
 
     `workers` are processes of this machine; one works in this process. `scheduler` is the address of a Dask scheduler,
-    such as "tcp://10.0.0.1:8786": its workers need this package and the same files under the same names, and a job
-    whose worker dies is done again. Raise PlateError if Dask is not installed, or no scheduler answers.
+    such as "tcp://10.0.0.1:8786". Raise PlateError if Dask is not installed, or no scheduler answers.
     """
     if scheduler is not None:
         with _dask_pool(scheduler) as pool:

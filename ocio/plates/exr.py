@@ -122,10 +122,8 @@ def write_exr(path: Path, header: Any, pixels: NDArray[Any], *, name: Path) -> N
 def _is_whole(path: Path, header: Any) -> bool:
     """Return whether the chunks of a file fill it without a gap: OpenEXR reports no error of its last writes.
 
-    An OpenEXR file of one part is its header, a table with the place of each chunk, and the chunks. With zips
-    compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table last, over
-    zeros. Only the leaders of the chunks are read, and the data of the last one, whose checksum zlib verifies.
-
+    With zips compression each scanline is a chunk: its y, the size of its data, and the data. OpenEXR writes the table
+    of their places last, over zeros. Only the leaders are read, and the last data, whose checksum zlib verifies.
     Source: "OpenEXR File Layout", sections "Header", "Chunk Offset Table" and "Chunk Layout".
     """
     try:

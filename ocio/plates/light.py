@@ -69,10 +69,9 @@ class PlateLight:
 def anchored_exposure(response: ResponseCurve | AnyLut, *, gray: float | None = None, stops: float = 0.0) -> float:
     """Return the stops to add after the inverse response, which leaves the exposure open (Eq. 31 of docs/METHOD.md).
 
-    `response` may be the response or a LUT of its inverse; of a LUT for each channel, green counts. `gray` is the
-    encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear 0.18. By default
-    white is the anchor: brightness 1 becomes a linear 1. `stops` are added on top. Raise a LutError if the gray is
-    black.
+    `gray` is the encoded brightness in (0, 1] of a surface that reflects 18 % of the light, which becomes a linear
+    0.18; by default brightness 1 becomes 1. `stops` are added. `response` may be a LUT of the inverse. Raise a LutError
+    if the gray is black.
     """
     if gray is None:
         return stops

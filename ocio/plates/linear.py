@@ -80,22 +80,16 @@ def linearize_plates(
 ) -> PlateReport:
     """Write a plate, or every frame of a sequence, as scene-linear OpenEXR: matrix @ lut.apply(B) * 2 ** exposure.
 
-    `targets`, one a frame, come from `linear_targets`; their folder must exist. Gray becomes RGB. Alpha is kept: the
-    color is divided by it where the file stores the product, and multiplied by it after the LUT, as OpenEXR requires of
-    coverage. Pixels are upright where the reader turns them. The matrix leads from the plate's primaries to the space
-    asked for; negative values stay. The output is compressed with zips and has the same bytes in every run.
+    Gray becomes RGB. The color is divided by alpha where the file stores the product, and multiplied by it after the
+    LUT, as OpenEXR requires of coverage. Negative values stay. The output has the same bytes in every run.
 
-    A file gets its final name only when it is whole. A target that exists is therefore finished, and is left alone
-    unless `overwrite` is set: the same call resumes an interrupted one. A call with another LUT, exposure, space or
-    depth is refused then. A frame that another process finishes meanwhile is left alone too, and checked in the same
-    way.
+    A target that exists is whole, and is left alone unless `overwrite` is set: the same call resumes an interrupted
+    one, or is refused for another LUT, exposure, space or depth. A frame that another process finishes meanwhile is
+    checked, too.
 
-    Missing frames are only reported, and a frame that fails does not stop the others. `workers` frames, by default one
-    a core, up to `MAX_WORKERS`, are in memory. `progress` is called in this thread with the number of finished (and
-    skipped) frames, and of all. An exception from it ends the run after the frames that have begun.
-
-    Raise a CRFNetError before any frame is written if an option is out of range, the output does not fit the depth, or
-    finished frames differ; at the end if frames failed: it names them, and holds the first reason.
+    A frame that fails does not stop the others. `workers` frames, by default one a core, up to `MAX_WORKERS`, are in
+    memory. `progress` counts finished and skipped frames, in this thread. Raise a CRFNetError before any frame is
+    written if the output does not fit the depth or finished frames differ, or at the end if frames failed.
     """
     check_target(targets[0], overwrite=True, error=PlateError)
     if options.is_encoded and isinstance(sequence, FrameSequence):

@@ -81,10 +81,8 @@ def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty a
 
 
 def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any], *, alpha: str = "") -> list[str]:
-    """Return two command lines by which oiiotool makes the linear plate: with the LUT and with the config.
+    """Return two command lines by which oiiotool makes the linear plate, with the LUT and with the config; and caveats.
 
-    Where the plate has an exposure, or its primaries are converted, a third line says that the LUT alone has neither;
-    where the linear EXR keeps primaries that the config has no linear space of, it says that the config converts them.
     `alpha` is `FileMetadata.alpha` of the photograph: the LUT takes colors that are not multiplied by it.
     """
     primaries, linear = document["primaries"], document["output_space"]
