@@ -47,7 +47,7 @@ class PhotographRecord:
 
     @classmethod
     def from_entry(cls, entry: Mapping[str, Any]) -> PhotographRecord:
-        """Return the record of a line; unknown entries are left out. What is not a record raises Python's own errors."""
+        """Return the record of a line, without unknown entries; what is not a record raises errors of Python."""
         known = {each.name: entry[each.name] for each in fields(cls) if each.name in entry}
         known |= {name: tuple(entry.get(name, ())) for name in ("weights", "warnings")}
         record = cls(**{**known, "exposure": float(entry.get("exposure", 0.0))})
