@@ -38,7 +38,6 @@ class PhotographFacts:
 
     report: PhotoFacts
     tags: ColorTags  # its primaries, as the file names them
-    alpha: str  # see `FileMetadata.alpha`
     plate: PlateSource  # the file, or the frame of a movie
     preview: Float32Array  # every `stride`-th pixel, (h, w, 3), in [0, 1]; empty except of the first photograph
     stride: int
@@ -50,7 +49,6 @@ class PhotographFacts:
         return cls(
             report=PhotoFacts.from_photo(photo),
             tags=metadata.color if metadata else ColorTags(),
-            alpha=metadata.alpha if metadata else "",
             plate=plate,
             preview=photo[::stride, ::stride].copy() if has_preview else photo[:0, :0].copy(),
             stride=stride,

@@ -80,37 +80,6 @@ def file_lines(files: OutputFiles, *, sheet: str = "the curve, its uncertainty a
     return [f"  {names:<{width}}  {meaning}" for names, meaning in named if names]
 
 
-def oiiotool_lines(photo: Path, files: OutputFiles, document: Mapping[str, Any], *, alpha: str = "") -> list[str]:
-    """Return two command lines by which oiiotool makes the linear plate, with the LUT and with the config; and caveats.
-
-    `alpha` is `FileMetadata.alpha` of the photograph: the LUT takes colors that are not multiplied by it.
-    """
-    primaries, linear = document["primaries"], document["output_space"]
-    target = "scene_linear" if linear["interop_id"] in ("lin_rec709_scene", "unknown") else linear["interop_id"]
-    is_known = "white" in primaries
-    is_converted = is_known and linear["name"] != f"linear {primaries['name']}"
-    is_kept = is_known and not is_converted and linear["interop_id"] == "unknown"
-    is_more = is_converted or document["exposure"]["stops"] != 0
-    lut, config, plate = (shlex.quote(_as_argument(path)) for path in (files.lut, files.config, photo))
-    space = shlex.quote(files.color_space)
-    oiiotool = "oiiotool --evaloff" if "{" in plate + lut + config else "oiiotool"  # else braces are expressions
-    # Straight colors are read as they are: oiiotool would multiply them by alpha in the file's own few bits.
-    oiiotool += " --no-autopremult" * (alpha == "straight")
-    divide, multiply = ":unpremult=1" * (alpha == "multiplied"), " --premult" * (alpha == "straight")
-    end = f"{multiply} -d half -o linear.exr"
-    return [
-        f"{oiiotool} {plate} --ociofiletransform{divide} {lut}{end}",
-        f"{oiiotool} --colorconfig {config} {plate} --colorconvert{divide} {space} {target}{end}",
-        *([f"(The LUT alone adds no exposure, and does not convert {primaries['name']}.)"] * is_more),
-        *(["(The config converts to linear Rec.709; the linear EXR keeps the plate's primaries.)"] * is_kept),
-    ]
-
-
-def _as_argument(path: Path) -> str:
-    """Return a file's name, which oiiotool must not take for an option."""
-    return f"./{path}" if str(path).startswith("-") else str(path)
-
-
 def light_lines(document: Mapping[str, Any]) -> list[str]:
     """Return the primaries and the exposure of linear plates, from an `estimate_document` or a `plate_document`."""
     primaries, space = document["primaries"], document["output_space"]

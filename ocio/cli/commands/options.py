@@ -31,19 +31,3 @@ def plate_options(arguments: argparse.Namespace) -> PlateOptions:
         overwrite=arguments.overwrite,
         is_encoded=getattr(arguments, "encoded", False),
     )
-
-
-def plate_arguments(options: PlateOptions) -> list[str]:
-    """Return the arguments that make linear plates of the same kind; those that would be the defaults are left out."""
-    chosen, usual = _arguments(options), _arguments(PlateOptions())
-    return [word for name, value in chosen.items() if value != usual[name] for word in (name, value)]
-
-
-def _arguments(options: PlateOptions) -> dict[str, str]:
-    """Return the values of the arguments that say what kind of linear plates is written."""
-    return {
-        "--depth": options.depth,
-        "--exposure": f"{options.exposure:g}" if options.gray is None else f"gray={options.gray:g}",
-        "--primaries": options.primaries,
-        "--output-space": options.output_space,
-    }
