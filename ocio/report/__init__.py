@@ -9,10 +9,8 @@ sheet        the picture of an estimate; calibration_sheet of a measured respons
 
 from .calibration import calibration_document, calibration_lines, calibration_provenance, comparison_lines
 from .documents import camera_summary, estimate_document, lut_document, plate_document
-from .facts import PhotoFacts, Phrases, basis, provenance
+from .facts import PhotoFacts, Phrases, provenance
 from .words import (
-    REMEDIES,
-    VERDICTS,
     camera_line,
     file_lines,
     light_lines,
@@ -26,11 +24,8 @@ from .words import (
 )
 
 __all__ = [
-    "REMEDIES",
-    "VERDICTS",
     "PhotoFacts",
     "Phrases",
-    "basis",
     "calibration_document",
     "calibration_lines",
     "calibration_provenance",

@@ -13,8 +13,7 @@ from crfnet_core.posterior import Verdict
 from ... import pipeline, report
 from ...options import OutputOptions
 from ..arguments.parts import NOT_TRUSTED
-from .each import check_each, run_each
-from .options import estimate_options, plate_options
+from .each import check_each, estimate_options, plate_options, run_each
 from .printing import lost_document, lost_lines, prepare_matplotlib, print_result, progress_bar
 
 
