@@ -159,13 +159,11 @@ class PlateInConfig:
 
 
 def plates_in_config(config: OCIO.Config) -> list[PlateInConfig]:
-    """Return the plates of a config, in its order."""
-    spaces = [space for space in config.getColorSpaces() if space.getFamily() == FAMILY]
-    return [_plate(config, space) for space in spaces]
-
-
-def _plate(config: OCIO.Config, space: OCIO.ColorSpace) -> PlateInConfig:
-    """Return the plate of a color space; its LUT comes first."""
-    name, first = str(space.getName()), next(iter(steps_to_reference(space)), None)
-    lut_file = str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
-    return PlateInConfig(name, lut_file, plate_exposure(space), plate_rules(config, name))
+    """Return the plates of a config, in its order; the LUT of each is the first step of its color space."""
+    plates = []
+    for space in config.getColorSpaces():
+        if space.getFamily() == FAMILY:
+            name, first = str(space.getName()), next(iter(steps_to_reference(space)), None)
+            lut_file = str(first.getSrc()) if isinstance(first, OCIO.FileTransform) else ""
+            plates.append(PlateInConfig(name, lut_file, plate_exposure(space), plate_rules(config, name)))
+    return plates

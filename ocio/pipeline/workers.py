@@ -25,16 +25,13 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
         with _dask_pool(scheduler) as pool:
             yield pool
         return
-    pool = _process_pool(workers) if workers > 1 else ThreadPoolExecutor(1)
+    pool: Executor = ThreadPoolExecutor(1)
+    if workers > 1:  # processes that start afresh, because onnxruntime's threads do not survive a fork
+        pool = ProcessPoolExecutor(workers, get_context("spawn"), initializer=_leave_signals_to_the_parent)
     try:
         yield pool
     finally:
         pool.shutdown(cancel_futures=True)
-
-
-def _process_pool(workers: int) -> ProcessPoolExecutor:
-    """Return processes that start afresh, because onnxruntime's threads do not survive a fork."""
-    return ProcessPoolExecutor(workers, mp_context=get_context("spawn"), initializer=_leave_signals_to_the_parent)
 
 
 def _leave_signals_to_the_parent() -> None:

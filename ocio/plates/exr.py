@@ -81,14 +81,11 @@ def linear_header(
     for name, value in {**_standard_attributes(header), **attributes}.items():
         if isinstance(value, tuple):
             header.attribute(name, oiio.TypeDesc(f"float[{len(value)}]"), value)
+        elif isinstance(value, str):  # OpenImageIO takes nothing that is not Unicode
+            header.attribute(name, value.encode(errors="replace").decode())
         else:
-            header.attribute(name, _text(value))
+            header.attribute(name, value)
     return header
-
-
-def _text(value: Any) -> Any:
-    """Return a text without what is not Unicode in it, which OpenImageIO does not take; any other value as it is."""
-    return value.encode(errors="replace").decode() if isinstance(value, str) else value
 
 
 def _standard_attributes(header: Any) -> dict[str, str | float]:
