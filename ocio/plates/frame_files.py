@@ -73,11 +73,6 @@ class FirstFrame:
     path: Path
     frame: EncodedFrame
 
-    @property
-    def size(self) -> tuple[int, int]:
-        """Its width and height in pixels."""
-        return self.frame.header.width, self.frame.header.height
-
 
 def first_frame(sequence: FrameSource) -> FirstFrame | None:
     """Return the first frame that can be read; None if all fail, each with an error of its own."""

@@ -47,9 +47,10 @@ def source_line(estimate: ResponseEstimate) -> str:
 
 def verdict_lines(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> list[str]:
     """Return the verdict, the expected errors, the kind of response, what it rests on, and warnings: one line each."""
-    kind, rests_on = estimate.likely_kind, basis(estimate)
+    kind, rests_on, advice = estimate.likely_kind, basis(estimate), verdict_advice(estimate, phrases)
+    verdict = f"{VERDICTS[Verdict.DO_NOT_TRUST]}: {advice}" if advice else VERDICTS[estimate.verdict]
     return [
-        f"The {'response' if estimate.camera else 'estimate'} is {_verdict_words(estimate, phrases)}.",
+        f"The {'response' if estimate.camera else 'estimate'} is {verdict}.",
         _expectation(estimate, phrases),
         *([f"Most likely {kind}."] if kind else []),
         *([f"{rests_on[0].upper()}{rests_on[1:]}."] if rests_on else []),
@@ -150,12 +151,6 @@ def verdict_advice(estimate: ResponseEstimate, phrases: Phrases = COMMAND) -> st
     is_known = any(origin.camera or origin.is_told for origin in estimate.origins)
     is_stored = not estimate.windows  # a stored camera has none, and nobody is asked what it is
     return remedies[0] + ("" if is_known or is_stored else phrases.state_device)
-
-
-def _verdict_words(estimate: ResponseEstimate, phrases: Phrases) -> str:
-    """Return the verdict with the advice about it."""
-    advice = verdict_advice(estimate, phrases)
-    return f"{VERDICTS[Verdict.DO_NOT_TRUST]}: {advice}" if advice else VERDICTS[estimate.verdict]
 
 
 def _expectation(estimate: ResponseEstimate, phrases: Phrases) -> str:
