@@ -22,8 +22,8 @@ def worker_pool(workers: int, *, scheduler: str | None = None) -> Iterator[Execu
     such as "tcp://10.0.0.1:8786". Raise PlateError if Dask is not installed, or no scheduler answers.
     """
     if scheduler is not None:
-        with _dask_pool(scheduler) as pool:
-            yield pool
+        with _dask_pool(scheduler) as cluster:
+            yield cluster
         return
     pool: Executor = ThreadPoolExecutor(1)
     if workers > 1:  # processes that start afresh, because onnxruntime's threads do not survive a fork
